@@ -25,7 +25,7 @@ import torch
 from gaitdisc.models.descent import TorchSteps
 from gaitdisc.models.shred import Shred
 from gaitdisc.models.trained_network import torch_threads
-from gaitdisc.models.training_settings import PRECISIONS, ScaledSamples, TrainingSettings, schedule_of
+from gaitdisc.models.training_settings import PRECISIONS, ScaledSamples, TrainingSettings, make_schedule
 
 STEPS, TRIES = 3, 6
 
@@ -42,7 +42,7 @@ def microseconds(cell: str, layers: int, batch: int, precision: str) -> float:
     """Processor time of one window in one step of the descent."""
     torch.manual_seed(0)
     part = ScaledSamples(torch.randn(STEPS * batch, 75), torch.randn(STEPS * batch, 15))
-    schedule = schedule_of(len(part[0]), 0.01, TrainingSettings(batch=batch))
+    schedule = make_schedule(len(part[0]), 0.01, TrainingSettings(batch=batch))
     steps = TorchSteps(Shred(75, 15, 3, 64, layers, cell), part, part, schedule, precision)
     found = []
     with torch_threads(1):

@@ -49,18 +49,18 @@ import numpy as np
 
 from gaitdisc import PooledCycles
 from gaitdisc.clinic.clinical_reference import ClinicalReading, ClinicalReference, Limits, Noted
-from gaitdisc.clinic.demonstration import CONDITION, Visit, participant_of, person_of, walk_of, with_pelvis
+from gaitdisc.clinic.demonstration import CONDITION, Visit, describe_participant, draw_person, make_habit, with_pelvis
 from gaitdisc.clinic.reading import read_beside
-from gaitdisc.clinic.reference import reference_of
+from gaitdisc.clinic.reference import make_reference
 from gaitdisc.clinic.rules import _sample, rules
-from gaitdisc.cohort.measurement import measured
+from gaitdisc.cohort.measurement import measure
 from gaitdisc.cohort.person import CADENCE, CADENCE_SPEED, Bump, Person
 from gaitdisc.cohort.walk import QUICK_HZ, SLOW_HZ
 from gaitdisc.ingest.study import Conditions, PlannedTrial, Study
-from gaitdisc.processing.pooled import pooled_cycles
+from gaitdisc.processing.pooled import pool_cycles
 from gaitdisc.recording import Trial
 from gaitdisc.recording.trial import LEG_OF_STATURE
-from gaitdisc.saved.provenance import made_now
+from gaitdisc.saved.provenance import provenance_now
 
 CONTROLS_SEED, PEOPLE_SEED = 50_000, 90_000
 ALWAYS = 10.0  # half width of what lasts the whole stride
@@ -129,11 +129,11 @@ def slow_down(person: Person, share: float) -> Person:
 
 def walk_with(kind: Kind, visit: Visit, seed: int) -> tuple[Person, Trial]:
     """Somebody of a kind and the measured walk."""
-    size, person = draw_size(kind, visit.number), person_of(visit, seed)
+    size, person = draw_size(kind, visit.number), draw_person(visit, seed)
     if kind.rule == "walking speed":
         person = slow_down(person, size)
-    walk = walk_of(person, visit, seed)
-    trial = with_pelvis(walk, measured(walk, f"{visit.name}_{CONDITION}", CONDITION))
+    walk = make_habit(person, visit, seed)
+    trial = with_pelvis(walk, measure(walk, f"{visit.name}_{CONDITION}", CONDITION))
     kinematics, phase = trial.stream("kinematics"), walk.phase[:: round(QUICK_HZ / SLOW_HZ)]
     values = np.array(kinematics.values)
     for side in "rl" if kind.both else visit.side:
@@ -148,9 +148,9 @@ def cycles_of(kind: Kind, visit: Visit, seed: int) -> PooledCycles:
     """Cycles of one made person."""
     made, trial = walk_with(kind, visit, seed)
     planned = PlannedTrial(condition=CONDITION, files=("made",), speed_m_per_s=made.speed_m_per_s)
-    person = participant_of(made, (planned,))
+    person = describe_participant(made, (planned,))
     study = Study(title="made", conditions=Conditions(nominal=CONDITION), participants=(person,))
-    return pooled_cycles(study, person, lambda _: trial)[0]
+    return pool_cycles(study, person, lambda _: trial)[0]
 
 
 def made_reference(
@@ -158,7 +158,7 @@ def made_reference(
 ) -> ClinicalReference:
     """Reference of so many made controls."""
     own = [cycles(KINDS["healthy"], Visit(f"C{k}", k), seed) for k in range(count)]
-    return reference_of(own, "made", made_now({}, 0, {}, ""))
+    return make_reference(own, "made", provenance_now({}, 0, {}, ""))
 
 
 def grade(kind: Kind, side: str, reading: ClinicalReading, truth: dict[str, Limits]) -> dict[str, float]:

@@ -5,12 +5,12 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass, replace
 
-from gaitdisc.cohort.cohort import WALK_S, the_twelve, walks_of
+from gaitdisc.cohort.cohort import WALK_S, make_walks, the_twelve
 from gaitdisc.ingest.study import Conditions, Models, Participant, Study
 from gaitdisc.processing.process import processed
 from gaitdisc.processing.samples import gait_samples
 from gaitdisc.recording import Samples
-from gaitdisc.response.fit_response import ResponseSettings, held_out_part
+from gaitdisc.response.fit_response import ResponseSettings, split_held_out
 
 MUSCLES = ("ham", "rf", "vas", "gas", "sol", "ta", "gmed")
 OUTPUTS = ("hip_flexion_r", "knee_angle_r", "ankle_angle_r", *(f"emg_{muscle}_r" for muscle in MUSCLES[:5]))
@@ -40,10 +40,10 @@ class PersonSamples:
 def person_samples(number: int) -> PersonSamples:
     """240 s of one of the twelve in both conditions; who changes gait late does not: twelve are needed."""
     person = replace(the_twelve()[number], change_s=math.inf)
-    walks = walks_of(person, WALK_S)
+    walks = make_walks(person, WALK_S)
     settings = ResponseSettings(OUTPUTS, HELD_OUT_S)
     parts = {
-        word: [gait_samples(part, OUTPUTS)[0] for part in held_out_part(processed(trial, STUDY).trajectory, settings)]
+        word: [gait_samples(part, OUTPUTS)[0] for part in split_held_out(processed(trial, STUDY).trajectory, settings)]
         for word, trial in walks.trials.items()
     }
     return PersonSamples(parts["nominal"][0], parts["exo"][0], parts["exo"][1])

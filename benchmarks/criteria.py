@@ -49,7 +49,7 @@ METHODS = {Shooting: ("fitted",), Scorer: ("scores", "left_without_each"), Linea
 FUNCTIONS = {
     "linearised": ("linearise", "linearise_along"),
     "process_noise": ("rank_process_noise",),
-    "estimated_filter": ("record_filter_of",),
+    "estimated_filter": ("find_record_filter",),
     "first_states": ("guess_states",),
     "influence": ("idle_parts",),
 }  # none of which reads a criterion

@@ -26,9 +26,9 @@ from scipy.signal import savgol_filter
 from gaitdisc.channel import Channel
 from gaitdisc.recording import Recording, Strides
 from gaitdisc.recording.arrays import runs
-from gaitdisc.signals.butterworth import lowpassed
-from gaitdisc.signals.derivatives import differentiated
-from gaitdisc.signals.gaps import filled
+from gaitdisc.signals.butterworth import low_pass
+from gaitdisc.signals.derivatives import derivative
+from gaitdisc.signals.gaps import fill_gaps
 
 RATE_HZ = 100.0
 DURATION_S = 60.0
@@ -104,11 +104,11 @@ def recording(t: NDArray[np.float64], x: NDArray[np.float64]) -> Recording:
 
 
 def butterworth(t: NDArray[np.float64], x: NDArray[np.float64], cutoff_hz: float, order: int = 4):
-    return lowpassed(recording(t, x), cutoff_hz, order).values[:, 0]
+    return low_pass(recording(t, x), cutoff_hz, order).values[:, 0]
 
 
 def five_point(x: NDArray[np.float64]) -> NDArray[np.float64]:
-    return differentiated(x[:, None], RATE_HZ, 2)[:, 0]
+    return derivative(x[:, None], RATE_HZ, 2)[:, 0]
 
 
 def three_point(x: NDArray[np.float64]) -> NDArray[np.float64]:
@@ -223,10 +223,10 @@ def bridged(t: NDArray[np.float64], x: NDArray[np.float64], how: str) -> NDArray
         known = np.isfinite(x)
         return np.interp(t, t[known], x[known])
     if how == "cubic spline":
-        return filled(recording(t, x), None, 1.0).values[:, 0]
+        return fill_gaps(recording(t, x), None, 1.0).values[:, 0]
     starts = np.arange(0.0, t[-1] - STRIDE_S, STRIDE_S)
     strides = Strides(starts, starts + STRIDE_S, "r", "oscillator")
-    return filled(recording(t, x), strides, 0.0, 1.0).values[:, 0]
+    return fill_gaps(recording(t, x), strides, 0.0, 1.0).values[:, 0]
 
 
 def print_gaps() -> None:

@@ -98,7 +98,7 @@ def trained(folder: Path, network: str, targets: str, epochs: int) -> dict[str, 
     import torch
 
     from gaitdisc.models.descent import TorchSteps
-    from gaitdisc.models.training_settings import ScaledSamples, TrainingSettings, schedule_of
+    from gaitdisc.models.training_settings import ScaledSamples, TrainingSettings, make_schedule
 
     torch.set_num_threads(1)
     torch.manual_seed(0)
@@ -111,8 +111,8 @@ def trained(folder: Path, network: str, targets: str, epochs: int) -> dict[str, 
     x, y = torch.from_numpy(windows["training"].astype(np.float32)), torch.from_numpy(y)
     model = built(network, x.shape[1], y.shape[1])
     settings = TrainingSettings(epochs=epochs, batch=BATCH, learning_rate=RATE)
-    rates = schedule_of(len(x), DECAY, settings).rates
-    steps = TorchSteps(model, ScaledSamples(x, y), ScaledSamples(x[:1], y[:1]), schedule_of(len(x), DECAY, settings))
+    rates = make_schedule(len(x), DECAY, settings).rates
+    steps = TorchSteps(model, ScaledSamples(x, y), ScaledSamples(x[:1], y[:1]), make_schedule(len(x), DECAY, settings))
     order, seconds = torch.Generator().manual_seed(0), []
     for epoch in range(epochs):
         begun = time.process_time()
@@ -141,9 +141,9 @@ def peak_mb() -> float:
 
 def built(network: str, inputs: int, outputs: int):
     """Network by its name."""
-    from gaitdisc.reconstruction.window_model import OF_TEXT, network_of
+    from gaitdisc.reconstruction.window_model import OF_TEXT, make_network
 
-    return network_of("shred" if network == "ours" else OF_TEXT, 1)(inputs, outputs)
+    return make_network("shred" if network == "ours" else OF_TEXT, 1)(inputs, outputs)
 
 
 if __name__ == "__main__":

@@ -36,11 +36,11 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.optimize import OptimizeResult, least_squares
 
-from gaitdisc.discovery.candidate import Candidate, bounds_of, candidates_of
-from gaitdisc.discovery.catalogue import known_shapes
+from gaitdisc.discovery.candidate import Candidate, find_bounds, list_candidates
+from gaitdisc.discovery.catalogue import read_shapes
 from gaitdisc.discovery.first_states import SHARE_OF_PERIOD, guess_states
-from gaitdisc.discovery.grids import Rhythm, cells, delays, rhythm_of
-from gaitdisc.discovery.places import kinematic_rates, places_of
+from gaitdisc.discovery.grids import Rhythm, cells, delays, find_rhythm
+from gaitdisc.discovery.places import kinematic_rates, list_places
 from gaitdisc.simulation.compiled_simulation import Rows
 from gaitdisc.simulation.evaluating import Points, evaluate
 from gaitdisc.simulation.measured import Measured
@@ -149,7 +149,7 @@ def box_of(simulation: Simulation, measured: Measured, guess: Values, added: Con
     spread = np.pad(np.maximum(np.nanstd(guess, axis=(0, 1)), LEAST), (0, more), constant_values=1.0)
     values = compile_simulation(simulation).defaults
     size = np.r_[np.where(values == 0, 1.0, np.abs(values)), np.tile(spread, len(starts))]
-    free = [k for k, each in enumerate(simulation.parameters) if bounds_of(each) or each.name in added]
+    free = [k for k, each in enumerate(simulation.parameters) if find_bounds(each) or each.name in added]
     return GreyBox(simulation, measured, np.r_[values, starts.ravel()], size, tuple(free))
 
 
@@ -158,7 +158,9 @@ def beginnings(simulation: Simulation, measured: Measured, guess: Values, rhythm
     count = measured.samples.astype(int)
     u = np.concatenate([measured.drive.inputs[k, :n] for k, n in enumerate(count)])
     x = np.nan_to_num(np.concatenate([guess[k, :n] for k, n in enumerate(count)]))
-    for candidate in candidates_of(simulation, places_of(simulation, compile_simulation(simulation)), known_shapes()):
+    for candidate in list_candidates(
+        simulation, list_places(simulation, compile_simulation(simulation)), read_shapes()
+    ):
         if candidate.bounds:
             continue  # that is fitted anyway
         along = evaluate(simulation, candidate.role, Points(np.zeros(len(x)), x, u)) if candidate.role else np.zeros(1)
@@ -183,7 +185,7 @@ def criterion(fit: OptimizeResult, terms: int, samples: float) -> float:
 
 def picked(simulation: Simulation, measured: Measured, seconds: float) -> tuple[GreyBox, OptimizeResult, Tried | None]:
     """The fit that the criterion picks, and its effect."""
-    rhythm, machine = rhythm_of(measured.observed, measured.rate), compile_simulation(simulation)
+    rhythm, machine = find_rhythm(measured.observed, measured.rate), compile_simulation(simulation)
     guess = guess_states(simulation, measured, rhythm.period, kinematic_rates(simulation, machine)).states
     samples = np.isfinite(measured.observed).sum() / (SHARE_OF_PERIOD * rhythm.samples)
     box = box_of(simulation, measured, guess)
@@ -211,7 +213,7 @@ if __name__ == "__main__":
     values = box.values(answer.x)
     effects, verdict, fitted = [], "no_gap", model
     for each in model.parameters:
-        if bounds := bounds_of(each):
+        if bounds := find_bounds(each):
             fitted = fitted.with_values({each.name: values[each.name]})
             apart = min(values[each.name] - bounds[0], bounds[1] - values[each.name])
             if not effect and apart < AT_BOUND * (bounds[1] - bounds[0]):

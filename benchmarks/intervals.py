@@ -32,7 +32,7 @@ import numpy as np
 from numpy.typing import NDArray
 from sensing_walks import Person, chosen_walks
 
-from gaitdisc.reconstruction.reconstruct import crossed_widths
+from gaitdisc.reconstruction.reconstruct import cross_widths
 from gaitdisc.reconstruction.state_errors import LEVEL, coverage, half_widths
 from gaitdisc.reconstruction.window_model import fit_reconstructor
 from gaitdisc.reconstruction.windows import PERSON_OUT, Parts, split_by_subject, split_within
@@ -62,7 +62,7 @@ def shares(kind: str, person: Person, parts: Parts) -> tuple[float, float]:
     what, check, test = person.what, parts.checked(), parts.tested()
     done = fit_reconstructor(kind, what, parts.fitted(), check)
     missed, errors = done(check) - check.y, done(test) - test.y
-    half = crossed_widths(kind, what, parts, missed) if parts.rule == PERSON_OUT else half_widths(missed)
+    half = cross_widths(kind, what, parts, missed) if parts.rule == PERSON_OUT else half_widths(missed)
     return float(coverage(errors, plain(missed)).mean()), float(coverage(errors, half).mean())
 
 

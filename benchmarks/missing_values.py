@@ -36,7 +36,7 @@ from sensing_walks import Person, chosen_walks
 
 from gaitdisc.models.fourier_ridge import fit_fourier_ridge
 from gaitdisc.reconstruction.window_model import FEATURES, MASKED, WindowModel, fit_reconstructor
-from gaitdisc.reconstruction.windows import Parts, filled, hidden, split_within, with_missing
+from gaitdisc.reconstruction.windows import Parts, fill_readings, hidden, split_within, with_missing
 from gaitdisc.recording import Samples
 
 SHARES = (0.0, 0.1, 0.2, 0.3, 0.4, 0.5)
@@ -87,7 +87,7 @@ def parts(
     for number, walk in enumerate(person.walks.people[person.name]):
         recording = with_missing(walk.recording, what.sensors, share, run_s, 100 * seed + number)
         if filling:
-            recording = filled(recording, what.sensors, filling[1], filling[0].sensor_means)
+            recording = fill_readings(recording, what.sensors, filling[1], filling[0].sensor_means)
         windows.append(what.windows(recording, walk.phi, missing=True))
     return split_within(windows, "temporal", what.reach_s)
 

@@ -52,7 +52,7 @@ from sensing_walks import SENSORS, Person, cohort_walks
 from torch import Tensor, nn
 from torch.utils.data import DataLoader, TensorDataset
 
-from gaitdisc.models.trained_network import pinned_threads
+from gaitdisc.models.trained_network import pin_threads
 from gaitdisc.reconstruction.window_model import KINDS, fit_reconstructor
 from gaitdisc.reconstruction.windows import Lags, Parts, split_by_subject
 from gaitdisc.recording import Samples
@@ -89,7 +89,7 @@ class OriginalShred(nn.Module):
 
 
 def main() -> None:
-    with pinned_threads(1):
+    with pin_threads(1):
         dense, sparse = (cohort_walks(1, lags=lags)[0] for lags in (EVERY_SAMPLE, Lags(25, 4)))
         watched = original(dense.parts(), dense.angles, GIVEN.cap_s, GIVEN.seed)
         ours(sparse.parts(), sparse, watched, GIVEN.seed)

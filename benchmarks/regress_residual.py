@@ -35,11 +35,11 @@ import numpy as np
 import pysindy as ps
 from numpy.typing import NDArray
 
-from gaitdisc.discovery.candidate import Candidate, candidates_of
-from gaitdisc.discovery.catalogue import known_shapes
+from gaitdisc.discovery.candidate import Candidate, list_candidates
+from gaitdisc.discovery.catalogue import read_shapes
 from gaitdisc.discovery.first_states import SHARE_OF_PERIOD, guess_states
-from gaitdisc.discovery.grids import Rhythm, cells, delays, rhythm_of
-from gaitdisc.discovery.places import Place, kinematic_rates, places_of
+from gaitdisc.discovery.grids import Rhythm, cells, delays, find_rhythm
+from gaitdisc.discovery.places import Place, kinematic_rates, list_places
 from gaitdisc.simulation.evaluating import Points, evaluate
 from gaitdisc.simulation.measured import Measured
 from gaitdisc.simulation.measured_table import read_measured
@@ -104,7 +104,7 @@ class Record:
 
 def record_of(simulation: Simulation, measured: Measured) -> Record:
     """States as discover first guesses them; rates by PySINDy's smoothed differences over the same window."""
-    rhythm, machine = rhythm_of(measured.observed, measured.rate), compile_simulation(simulation)
+    rhythm, machine = find_rhythm(measured.observed, measured.rate), compile_simulation(simulation)
     window = max(int(SHARE_OF_PERIOD * rhythm.samples) // 2 * 2 + 1, 5)
     slope: Any = ps.SmoothedFiniteDifference(smoother_kws={"window_length": window, "polyorder": 3})
     rate_of = kinematic_rates(simulation, machine)
@@ -116,7 +116,7 @@ def record_of(simulation: Simulation, measured: Measured) -> Record:
         known = np.asarray(np.isfinite(measured.observed[number, :count]).all(axis=1))
         trials.append(Trial(np.asarray(slope(states, time)), points, known))
     rows = [k for k, state in enumerate(simulation.states) if state.name not in rate_of]
-    return Record(simulation, places_of(simulation, machine), rows, rhythm, trials)
+    return Record(simulation, list_places(simulation, machine), rows, rhythm, trials)
 
 
 def drawn(record: Record, every: int) -> Iterator[Column]:
@@ -129,7 +129,7 @@ def drawn(record: Record, every: int) -> Iterator[Column]:
         one.name: record.rates(simulation.with_effect(Term(one.name, one.kind, "push", "1"))) - still
         for one in record.places
     }
-    for candidate in candidates_of(simulation, record.places, known_shapes()):
+    for candidate in list_candidates(simulation, record.places, read_shapes()):
         place = candidate.place
         if candidate.verdict == "wrong_parameter":
             step = SLOPE * max(abs(candidate.value), 1e-3)

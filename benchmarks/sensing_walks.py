@@ -11,7 +11,7 @@ from pathlib import Path
 from gaitdisc.channel import Channel
 from gaitdisc.cohort.demonstration import write_demonstration
 from gaitdisc.ingest.study import Study
-from gaitdisc.reconstruction.sensed_walks import SensedWalks, sensed_walks
+from gaitdisc.reconstruction.sensed_walks import SensedWalks, read_walks
 from gaitdisc.reconstruction.state_errors import angle_columns
 from gaitdisc.reconstruction.window_model import Sensing, sensing
 from gaitdisc.reconstruction.windows import Lags, Parts, split_within
@@ -70,6 +70,6 @@ def cohort_walks(people: int = 12, lags: Lags = LAGS) -> list[Person]:
 
 
 def _people(study: Study, lags: Lags, condition: str = "") -> list[Person]:
-    walks = sensed_walks(study, SENSORS, condition)
+    walks = read_walks(study, SENSORS, condition)
     what = sensing(tuple(channel.name for channel in walks.channels), SENSORS, lags, walks.rate_hz)
     return [Person(name, walks, what) for name in walks.people]

@@ -29,7 +29,7 @@ from sensing_walks import treadmill_walks
 
 from gaitdisc.reconstruction.model_folder import Stream
 from gaitdisc.reconstruction.window_model import KINDS, fit_reconstructor
-from gaitdisc.reconstruction.windows import windows_of
+from gaitdisc.reconstruction.windows import cut_windows
 
 GOAL_MS = 0.2
 
@@ -42,7 +42,7 @@ def main() -> None:
     parts = person.parts()
     recording = walks[0].recording
     readings = np.resize(recording.selected(what.sensors).values, (count, len(what.sensors)))
-    windows = windows_of(recording, what.sensors, what.states, what.lags, walks[0].phi)
+    windows = cut_windows(recording, what.sensors, what.states, what.lags, walks[0].phi)
     sd = windows.y.std(axis=0)
     print(f"{'model':<18}{'median ms':>10}{'99 % ms':>10}{'torch ms':>10}  largest difference [sd]")
     for kind in KINDS:

@@ -56,7 +56,7 @@ from torch import nn
 from torch.utils.data import DataLoader, TensorDataset
 
 from gaitdisc.models import trainer
-from gaitdisc.models.trained_network import pinned_threads
+from gaitdisc.models.trained_network import pin_threads
 from gaitdisc.models.training_settings import TrainingSettings
 from gaitdisc.recording import Samples
 from gaitdisc.response.fit_response import fit_models, fit_network
@@ -118,7 +118,7 @@ def _counted(work: list[float]) -> Callable:
 def matrix_rate(products: int = 4) -> tuple[float, float]:
     """Float32 matrix products of one thread, by the clock and by the core's time [FLOP/s]."""
     square = np.ones((1024, 1024), np.float32)
-    with pinned_threads(1):
+    with pin_threads(1):
         begun, begun_core = time.perf_counter(), time.process_time()
         for _ in range(products):
             np.matmul(square, square)
@@ -162,7 +162,7 @@ def users_fit(
 
 def users_loop(nominal: Samples, exo: Samples, held_out: Samples, seed: int) -> Done:
     """Three networks by the loop, one after the other."""
-    with pinned_threads(1):
+    with pin_threads(1):
         begun, begun_core = time.perf_counter(), time.process_time()
         f, y = users_fit(nominal.x, nominal.y, seed), users_fit(exo.x, exo.y, seed)
         g = users_fit(exo.x, exo.y - f(exo.x), seed)

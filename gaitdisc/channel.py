@@ -11,7 +11,7 @@ from functools import cache, cached_property
 from pathlib import Path
 
 from gaitdisc.errors import ChannelError, UnitError
-from gaitdisc.units import known_units
+from gaitdisc.units import list_units
 
 QUANTITIES = ("angle", "translation", "marker", "moment", "force", "vertical_force",
               "pressure_centre", "power", "emg", "signal")  # fmt: skip
@@ -28,7 +28,7 @@ class Channel:
     quantity : str
         One of `QUANTITIES`; `signal` is for all other quantities (a voltage, a synchronisation pulse).
     unit : str
-        One of `gaitdisc.units.known_units()`, or a rate of one of them.
+        One of `gaitdisc.units.list_units()`, or a rate of one of them.
     side : str
         `r`, `l`, or empty if the quantity has no side.
 
@@ -67,11 +67,11 @@ class Channel:
                 "Correct the side in channels.csv or in the study's [channels].",
             )
         base = re.sub(r"/s\d?$", "", self.unit)
-        if base not in known_units():
+        if base not in list_units():
             raise UnitError(
                 f"the unit of channel {self.name!r} must be in the list of units",
                 f"found {self.unit!r}",
-                f"Use one of: {', '.join(known_units())}.",
+                f"Use one of: {', '.join(list_units())}.",
             )
 
     def renamed(self, name: str) -> Channel:
@@ -109,7 +109,7 @@ class Vocabulary:
         >>> vocabulary().named("R Tib Ant").name
         'emg_ta_r'
         """
-        name = self.aliases.get(folded_label(label)) or self.aliases.get(folded_label(path_label(label)))
+        name = self.aliases.get(fold_label(label)) or self.aliases.get(fold_label(path_label(label)))
         return self.by_name.get(name or "")
 
 
@@ -145,10 +145,10 @@ def list_names(names: Sequence[str], most: int = 6, none: str = "nothing") -> st
     return (", ".join(names[:most]) or none) + (f" and {len(names) - most} more" if len(names) > most else "")
 
 
-def folded_label(label: str) -> str:
+def fold_label(label: str) -> str:
     """Fold a label to lower case without blanks and punctuation.
 
-    >>> folded_label("R Tib-Ant")
+    >>> fold_label("R Tib-Ant")
     'rtibant'
     """
     return re.sub(r"[^a-z0-9]", "", label.lower())
@@ -170,10 +170,10 @@ def path_label(label: str) -> str:
     return parts[-1] if parts else label
 
 
-def side_of(name: str) -> str:
+def find_side(name: str) -> str:
     """Side that a name states: `r`, `l` or empty.
 
-    >>> side_of("emg_sol_l"), side_of("hip_flexion_r_moment"), side_of("lumbar_bending")
+    >>> find_side("emg_sol_l"), find_side("hip_flexion_r_moment"), find_side("lumbar_bending")
     ('l', 'r', '')
     """
     found = re.search(r"_(r|l)(?=$|[_./])", name.lower())
@@ -204,7 +204,7 @@ def vocabulary() -> Vocabulary:
     aliases: dict[str, str] = {}
     for row in rows:
         for label in [row["name"], *filter(None, row["aliases"].split("|"))]:
-            owner = aliases.setdefault(folded_label(label), row["name"])
+            owner = aliases.setdefault(fold_label(label), row["name"])
             if owner != row["name"]:
                 raise ChannelError(
                     "an alias in channels.csv must belong to one channel only",

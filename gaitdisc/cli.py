@@ -21,7 +21,7 @@ from typer.core import TyperGroup
 from gaitdisc._version import __version__
 from gaitdisc.commands.options import ENDED, REFUSED, Overwrite
 from gaitdisc.errors import LOG, GaitdiscError
-from gaitdisc.own_files import guarded
+from gaitdisc.own_files import guard
 
 COMMANDS = (
     "new",
@@ -48,14 +48,14 @@ COMMANDS = (
 UNGUARDED = ("check", "doctor", "watch")  # two that write nothing, and one that guards each of its runs
 
 
-def _guarded(command: Callable[..., None]) -> Callable[..., None]:
+def _guard(command: Callable[..., None]) -> Callable[..., None]:
     """The command with `--overwrite`, which replaces no input of it and no file that is not its own."""
 
     @wraps(command)
     def writing(*, overwrite: bool, **given: Any) -> None:
         values = [value if isinstance(value, list) else [value] for name, value in given.items() if name != "out"]
         paths = [Path(one) for value in values for one in value if isinstance(one, str | Path)]
-        with guarded(f"gaitdisc {command.__name__}", paths, overwrite):
+        with guard(f"gaitdisc {command.__name__}", paths, overwrite):
             command(**given)
 
     own = signature(command, eval_str=True)
@@ -76,7 +76,7 @@ class _Commands(TyperGroup):
             if name not in self.commands:
                 command = getattr(import_module(f"gaitdisc.commands.{name}"), name)
                 alone = typer.Typer(add_completion=False, rich_markup_mode=None)
-                alone.command()(command if name in UNGUARDED else _guarded(command))
+                alone.command()(command if name in UNGUARDED else _guard(command))
                 self.add_command(typer.main.get_command(alone))
         return self.commands.get(cmd_name)
 

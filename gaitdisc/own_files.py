@@ -72,17 +72,17 @@ class Guard:
         """Refuse names that may not be written, then lock the folder, which is made where it is missing."""
         self.places.append(place)
         for name in (*place.mended, *names):
-            self.place_of(place.folder / name)
+            self.find_place(place.folder / name)
         self.places[self.places.index(place)] = place._replace(known=True)
         made = [one for one in (place.folder, *place.folder.parents) if not one.exists()]
         self.held.callback(_leave_no_empty_folder, place.folder, made)
         self.held.enter_context(write_lock(place.folder, lock))
 
-    def place_of(self, path: Path) -> Place:
-        """Place of a file that may be written; all others are refused. path: as `_resolved` gives it."""
+    def find_place(self, path: Path) -> Place:
+        """Place of a file that may be written; all others are refused. path: as `_resolve` gives it."""
         inside = [place for place in self.places if place.folder in path.parents]
         if not inside:
-            inside = [Place(path.parent, self.command, _listed(path.parent))]
+            inside = [Place(path.parent, self.command, _list_paths(path.parent))]
             self.take(inside[0], [path.name], f".lock-{path.name}")
         place = max(inside, key=lambda one: len(one.folder.parts))
         other = [name for name in KINDS if name != path.name and (path.parent / name).is_file()]
@@ -106,7 +106,7 @@ _GUARD: ContextVar[Guard | None] = ContextVar("guard", default=None)
 
 
 @contextmanager
-def guarded(command: str, inputs: Iterable[Path] = (), overwrite: bool = False) -> Iterator[None]:
+def guard(command: str, inputs: Iterable[Path] = (), overwrite: bool = False) -> Iterator[None]:
     """Let all that is written within be a command's output; within another command it is that one's."""
     if _GUARD.get() is not None:
         yield
@@ -145,7 +145,7 @@ def claim_folder(folder: Path, *names: str, command: str = "", mended: tuple[str
         root, command = folder.resolve(), command or guard.command
         listed = (root / LIST).exists()
         earlier = set() if listed else _earlier_lines(root, KINDS if command == REDRAWS else names, command)
-        guard.take(Place(root, command, _listed(root) | earlier, listed or bool(earlier), mended), names)
+        guard.take(Place(root, command, _list_paths(root) | earlier, listed or bool(earlier), mended), names)
         if earlier or mended:  # a run's units, which it finds by themselves, stand on no list
             Place(root, command, set()).add(earlier)
 
@@ -154,15 +154,15 @@ def claim_file(path: Path) -> None:
     """Refuse a file before any work is done, or hold it until the command ends."""
     guard = _GUARD.get()
     if guard is not None:
-        guard.place_of(_resolved(path))
+        guard.find_place(_resolve(path))
 
 
 def record_output(path: Path, written: Path) -> None:
     """Add a file to the list of its folder, before it takes its place; written: where it stands by now."""
     guard = _GUARD.get()
     if guard is not None:
-        path = _resolved(path)
-        place = guard.place_of(path)
+        path = _resolve(path)
+        place = guard.find_place(path)
         if not place.mends(path):
             place.add({(file_sha256(written), place.command, path.relative_to(place.folder).as_posix())})
 
@@ -177,7 +177,7 @@ def note_outputs() -> None:
     """Take note of the files that other processes of this command have written."""
     guard = _GUARD.get()
     for place in guard.places if guard is not None else ():
-        place.lines.update(_listed(place.folder))
+        place.lines.update(_list_paths(place.folder))
 
 
 def _work_under(guard: Guard, work: Callable[..., Result], *given: Any) -> Result:
@@ -212,7 +212,7 @@ def _earlier_lines(folder: Path, names: Iterable[str], command: str) -> Lines:
     return {(sha256, command, path.relative_to(folder).as_posix()) for path, sha256 in found.items()}
 
 
-def _listed(folder: Path) -> Lines:
+def _list_paths(folder: Path) -> Lines:
     if not (folder / LIST).is_file():
         return set()
     text = (folder / LIST).read_text(encoding="utf-8", errors="surrogateescape")
@@ -234,6 +234,6 @@ def _refusal(path: Path, what: str, way: str = "") -> WriteError:
     return WriteError("", f"{shown} {what}", f"Choose another output{way}.")
 
 
-def _resolved(path: Path) -> Path:
+def _resolve(path: Path) -> Path:
     """Path without links or `..`, but for a link of its own name."""
     return Path(os.path.realpath(path.parent)) / path.name

@@ -66,7 +66,7 @@ def file_sha256(path: Path) -> str:
 
     Unchanged means: same file number, size, and times of writing and of change, to the nanosecond.
     """
-    known = known_sha256(path)
+    known = recall_sha256(path)
     if known:
         return known
     check_regular(path)
@@ -78,7 +78,7 @@ def file_sha256(path: Path) -> str:
     return found
 
 
-def known_sha256(path: Path) -> str:
+def recall_sha256(path: Path) -> str:
     """Hash of a file if it was computed and the file is as it was; empty otherwise."""
     try:
         return _known.get(_state(path.stat()), "")

@@ -24,19 +24,19 @@ _NUMBERS = "biufcmM"  # kinds of a numpy column that hold no text
 _OTHER_SEPARATORS = re.compile(r"[;\t\r]")  # of cells in another language, of rows on another system
 
 
-def quoted(text: str) -> str:
+def quote(text: str) -> str:
     """Text of a cell or heading, with an apostrophe in front where a spreadsheet would take it for a formula.
 
-    >>> quoted("=1+1"), quoted("knee_angle_r"), quoted("-0.5"), quoted("-x")
+    >>> quote("=1+1"), quote("knee_angle_r"), quote("-0.5"), quote("-x")
     ("'=1+1", 'knee_angle_r', '-0.5', "'-x")
     """
     return f"'{text}" if _FORMULA.match(text) and not _NUMBER.fullmatch(text) else text
 
 
-def unquoted(text: str) -> str:
-    """Text as it was before `quoted`.
+def unquote(text: str) -> str:
+    """Text as it was before `quote`.
 
-    >>> unquoted("'=1+1"), unquoted("it's"), unquoted(quoted("'=1"))
+    >>> unquote("'=1+1"), unquote("it's"), unquote(quote("'=1"))
     ('=1+1', "it's", "'=1")
     """
     return text[1:] if text.startswith("'") and _FORMULA.match(text[1:]) else text
@@ -48,10 +48,10 @@ def write_csv(table: pd.DataFrame, path: Path, float_format: str | None = None) 
     table: its index is not written
     float_format: of every number; by default as many digits as it takes to read the same number again
     """
-    safe = table.rename(columns=lambda name: quoted(str(name)))
+    safe = table.rename(columns=lambda name: quote(str(name)))
     for place in range(len(table.columns)):
         if table.dtypes.iloc[place].kind not in _NUMBERS:
-            cells = table.iloc[:, place].map(lambda cell: quoted(cell) if isinstance(cell, str) else cell)
+            cells = table.iloc[:, place].map(lambda cell: quote(cell) if isinstance(cell, str) else cell)
             safe.isetitem(place, cells.to_numpy(object))
     words = [*map(str, safe.columns), *(cell for cell in safe.to_numpy(object).flat if isinstance(cell, str))]
     quoting = csv.QUOTE_NONNUMERIC if any(map(_OTHER_SEPARATORS.search, words)) else csv.QUOTE_MINIMAL
@@ -72,6 +72,6 @@ def read_csv(path: Path, words: Sequence[str] = (), skiprows: int = 0) -> pd.Dat
     table = pd.read_csv(path, dtype=kinds, **read)
     for place in range(len(table.columns)):
         if table.dtypes.iloc[place].kind not in _NUMBERS:
-            plain = table.iloc[:, place].map(lambda cell: unquoted(cell) if isinstance(cell, str) else cell)
+            plain = table.iloc[:, place].map(lambda cell: unquote(cell) if isinstance(cell, str) else cell)
             table.isetitem(place, plain.to_numpy())
-    return table.rename(columns=unquoted)
+    return table.rename(columns=unquote)

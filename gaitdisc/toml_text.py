@@ -12,12 +12,12 @@ _MANY_DOTS = re.compile(rf"(?:\.[^.\n]{{0,80}}){{{DEEPEST}}}")
 _NO_KEYS = re.compile(r"\d\.\d|#.*|\"[^\"\n]*\"|'[^'\n]*'")
 
 
-def parsed_toml(text: str) -> dict[str, Any]:
+def parse_toml(text: str) -> dict[str, Any]:
     r"""Table of a TOML text.
 
-    >>> parsed_toml("[filters]\norder = 4")
+    >>> parse_toml("[filters]\norder = 4")
     {'filters': {'order': 4}}
-    >>> parsed_toml("a = " + "[" * 50 + "]" * 50)
+    >>> parse_toml("a = " + "[" * 50 + "]" * 50)
     Traceback (most recent call last):
     ...
     tomllib.TOMLDecodeError: tables or lists are nested more than 40 levels deep
@@ -38,10 +38,10 @@ def parsed_toml(text: str) -> dict[str, Any]:
     raise tomllib.TOMLDecodeError(too_deep)
 
 
-def quoted(text: str) -> str:
+def quote(text: str) -> str:
     r"""Text as a basic string of TOML; JSON's escapes are among TOML's.
 
-    >>> print(quoted('a "b"\\'))
+    >>> print(quote('a "b"\\'))
     "a \"b\"\\"
     """
     return json.dumps(text, ensure_ascii=False).replace("\x7f", "\\u007f")

@@ -94,15 +94,15 @@ _SPELLINGS = {
 _BY_LOWER_CASE = {unit.lower(): unit for unit in _INNER}
 
 
-def known_units() -> tuple[str, ...]:
+def list_units() -> tuple[str, ...]:
     """List the units that may appear in a file."""
     return tuple(_INNER)
 
 
-def parsed_unit(text: str) -> str | None:
+def parse_unit(text: str) -> str | None:
     """Unit that a text means, or None where it means none of the closed list.
 
-    >>> parsed_unit("Nmm"), parsed_unit("mV"), parsed_unit("furlong")
+    >>> parse_unit("Nmm"), parse_unit("mV"), parse_unit("furlong")
     ('N mm', 'mV', None)
     """
     text = re.sub(r"\s+", " ", text.strip())
@@ -169,13 +169,13 @@ def unit_factor(unit: str, to: str) -> float | None:
     """
     if "degC" in (unit, to) and offset_words(unit, to):
         return math.nan
-    one, other = _measured(unit), _measured(to)
+    one, other = _measure(unit), _measure(to)
     if one is None or other is None:
         return None
     return one[0] / other[0] if one[1] == other[1] else math.nan
 
 
-def _measured(unit: str | Powers) -> tuple[float, Dimension] | None:
+def _measure(unit: str | Powers) -> tuple[float, Dimension] | None:
     """Factor to the base units, and the power of each; none where a word is unknown."""
     factor, powers = 1.0, [0.0] * len(_BASES)
     for word, power in unit_words(unit) if isinstance(unit, str) else unit.items():
@@ -200,13 +200,13 @@ def unit_words(unit: str) -> Iterator[tuple[str, int]]:
             yield word, power if number == 0 else -power
 
 
-def dimension_of(unit: str | Powers) -> Dimension | None:
+def find_dimension(unit: str | Powers) -> Dimension | None:
     """Powers of kg, m, s and V in a unit, an angle counting as a pure number; None where the unit is unknown.
 
-    >>> dimension_of("N m s/rad") == dimension_of({"kg": 1, "m": 2, "s": -1})
+    >>> find_dimension("N m s/rad") == find_dimension({"kg": 1, "m": 2, "s": -1})
     True
     """
-    found = _measured(unit)
+    found = _measure(unit)
     if found is None:
         return None
     return tuple(power for base, power in zip(_BASES, found[1], strict=True) if base != "rad")

@@ -38,7 +38,7 @@ def whole_file(path: Path) -> Iterator[Path]:
         os.close(os.open(part, os.O_CREAT | os.O_EXCL | os.O_WRONLY, 0o666))  # less what the system takes off
     except OSError as error:
         raise _refusal(path, error) from error
-    with written_together() as files:
+    with write_together() as files:
         try:
             yield part
             with part.open("rb+") as file:
@@ -52,7 +52,7 @@ def whole_file(path: Path) -> Iterator[Path]:
 
 
 @contextmanager
-def written_together() -> Iterator[list[tuple[Path, Path]]]:
+def write_together() -> Iterator[list[tuple[Path, Path]]]:
     """Let the files of one result take their places when all of them are written, or none; the last written is last.
 
     returns: each file's place, and where it stands until then
@@ -79,7 +79,7 @@ def written_together() -> Iterator[list[tuple[Path, Path]]]:
             part.unlink(missing_ok=True)
 
 
-def written_so_far(path: Path) -> Path:
+def find_written(path: Path) -> Path:
     """Where a file stands that has not taken its place yet; its place where it has."""
     return next((part for place, part in reversed(_TOGETHER.get() or []) if place == path), path)
 

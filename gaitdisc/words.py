@@ -8,7 +8,7 @@ from collections.abc import Iterable, Mapping
 from html import escape
 from typing import TYPE_CHECKING, Any
 
-from gaitdisc.channel import side_of, vocabulary
+from gaitdisc.channel import find_side, vocabulary
 
 if TYPE_CHECKING:
     import rich.text
@@ -49,7 +49,7 @@ def sideless(name: str) -> str:
     >>> sideless("ankle_angle_r"), sideless("hip_flexion_l_moment")
     ('ankle_angle', 'hip_flexion_moment')
     """
-    return re.sub(r"_[rl](?=_|$)", "", name, count=1) if side_of(name) else name
+    return re.sub(r"_[rl](?=_|$)", "", name, count=1) if find_side(name) else name
 
 
 def label(name: str) -> str:
@@ -65,7 +65,7 @@ def label(name: str) -> str:
         words = f"EMG {_meaning(name) or stem.removeprefix('emg_').upper()}"
     else:
         words = _TRANSLATIONS.get(stem, stem.replace("_", " "))
-    side = SIDE_WORDS[side_of(name)]
+    side = SIDE_WORDS[find_side(name)]
     return f"{words}, {side}" if side else words
 
 
@@ -117,7 +117,7 @@ def counted(count: int, noun: str) -> str:
     return f"{count} {noun}{'' if count == 1 else 's'}"
 
 
-def listed(words: list[str]) -> str:
+def listing(words: list[str]) -> str:
     """Words as they stand in a sentence."""
     return words[0] if len(words) == 1 else f"{', '.join(words[:-1])} and {words[-1]}"
 
@@ -157,7 +157,7 @@ def direction_words(name: str, gap: float, unit: str) -> str:
     ('the right ankle is up to 6.1 deg more plantarflexed', 'pelvis tilt is up to 2.0 deg higher')
     """
     size = with_unit(amount(abs(gap)), unit)
-    stem, side = sideless(name), SIDE_WORDS[side_of(name)]
+    stem, side = sideless(name), SIDE_WORDS[find_side(name)]
     ways = DIRECTIONS.get(upwards(name))
     if stem in JOINTS and ways:
         return f"the {side} {JOINTS[stem]} is up to {size} more {ways[0] if gap > 0 else ways[1]}"
@@ -203,10 +203,10 @@ def plain(words: str, style: str = "") -> rich.text.Text:
     return Text(words, style)
 
 
-def html_of(title: str, rows: Iterable[tuple[str, str]]) -> str:
+def as_html(title: str, rows: Iterable[tuple[str, str]]) -> str:
     """HTML of a title and a few rows of two cells; every text is escaped.
 
-    >>> html_of("<walk>", [("rate", "100 Hz")])
+    >>> as_html("<walk>", [("rate", "100 Hz")])
     '<table><caption>&lt;walk&gt;</caption><tr><th>rate</th><td>100 Hz</td></tr></table>'
     """
     cells = "".join(f"<tr><th>{escape(what)}</th><td>{escape(much)}</td></tr>" for what, much in rows)

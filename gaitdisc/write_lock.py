@@ -44,7 +44,7 @@ def write_lock(folder: Path, name: str = ".lock", run: bool = False) -> Iterator
     with ExitStack() as held:
         try:
             folder.mkdir(parents=True, exist_ok=True)
-            lock = _taken(locked, says)
+            lock = _take_lock(locked, says)
             held.callback(_free, locked, lock)
             if lock is None and run:
                 raise OSError("this disk does not support file locks")
@@ -77,7 +77,7 @@ def _sweep(folder: Path, run: bool) -> None:
         part.unlink(missing_ok=True)
 
 
-def _taken(path: Path, says: Path) -> Any:
+def _take_lock(path: Path, says: Path) -> Any:
     """Lock that the system keeps on the file; None where the disk has no locks."""
     from filelock import FileLock, Timeout
 

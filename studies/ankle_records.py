@@ -13,13 +13,13 @@ from numpy.typing import NDArray
 from scipy.interpolate import CubicSpline
 from scipy.signal import butter, sosfiltfilt
 
-from gaitdisc.cohort.body import bias, inertia, leg_of
+from gaitdisc.cohort.body import bias, inertia, make_leg
 from gaitdisc.cohort.leg_path import PHASES, hip_motion
-from gaitdisc.cohort.measurement import measured
-from gaitdisc.cohort.muscles import activated, capacities, strength_of
+from gaitdisc.cohort.measurement import measure
+from gaitdisc.cohort.muscles import activate, capacities, find_strength
 from gaitdisc.cohort.person import FOOT_KG, GROUPS, Person
 from gaitdisc.cohort.walk import QUICK_HZ, SLOW_HZ, TrueWalk
-from gaitdisc.simulation.measured import Measured, TrialColumns, measured_of_trials
+from gaitdisc.simulation.measured import Measured, TrialColumns, check_measured
 
 INPUTS = ("recorded", "per_kg", "plantarflexors", "others", "phase")
 LOWPASS_HZ, EDGE_S, TRIALS = 10.0, 2.0, 8
@@ -38,7 +38,7 @@ def own_foot_kg(person: Person) -> float:
 def ankle_trials(walk: TrueWalk, emg_late_s: float, emg_error: float, others_nm: float) -> Measured:
     """Stretches of a walk, as inputs and observation of tracked_ankle.toml; errors are standard deviations."""
     rng = np.random.default_rng([walk.seed, 31])
-    trial = measured(walk, walk.person.name, "", emg_late_s).stream("kinematics")
+    trial = measure(walk, walk.person.name, "", emg_late_s).stream("kinematics")
     angle = np.radians(trial.values[:, trial.names.index("ankle_angle_r")])
     path = CubicSpline(walk.slow_s, _low(angle))
     by_emg, per_kg = plantarflexor_moment(walk), moments_per_foot_kg(walk, hip=False)[:, ANKLE]
@@ -55,7 +55,7 @@ def ankle_trials(walk: TrueWalk, emg_late_s: float, emg_error: float, others_nm:
     length = len(inputs) // TRIALS
     cuts, time = [slice(n * length, (n + 1) * length) for n in range(TRIALS)], np.arange(length) / SLOW_HZ
     trials = [TrialColumns(str(n), time, inputs[cut], seen[cut]) for n, cut in enumerate(cuts, 1)]
-    return measured_of_trials(trials, INPUTS, ("theta",), walk.person.name)
+    return check_measured(trials, INPUTS, ("theta",), walk.person.name)
 
 
 def plantarflexor_moment(walk: TrueWalk) -> Values:
@@ -63,7 +63,7 @@ def plantarflexor_moment(walk: TrueWalk) -> Values:
     person = walk.person
     joint = np.radians(walk.angles[:, SIDE][:, FLEXIONS])
     rate = np.gradient(joint, 1 / SLOW_HZ, axis=0)
-    reach = capacities(strength_of(person.mass_kg, person.style.strength[SIDE]), joint, rate)[:, :, ANKLE]
+    reach = capacities(find_strength(person.mass_kg, person.style.strength[SIDE]), joint, rate)[:, :, ANKLE]
     total = np.zeros(len(walk.slow_s))
     for name in ("emg_gas", "emg_sol"):
         muscle = GROUPS.index(name)
@@ -71,7 +71,7 @@ def plantarflexor_moment(walk: TrueWalk) -> Values:
         active, level = np.empty(len(excitation)), excitation[0]
         for sample, drive in enumerate(excitation):
             active[sample] = level
-            level = activated(drive, level, 1 / QUICK_HZ)
+            level = activate(drive, level, 1 / QUICK_HZ)
         total += reach[:, muscle] * active[:: round(QUICK_HZ / SLOW_HZ)]
     return total
 
@@ -90,7 +90,7 @@ def moments_per_foot_kg(walk: TrueWalk, hip: bool = True) -> Values:
         carried = np.gradient(whole, 1 / SLOW_HZ, axis=0)
     person, found = walk.person, np.zeros((len(psi), 3))
     for kilograms, sign in ((0.0, -1), (1.0, 1)):
-        leg, m, b = leg_of(person.height_m, person.mass_kg, kilograms), np.zeros((3, 3)), np.zeros(3)
+        leg, m, b = make_leg(person.height_m, person.mass_kg, kilograms), np.zeros((3, 3)), np.zeros(3)
         for sample in range(len(psi)):
             inertia(leg, psi[sample], m)
             bias(leg, psi[sample], turning[sample], *carried[sample], b)

@@ -30,8 +30,8 @@ import gaitdisc as gd
 from gaitdisc.models.trained_network import TrainedNetwork
 from gaitdisc.models.trainer import train
 from gaitdisc.models.training_settings import TrainingSettings
-from gaitdisc.reconstruction.calibration import calibrated, first_strides
-from gaitdisc.reconstruction.sensed_walks import SensedWalk, sensed_walks
+from gaitdisc.reconstruction.calibration import calibrate, first_strides
+from gaitdisc.reconstruction.sensed_walks import SensedWalk, read_walks
 from gaitdisc.reconstruction.state_errors import coverage, half_widths
 from gaitdisc.reconstruction.window_model import ENSEMBLE, Ensemble, Sensing, fit_reconstructor
 from gaitdisc.reconstruction.windows import split_by_trial, stacked
@@ -41,7 +41,7 @@ STRIDES, WEIGHT = 10, 10
 
 def few(quick: bool) -> Iterator[Number]:
     """Each condition of one runner by models of the other, then by ten strides."""
-    walks = sensed_walks(first_person(exotendon(DATA)), SAGITTAL)
+    walks = read_walks(first_person(exotendon(DATA)), SAGITTAL)
     both: tuple[SensedWalk, ...] = next(iter(walks.people.values()))
     what = Sensing(SAGITTAL, TOLD, LAGS, walks.rate_hz)
     windows = [what.windows(walk.recording, walk.phi) for walk in both]
@@ -51,7 +51,7 @@ def few(quick: bool) -> Iterator[Number]:
         test, column = parts.tested().rows(first.rest), f"{walk.recording.condition} tested"
         for kind in ("delay ridge", "fourier ridge") if quick else ("delay ridge", "fourier ridge", "shred"):
             done = fit_reconstructor(kind, what, parts.fitted(), parts.checked())
-            found = {"as it is": done, "linear correction": calibrated(done, first.strides)}
+            found = {"as it is": done, "linear correction": calibrate(done, first.strides)}
             inner = first.strides.last_block(0.2, what.reach_s)
             if isinstance(done.model, TrainedNetwork):
                 found["descended further"] = replace(done, model=descended(done.model, *inner))

@@ -23,7 +23,7 @@ from chapter5 import gait
 
 from gaitdisc.ingest.study import Study
 from gaitdisc.reconstruction.reconstruct_study import ReconstructionSettings
-from gaitdisc.reconstruction.sensed_walks import sensed_walks
+from gaitdisc.reconstruction.sensed_walks import read_walks
 from gaitdisc.reconstruction.window_model import KINDS, MASKED, sensing
 from gaitdisc.reconstruction.windows import RANDOM, RULES
 from gaitdisc.report.page import Block, write_blocks
@@ -84,7 +84,7 @@ def disturbed(study: Study, kinds: tuple[str, ...], folder: Path) -> Block:
     file = folder / "disturbed.csv"
     person = study.participants[0].id
     if not file.exists():
-        walks = sensed_walks(study, gait.SENSORS[SAGITTAL], "nominal")
+        walks = read_walks(study, gait.SENSORS[SAGITTAL], "nominal")
         names = tuple(channel.name for channel in walks.channels)
         what = sensing(names, gait.SENSORS[SAGITTAL], ReconstructionSettings().lags(walks.rate_hz), walks.rate_hz)
         channels = [channel for channel in walks.channels if channel.name in what.states]

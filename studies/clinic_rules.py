@@ -25,14 +25,14 @@ from pathlib import Path
 
 from gaitdisc import PooledCycles
 from gaitdisc.clinic.clinical_reference import ClinicalReference
-from gaitdisc.clinic.demonstration import CONDITION, Visit, made_walk, participant_of, person_of
+from gaitdisc.clinic.demonstration import CONDITION, Visit, describe_participant, draw_person, make_walk
 from gaitdisc.clinic.reading import read_beside
-from gaitdisc.clinic.reference import reference_of
+from gaitdisc.clinic.reference import make_reference
 from gaitdisc.cohort.demonstration import FOUND_AS
 from gaitdisc.ingest.study import Conditions, PlannedTrial, Study
-from gaitdisc.processing.pooled import pooled_cycles
+from gaitdisc.processing.pooled import pool_cycles
 from gaitdisc.response.participant_response import load_run
-from gaitdisc.saved.provenance import made_now
+from gaitdisc.saved.provenance import provenance_now
 
 CONTROLS_SEED, PEOPLE_SEED = 50_000, 70_000
 KINDS = ("", *FOUND_AS, "child")
@@ -40,17 +40,17 @@ KINDS = ("", *FOUND_AS, "child")
 
 def cycles_of(visit: Visit, seed: int) -> PooledCycles:
     """Cycles of one made person."""
-    made = person_of(visit, seed)
+    made = draw_person(visit, seed)
     planned = PlannedTrial(condition=CONDITION, files=("made",), speed_m_per_s=made.speed_m_per_s)
-    person = participant_of(made, (planned,))
+    person = describe_participant(made, (planned,))
     study = Study(title="made", conditions=Conditions(nominal=CONDITION), participants=(person,))
-    return pooled_cycles(study, person, lambda _: made_walk(visit, seed))[0]
+    return pool_cycles(study, person, lambda _: make_walk(visit, seed))[0]
 
 
 def made_reference(count: int) -> ClinicalReference:
     """Reference of so many made controls."""
     own = [cycles_of(Visit(f"C{k}", k), CONTROLS_SEED) for k in range(count)]
-    return reference_of(own, "made", made_now({}, 0, {}, ""))
+    return make_reference(own, "made", provenance_now({}, 0, {}, ""))
 
 
 def row_of(kind: str, reference: ClinicalReference, people: int) -> dict[str, object]:
@@ -69,7 +69,7 @@ def row_of(kind: str, reference: ClinicalReference, people: int) -> dict[str, ob
 def left_out(run_folder: Path) -> list[dict[str, object]]:
     """Real people of a run, each beside all the others of the condition."""
     run = load_run(run_folder)
-    reference = reference_of(run.cycles, run.title, run.provenance)
+    reference = make_reference(run.cycles, run.title, run.provenance)
     numbers = {name: k + 1 for k, name in enumerate(dict.fromkeys(one.subject for one in run.cycles if len(one.kept)))}
     rows = []
     for one in run.cycles:

@@ -17,7 +17,7 @@ from numpy.typing import NDArray
 
 from gaitdisc import envelope
 from gaitdisc.cohort.cohort import the_twelve
-from gaitdisc.cohort.measurement import measured
+from gaitdisc.cohort.measurement import measure
 from gaitdisc.cohort.person import MUSCLES, Spring
 from gaitdisc.cohort.walk import TrueWalk, walked
 
@@ -30,7 +30,7 @@ RIDGE = 1e-3
 
 def envelopes(walk: TrueWalk) -> NDArray[np.float64]:
     """EMG envelopes of the right leg as the package makes them (time at 1000 Hz, muscle) [V]."""
-    return envelope(measured(walk, "walk", "nominal").stream("emg")).values[:, : len(MUSCLES)]
+    return envelope(measure(walk, "walk", "nominal").stream("emg")).values[:, : len(MUSCLES)]
 
 
 def alike(curves: NDArray[np.float64]) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
@@ -67,7 +67,7 @@ def run(quick: bool = False) -> dict[str, NDArray[np.float64]]:
     curves, change, r2 = [], [], []
     for number, person in enumerate(people, SEED):
         nominal = walked(person, None, duration_s, number)
-        free, worn = envelopes(nominal), envelopes(walked(person.adapted_to(Spring()), Spring(), duration_s, number))
+        free, worn = envelopes(nominal), envelopes(walked(person.adapt_to(Spring()), Spring(), duration_s, number))
         curves.append(nominal.mean_stride(free)[:100])
         change.append(worn.mean(axis=0) / free.mean(axis=0) - 1)
         r2.append(list(explained(nominal, free).values()))

@@ -21,7 +21,7 @@ from numpy.typing import NDArray
 import gaitdisc as gd
 from gaitdisc.cohort.cohort import the_twelve
 from gaitdisc.cohort.habit import habitual
-from gaitdisc.cohort.measurement import measured
+from gaitdisc.cohort.measurement import measure
 from gaitdisc.cohort.person import MUSCLES, Spring
 from gaitdisc.cohort.walk import TrueWalk, walked
 from gaitdisc.signals.contacts import force_contacts
@@ -42,7 +42,7 @@ def numbers(walk: TrueWalk) -> dict[str, float]:
     force = walk.mean_stride(walk.force)[:, 0] / person.mass_kg / 9.81
     spread = walk.strides(walk.angles).std(axis=0).mean(axis=0)[0]
     durations = np.diff(walk.contacts())
-    seen = np.diff(force_contacts(measured(walk, "walk", "nominal").stream("forces"))["r"].time)
+    seen = np.diff(force_contacts(measure(walk, "walk", "nominal").stream("forces"))["r"].time)
     cv = [100 * float(d.std() / d.mean()) for d in (durations, seen)]
     slip = walk.strides(walk.sole)[:, 12:47, 0].mean() / -person.speed_m_per_s
     values = [hip.max(), hip.min(), knee[5:25].max(), knee.max(), knee.min(), ankle.max(), ankle.min()]
@@ -70,8 +70,8 @@ def run(quick: bool = False) -> dict[str, NDArray[np.float64]]:
     for number, person in enumerate(people):
         nominal = walked(person, None, duration_s, SEED + number)
         tables["nominal"].append(numbers(nominal))
-        tables["exo"].append(numbers(walked(person.adapted_to(Spring()), Spring(), duration_s, SEED + number)))
-        emg = gd.envelope(measured(nominal, "walk", "nominal").stream("emg"))
+        tables["exo"].append(numbers(walked(person.adapt_to(Spring()), Spring(), duration_s, SEED + number)))
+        emg = gd.envelope(measure(nominal, "walk", "nominal").stream("emg"))
         curves = nominal.mean_stride(emg.values[:, : len(MUSCLES)])
         envelopes.append(curves / curves.max(axis=0))
     print(f"n = {len(people)} people, {duration_s:.0f} s, right side; mean +- sd over people\n")

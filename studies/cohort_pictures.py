@@ -24,7 +24,7 @@ from numpy.typing import NDArray
 import gaitdisc as gd
 from gaitdisc.cohort.cohort import the_twelve
 from gaitdisc.cohort.habit import habitual
-from gaitdisc.cohort.measurement import measured
+from gaitdisc.cohort.measurement import measure
 from gaitdisc.cohort.person import MUSCLES, Person
 from gaitdisc.cohort.walk import walked
 
@@ -53,7 +53,7 @@ def curves(person: Person, number: int) -> dict[str, NDArray[np.float64]]:
         found[title] = walk.mean_stride(walk.moments[:, 0, column]) / person.mass_kg
     for title, axis in (("force forwards [BW]", 0), ("force upwards [BW]", 1)):
         found[title] = walk.mean_stride(walk.force[:, 0, axis]) / (9.81 * person.mass_kg)
-    emg = gd.envelope(measured(walk, "walk", "nominal").stream("emg")).values[:, : len(MUSCLES)]
+    emg = gd.envelope(measure(walk, "walk", "nominal").stream("emg")).values[:, : len(MUSCLES)]
     mean = walk.mean_stride(emg)
     return found | {f"EMG {name} [of peak]": one / one.max() for name, one in zip(NORMAL, mean.T, strict=True)}
 

@@ -34,11 +34,11 @@ from scipy.signal import butter, sosfiltfilt
 import gaitdisc as gd
 from gaitdisc.cohort.demonstration import FORCES
 from gaitdisc.cohort.marker_trial import marker_trial
-from gaitdisc.cohort.measurement import measured
-from gaitdisc.cohort.person import STIFFNESS, Person, Spring, drawn
+from gaitdisc.cohort.measurement import measure
+from gaitdisc.cohort.person import STIFFNESS, Person, Spring, draw_one
 from gaitdisc.cohort.walk import TrueWalk, walked
 from gaitdisc.discovery.changed_moment import NORMAL_95
-from gaitdisc.discovery.device_study import FOOT_SHOWS_AT, PersonWalks, weighed_foot
+from gaitdisc.discovery.device_study import FOOT_SHOWS_AT, PersonWalks, weigh_foot
 from gaitdisc.discovery.discover_files import discover_study
 from gaitdisc.discovery.result import Estimate, FoundEffect
 from gaitdisc.ingest.c3d_writing import write_c3d
@@ -69,7 +69,7 @@ def summary(table: pd.DataFrame) -> pd.DataFrame:
 
 def run(people: int, seed: int, quick: bool, fit: bool = False) -> pd.DataFrame:
     """Hide each effect in each person's second walk, and search the files."""
-    everyone = [drawn(f"X{one + 1:02d}", seed + one, "fm"[one % 2]) for one in range(1 if quick else people)]
+    everyone = [draw_one(f"X{one + 1:02d}", seed + one, "fm"[one % 2]) for one in range(1 if quick else people)]
     return pd.DataFrame(
         [found_in(one, hidden, fit) for one in everyone for hidden in (("spring",) if quick else RIGHT)]
     )
@@ -95,7 +95,7 @@ def fitted(study: Path, who: str) -> tuple[FoundEffect, ...]:
     walks = PersonWalks(read, read.participant(who))
     changed = walks.calibrated("exo").changed
     if changed is None:
-        mass = weighed_foot({joint: walks.at("exo", joint) for joint in FOOT_SHOWS_AT})
+        mass = weigh_foot({joint: walks.at("exo", joint) for joint in FOOT_SHOWS_AT})
         return (FoundEffect("", "added_foot_mass", "wrong_parameter", "", {"value": mass}),) if mass else ()
     half = NORMAL_95 * changed.spread
     number = Estimate(changed.value, changed.value - half, changed.value + half)
@@ -106,11 +106,11 @@ def write_person(person: Person, hidden: str, folder: Path) -> Path:
     """Write both walks of a person as a study."""
     spring, late_s = Spring(STIFFNESS) if hidden == "spring" else None, 0.04 if hidden == "late EMG" else 0.0
     weak, kilograms = (0.75 if hidden == "weak plantarflexor" else 1.0), (0.8 if hidden == "foot mass" else 0.0)
-    changed = person.adapted_to(spring) if spring else replace(person, plantarflexors=weak, foot_kg=kilograms)
+    changed = person.adapt_to(spring) if spring else replace(person, plantarflexors=weak, foot_kg=kilograms)
     planned = []
     for number, (word, walker, device) in enumerate((("nominal", person, None), ("exo", changed, spring))):
         walk = walked(walker, device, WALK_S, 1000 * round(person.mass_kg) + number)
-        trial = measured(walk, f"{person.name}_{word}", word, late_s * number)
+        trial = measure(walk, f"{person.name}_{word}", word, late_s * number)
         markers = marker_trial(walk, trial.name, word).stream("markers")
         files = angles, analog, net = f"{word}_ik.mot", f"{word}.c3d", f"{word}_id.sto"
         write_storage(trial.stream("kinematics"), folder / angles)

@@ -23,9 +23,9 @@ import gaitdisc as gd
 from gaitdisc.discovery.case import Case, set_up_case
 from gaitdisc.discovery.discover import discover
 from gaitdisc.discovery.forward_selection import select_forward
-from gaitdisc.discovery.held_out import runs_of
+from gaitdisc.discovery.held_out import run_trials
 from gaitdisc.discovery.scored_model import ScoredModel
-from gaitdisc.simulation.measured import Measured, TrialColumns, measured_of_trials
+from gaitdisc.simulation.measured import Measured, TrialColumns, check_measured
 
 MODEL = Path(__file__).with_name("emps.toml")
 PUBLISHED_N = 20.3935
@@ -71,12 +71,12 @@ def stretches(path: Path, simulation: gd.Simulation) -> Measured:
     length = int(STRETCH_S * RATE_HZ)
     cuts = [np.arange(at, at + length) for at in range(0, len(slow) - length, length)]
     trials = [TrialColumns(str(n), cut / RATE_HZ, slow[cut, :1], slow[cut, 1:]) for n, cut in enumerate(cuts, 1)]
-    return measured_of_trials(trials, ("force",), tuple(name for name, _ in simulation.observations), path.name)
+    return check_measured(trials, ("force",), tuple(name for name, _ in simulation.observations), path.name)
 
 
 def errors_mm(case: Case, trials: tuple[int, ...], *models: ScoredModel) -> tuple[float, ...]:
     """Root mean square of free runs of the model as read and with what was named, on trials not fitted [mm]."""
-    runs = (runs_of(case, model, trials, models[-1]) for model in models)
+    runs = (run_trials(case, model, trials, models[-1]) for model in models)
     return tuple(float(np.sqrt(np.mean(run.fit.residual**2))) for run in runs)
 
 

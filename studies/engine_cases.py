@@ -16,7 +16,7 @@ from scipy.signal import butter, sosfiltfilt
 import gaitdisc as gd
 from gaitdisc.discovery.discover_engine import discover_model_file
 from gaitdisc.engines.engine import Engine, read_model
-from gaitdisc.engines.mapping import drafted
+from gaitdisc.engines.mapping import draft
 from gaitdisc.engines.motion import Motion
 
 RATE_HZ, SECONDS, TRIALS, CUTOFF_HZ = 100.0, 4.0, 4, 6.0
@@ -77,7 +77,7 @@ def searched(case: Case, model: Path, table: Path) -> dict[str, object]:
     """One line of the table, with what it cost: `discover` on a copy of the model beside the record."""
     copy, before, text = table.parent / model.name, cpu_s(), model.read_text(encoding="utf-8")
     copy.write_text(text, encoding="utf-8")
-    gd.write_simulation(drafted(read_model(copy), degrees=True), copy.with_suffix(".toml"))
+    gd.write_simulation(draft(read_model(copy), degrees=True), copy.with_suffix(".toml"))
     answer = discover_model_file(copy, table)
     found, seconds = answer.found, cpu_s() - before  # the engine's own process has ended
     named = ", ".join(f"{one.name} at {one.place}" for one in found.effects) or found.verdict

@@ -19,7 +19,7 @@ from markdown_table import markdown_table
 
 import gaitdisc as gd
 from gaitdisc.cohort.other_people import PATTERNS, Pattern, somebody, walking_with
-from gaitdisc.cohort.person import Person, drawn
+from gaitdisc.cohort.person import Person, draw_one
 
 COLUMNS = ("person", "kind", "trials", "cycles", "alarms", "sentences", "said")
 ALWAYS, WALKED_STRIDES, TRIALS, CONTROLS = 10.0, 6.5, 3, 20
@@ -57,7 +57,7 @@ def person_of(made: Made) -> Person:
     seed, sex = made.seed + made.number, "fm"[made.number // 2 % 2]
     if made.kind == "slow":
         return replace(somebody("slow", seed, sex), name=f"M{made.number:03d}")
-    person = drawn(f"M{made.number:03d}", seed, sex)
+    person = draw_one(f"M{made.number:03d}", seed, sex)
     PATTERNS.update(OWN)
     return walking_with(person, made.kind) if made.kind else person
 
@@ -82,9 +82,9 @@ def write_person(made: Made, folder: Path) -> None:
 
 def newtonian(belts: gd.Trial, mass_kg: float) -> gd.Trial:
     """Walk whose belts carry what weight and rise of the pelvis need; single stances had 0.77 to 1.16 of it."""
-    from gaitdisc.signals.butterworth import lowpassed
+    from gaitdisc.signals.butterworth import low_pass
 
-    markers, forces = lowpassed(belts.stream("markers"), 6.0, 4), belts.stream("forces")
+    markers, forces = low_pass(belts.stream("markers"), 6.0, 4), belts.stream("forces")
     height = np.mean([markers[f"{name}.z"] for name in ("RASI", "LASI", "RPSI", "LPSI")], axis=0)
     rise = np.gradient(np.gradient(height, markers.time), markers.time)
     needed = np.interp(forces.time, markers.time, mass_kg * (9.81 + rise))

@@ -11,12 +11,12 @@ from gait10dof import Gait10dof
 from numpy.typing import NDArray
 
 import gaitdisc as gd
-from gaitdisc.kinematics.calibration import calibrated
+from gaitdisc.kinematics.calibration import calibrate_body
 from gaitdisc.kinematics.marker_set import marker_set
 from gaitdisc.kinematics.motion import motion
 from gaitdisc.kinetics.body_inertia import LEG, Person
 from gaitdisc.kinetics.joint_moments import KineticsSettings
-from gaitdisc.kinetics.newton_euler import joint_wrenches, needed_wrench, segment_motion
+from gaitdisc.kinetics.newton_euler import compute_wrench, joint_wrenches, segment_motion
 from gaitdisc.kinetics.plate_steps import foot_paths
 from gaitdisc.kinetics.platform import Wrench, platforms
 from gaitdisc.kinetics.trial_kinetics import trial_kinetics
@@ -40,7 +40,7 @@ def generalised_forces(model: Gait10dof, motion: gd.Recording, ground: gd.Trial)
         side = platform.side
         both = np.hstack([platform.wrench.force, platform.wrench.moment])
         there = np.stack([np.interp(smooth.time, platform.time, column) for column in both.T], axis=1)
-        needed = [needed_wrench(moving[f"{part}_{side}"], model.rigid(part, side), platform.up) for part in LEG]
+        needed = [compute_wrench(moving[f"{part}_{side}"], model.rigid(part, side), platform.up) for part in LEG]
         carried = joint_wrenches(needed, Wrench(there[:, :3], there[:, 3:]))
         for (name, segment), wrench in zip(JOINTS.items(), carried, strict=True):
             moment = wrench.about(poses[f"{segment}_{side}"].origin)[:, 2]
@@ -64,7 +64,7 @@ def against_opensim(folder: Path) -> list[tuple[str, ...]]:
     feet = foot_paths(trial.stream("markers"), HEELS, TOES)
     theirs, sources = solved.stream("moments"), {"the model": own}
     for joints in ("free", "held", "planar"):
-        body = calibrated(static, replace(marker_set("gait2354"), joints=joints))
+        body = calibrate_body(static, replace(marker_set("gait2354"), joints=joints))
         poses = motion(trial.stream("markers"), body).poses
         made = trial_kinetics(trial, poses, feet, Person(model.mass_kg), KineticsSettings()).moments
         moments = [name for name in made.names if name in theirs.names]

@@ -82,7 +82,7 @@ def found_in(person: Person, hidden: str, setting: Setting) -> dict[str, object]
     size = {"spring": 1.0, "scaled moment": SCALED}.get(hidden, 0.0)
     spring = Spring(STIFFNESS * size) if size else None
     strength, added = WEAK if hidden == "weak plantarflexor" else 1.0, ADDED_KG if hidden == "foot mass" else 0.0
-    walker = person.adapted_to(spring) if spring else replace(person, plantarflexors=strength, foot_kg=added)
+    walker = person.adapt_to(spring) if spring else replace(person, plantarflexors=strength, foot_kg=added)
     walk = walked(walker, spring, WALK_S + 4.0, seed=setting.seed + list(RIGHT).index(hidden))
     kg = own_foot_kg(person)
     measured = ankle_trials(walk, LATE_S if hidden == "late EMG" else 0.0, setting.emg_error, setting.others_nm)

@@ -48,7 +48,7 @@ def with_stated_errors(simulation: gd.Simulation, emg_error: float, others_nm: f
 def run(folder: Path) -> tuple[Path, Path]:
     """Write `ankle.toml` and `walk.csv` into the folder."""
     person, spring = the_twelve()[0], Spring(STIFFNESS)
-    walk = walked(person.adapted_to(spring), spring, WALK_S + STARTING_S, seed=1)
+    walk = walked(person.adapt_to(spring), spring, WALK_S + STARTING_S, seed=1)
     simulation = gd.read_simulation(MODEL).with_values({"foot_mass": own_foot_kg(person)})
     gd.write_simulation(with_stated_errors(simulation, EMG_ERROR, OTHERS_NM), folder / "ankle.toml", overwrite=True)
     measured, tables = ankle_trials(walk, 0.0, EMG_ERROR, OTHERS_NM), []

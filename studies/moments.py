@@ -23,7 +23,7 @@ from plug_in_gait_bones import TRUNK, WALKERS, bones, feet, static_file
 
 import gaitdisc as gd
 from gaitdisc.ingest.c3d_kinetics import read_body_measures
-from gaitdisc.kinematics.calibration import calibrated
+from gaitdisc.kinematics.calibration import calibrate_body
 from gaitdisc.kinematics.marker_set import marker_set
 from gaitdisc.kinematics.motion import motion
 from gaitdisc.kinetics.body_inertia import Person
@@ -44,7 +44,7 @@ def walks(data: Path, quick: bool = False) -> list[Walk]:
             static = reader.read(file).stream("markers")
             measures = read_body_measures(file)
             sets = {"markers": SET, "markers, Harrington's hip": SET.with_hip("harrington")}
-            bodies = {source: calibrated(static, one, measures) for source, one in sets.items()}
+            bodies = {source: calibrate_body(static, one, measures) for source, one in sets.items()}
             for kind in ("straight", "turn"):
                 path = next((data / "gait" / "young_straight_and_turn" / person / kind).glob("*.c3d"))
                 trial, who = reader.read(path), Person(measures.mass_kg, "", measures.height_m)

@@ -11,7 +11,7 @@ from markers_to_angles import opensim
 from plug_in_gait_angles import people
 
 import gaitdisc as gd
-from gaitdisc.kinematics.calibration import Calibration, calibrated
+from gaitdisc.kinematics.calibration import Calibration, calibrate_body
 from gaitdisc.kinematics.marker_set import METHODS, marker_set
 from gaitdisc.kinematics.motion import motion
 
@@ -43,7 +43,7 @@ def bodies(data: Path) -> list[Body]:
     for chosen, joints in (*((name, "free") for name in worn), ("gait2354", "held")):
         of = (walk, static) if chosen == "gait2354" else (person.walks["straight"], person.static)
         markers, standing = (trial.stream("markers") for trial in of)
-        calibration = calibrated(standing, marker_set(chosen).with_joints(joints), person.measures)
+        calibration = calibrate_body(standing, marker_set(chosen).with_joints(joints), person.measures)
         found.append(Body(f"{chosen}, {joints}", calibration, markers, rigid(markers, calibration)))
     return found
 

@@ -17,13 +17,13 @@ from markdown_table import markdown_table
 from numpy.typing import NDArray
 
 import gaitdisc as gd
-from gaitdisc.cohort.measurement import measured
-from gaitdisc.cohort.person import MUSCLES, Person, Spring, drawn
+from gaitdisc.cohort.measurement import measure
+from gaitdisc.cohort.person import MUSCLES, Person, Spring, draw_one
 from gaitdisc.cohort.walk import walked
 from gaitdisc.ingest.study import Conditions, Models, Participant, Quality, Study
 from gaitdisc.processing.process import processed
 from gaitdisc.processing.samples import gait_samples
-from gaitdisc.response.fit_response import ResponseSettings, fit_linear, held_out_part
+from gaitdisc.response.fit_response import ResponseSettings, fit_linear, split_held_out
 
 OUTPUTS = ("hip_flexion_r", "knee_angle_r", "ankle_angle_r", *(f"{muscle}_r" for muscle in MUSCLES[:5]))
 EMG = tuple(f"{muscle}_{side}" for side in "rl" for muscle in MUSCLES)
@@ -35,7 +35,7 @@ WALK_S = 240.0
 def run(quick: bool = False) -> NDArray[np.float64]:
     """Walk the pairs, print mean difference and standard error by variable, and return every pair's difference."""
     people, pairs, duration_s = (2, 1, 40.0) if quick else (PEOPLE, PAIRS, WALK_S)
-    everybody = [drawn("A", PERSON_SEED + number, "fm"[number % 2]).unadapted() for number in range(people)]
+    everybody = [draw_one("A", PERSON_SEED + number, "fm"[number % 2]).unadapted() for number in range(people)]
     seeds = [WALK_SEED + 1000 * pair for pair in range(pairs)]
     apart = np.array([difference(one, duration_s, s + 2 * k) for s in seeds for k, one in enumerate(everybody)])
     error = apart.std(axis=0, ddof=1) / np.sqrt(len(apart))
@@ -58,8 +58,8 @@ def _parts(person: Person, device: Spring | None, duration_s: float, seed: int) 
     both, models = Conditions(nominal="nominal", device="exo"), Models(emg=EMG, outputs=OUTPUTS)
     settled = Quality(late_change="report")
     study = Study(conditions=both, participants=(Participant(id="A"),), models=models, quality=settled)
-    walk = processed(measured(walked(person, device, duration_s, seed), "walk", "nominal"), study).trajectory
-    training, held_out = held_out_part(walk, ResponseSettings(OUTPUTS))
+    walk = processed(measure(walked(person, device, duration_s, seed), "walk", "nominal"), study).trajectory
+    training, held_out = split_held_out(walk, ResponseSettings(OUTPUTS))
     return gait_samples(training, OUTPUTS)[0], gait_samples(held_out, OUTPUTS)[0]
 
 

@@ -31,7 +31,7 @@ from markdown_table import markdown_table
 import gaitdisc as gd
 from gaitdisc.commands.moments import moments
 from gaitdisc.ingest.study import Conditions, Participant, PlannedTrial, Quality, Study
-from gaitdisc.processing.inspection import inspected_study
+from gaitdisc.processing.inspection import inspect_study
 
 TURNED_BACK = ("knee sign", "per body mass")  # notes that say that the reader set a fault right
 
@@ -63,7 +63,7 @@ def said_of(case: Case, planted: bool = True) -> list[str]:
         trials += [PlannedTrial(condition="static", files=(one,)) for one in static]
         person, few = Participant(id="P01", trials=tuple(trials)), Quality(min_strides=1)
         study = Study(conditions=Conditions(nominal="walking"), participants=(person,), quality=few)
-        for seen in inspected_study(study.placed(folder)):
+        for seen in inspect_study(study.placed(folder)):
             lines += [seen.refusal] * bool(seen.refusal)
             lines += [f.line() for f in seen.findings if f.severity != "note" or f.kind in TURNED_BACK]
         for one in static:

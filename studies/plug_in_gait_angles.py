@@ -10,7 +10,7 @@ from plug_in_gait_bones import static_file
 
 import gaitdisc as gd
 from gaitdisc.ingest.c3d_kinetics import read_body_measures
-from gaitdisc.kinematics.calibration import calibrated
+from gaitdisc.kinematics.calibration import calibrate_body
 from gaitdisc.kinematics.marker_set import marker_set
 from gaitdisc.kinematics.motion import motion
 from gaitdisc.recording.trial import BodyMeasures
@@ -73,7 +73,7 @@ def curves(person: Person, chosen: str, kind: str) -> dict[str, tuple[np.ndarray
     """
     plain, _, hip = chosen.partition(", ")
     worn = marker_set(plain).with_hip(hip) if hip else marker_set(plain)
-    calibration = calibrated(person.static.stream("markers"), worn, person.measures)
+    calibration = calibrate_body(person.static.stream("markers"), worn, person.measures)
     walk, markers = person.walks[kind], person.walks[kind].stream("markers")
     forward = nearest_axis(motion(markers, calibration).walking.rotation[0, :, 0])
     ours = motion(markers, calibration, forward).angles

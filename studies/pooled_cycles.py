@@ -21,10 +21,10 @@ from pathlib import Path
 import numpy as np
 
 import gaitdisc as gd
-from gaitdisc.ingest.new_study import found_study
+from gaitdisc.ingest.new_study import draft_study
 from gaitdisc.ingest.reading import read_planned_trial
 from gaitdisc.ingest.study import Study
-from gaitdisc.processing.pooled import pooled_cycles
+from gaitdisc.processing.pooled import pool_cycles
 
 ONE_EVENT_S = 0.2  # farther apart is no pair
 EVENTS = {"contacts": "initial contact", "foot offs": "foot off"}
@@ -33,7 +33,7 @@ EVENTS = {"contacts": "initial contact", "foot offs": "foot off"}
 def study_of(data: Path, quick: bool = False) -> Study:
     """The laboratory's folder as `gaitdisc new` finds it; one person for a quick look."""
     folder = data / "young_straight_and_turn"
-    return found_study(folder / "HC030A" if quick else folder)[0]
+    return draft_study(folder / "HC030A" if quick else folder)[0]
 
 
 def pooled(study: Study, withhold: bool = False) -> tuple[list[gd.PooledCycles], dict[str, gd.Trial]]:
@@ -47,7 +47,7 @@ def pooled(study: Study, withhold: bool = False) -> tuple[list[gd.PooledCycles],
                 trials[trial.name] = trial
                 return replace(trial, events=()) if withhold else trial
 
-            found += pooled_cycles(study, person, read)
+            found += pool_cycles(study, person, read)
     return found, trials
 
 

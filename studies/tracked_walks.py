@@ -32,9 +32,9 @@ from dataclasses import replace
 import numpy as np
 import pandas as pd
 
-from gaitdisc.discovery.discover_tracked import joints_of
+from gaitdisc.discovery.discover_tracked import search_joints
 from gaitdisc.discovery.prescribed import CLOSED, ResidualMoment
-from gaitdisc.discovery.tracked_pass import Pass, moments_of_angle_noise, tracked_pass, with_angle_noise
+from gaitdisc.discovery.tracked_pass import Pass, compute_pass, moments_of_angle_noise, with_angle_noise
 from gaitdisc.engines.tracked_mapping import read_tracked
 
 WHITENED_DEG, SIZES = 0.3, (0.6, 1.4)
@@ -84,7 +84,7 @@ def with_less(walk: Pass, number: int, moment: np.ndarray) -> Pass:
 
 def searched(walk: Pass, draws: np.ndarray) -> dict[str, object]:
     """One search: what it names, and what stands beside."""
-    joints = joints_of(walk, draws)[1]
+    joints = search_joints(walk, draws)[1]
     named = [one.named for one in joints if one.named]
     touched = max(joints, key=lambda one: float(np.mean(one.joint.left**2) / one.joint.floor**2))
     residual = [np.sqrt(np.mean(walk.dense(walk.demanded[:, k]) ** 2)) for k in walk.engine.base]
@@ -128,7 +128,7 @@ if __name__ == "__main__":
         tracked, first = read_tracked(mapping), GIVEN.seed
         assert tracked is not None, f"{mapping} has no [tracked]"
         seeds, untouched = range(first, first + GIVEN.seeds), range(first, first + GIVEN.untouched)
-        found = run(tracked_pass(tracked, kinematics), seeds, untouched, GIVEN.noise, GIVEN.quick)
+        found = run(compute_pass(tracked, kinematics), seeds, untouched, GIVEN.noise, GIVEN.quick)
         tables.append(found.assign(walk=mapping.parent.name))
     table = pd.concat(tables)
     print(table.round(3).to_string(), summary(table).round(3).to_string(), sep="\n")

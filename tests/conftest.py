@@ -84,7 +84,7 @@ def what_all_tests_share_is_made_once(tmp_path_factory):
         patch.setattr(typer.main, "get_command", cache(typer.main.get_command))
         patch.setattr(jinja2, "Environment", partial(jinja2.Environment, bytecode_cache=compiled))
         patch.setattr(walk, "learnt_table", _remembered(walk.learnt_table))
-        patch.setattr(motion, "exchanged_pairs", _remembered(motion.exchanged_pairs))
+        patch.setattr(motion, "find_exchanged_pairs", _remembered(motion.find_exchanged_pairs))
         patch.setattr(strides, "stride_period", period)
         patch.setattr(contact_movement, "stride_period", period)
         yield
@@ -144,7 +144,7 @@ def briefly():
     @contextmanager
     def brief():
         with pytest.MonkeyPatch.context() as patch:
-            patch.setattr("gaitdisc.models.training_settings.epochs_of", lambda *_: 2)
+            patch.setattr("gaitdisc.models.training_settings.count_epochs", lambda *_: 2)
             yield
 
     return brief

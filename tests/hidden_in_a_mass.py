@@ -11,7 +11,7 @@ from gaitdisc.simulation.measured import Measured
 from gaitdisc.simulation.parts import State, Term
 from gaitdisc.simulation.running import compile_simulation
 from gaitdisc.simulation.simulation import Simulation
-from gaitdisc.simulation.simulation_file import simulation_of
+from gaitdisc.simulation.simulation_file import parse_simulation
 
 RATE = 50.0
 MASS = """
@@ -115,17 +115,17 @@ class Experiment:
 
 def mass() -> Simulation:
     """A mass on a spring, without what is hidden."""
-    return simulation_of(MASS, "mass.toml")
+    return parse_simulation(MASS, "mass.toml")
 
 
 def two_rods() -> Simulation:
     """Two rods, each with a port of its own; the lower port moves the upper rod more than the lower."""
-    return simulation_of(TWO_RODS, "two_rods.toml")
+    return parse_simulation(TWO_RODS, "two_rods.toml")
 
 
 def neuron() -> Simulation:
     """A neuron that fires or does not, a hair apart: the start of a run has more than one minimum of the misfit."""
-    return simulation_of(NEURON, "neuron.toml")
+    return parse_simulation(NEURON, "neuron.toml")
 
 
 def with_load(term: str, name: str = "hidden") -> Simulation:

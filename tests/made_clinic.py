@@ -4,7 +4,7 @@ import numpy as np
 import pandas as pd
 
 from gaitdisc.channel import Channel
-from gaitdisc.clinic.reference import reference_of
+from gaitdisc.clinic.reference import make_reference
 from gaitdisc.processing.leg_curves import PROFILE
 from gaitdisc.processing.pooled_cycles import CYCLE_COLUMNS, PooledCycles
 from gaitdisc.recording import PERCENT
@@ -74,7 +74,7 @@ def _shape(channel, side):
 
 def made_controls(count=20):
     """A reference of so many people."""
-    return reference_of([made_person(f"C{k:02d}", seed=5) for k in range(count)], "controls", PROVENANCE)
+    return make_reference([made_person(f"C{k:02d}", seed=5) for k in range(count)], "controls", PROVENANCE)
 
 
 def made_run(*cycles, refusals=()):

@@ -2,7 +2,7 @@
 
 import json
 
-from gaitdisc.saved.unit_folder import OWN, sealed_text
+from gaitdisc.saved.unit_folder import OWN, seal_text
 
 
 def resealed(path, change):
@@ -10,4 +10,4 @@ def resealed(path, change):
     data = json.loads(path.read_text(encoding="utf-8"))
     data.pop(OWN)
     change(data)
-    path.write_text(sealed_text(data), encoding="utf-8")
+    path.write_text(seal_text(data), encoding="utf-8")

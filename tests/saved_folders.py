@@ -44,7 +44,7 @@ accelerations = "data/CMC/results_spring/walk_subject_Kinematics_dudt.sto"
 
 def call(*words: object) -> None:
     """Run a command of gaitdisc in this process."""
-    with patch("gaitdisc.models.training_settings.epochs_of", lambda *_: 2):
+    with patch("gaitdisc.models.training_settings.count_epochs", lambda *_: 2):
         app([str(word) for word in words], standalone_mode=False)
 
 

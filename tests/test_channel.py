@@ -2,7 +2,7 @@ import csv
 
 import pytest
 
-from gaitdisc.channel import Channel, nearest_word, schema_folder, side_of, vocabulary
+from gaitdisc.channel import Channel, find_side, nearest_word, schema_folder, vocabulary
 from gaitdisc.errors import ChannelError, UnitError
 
 
@@ -69,4 +69,4 @@ def test_the_file_has_no_doubled_names():
 
 
 def test_sides():
-    assert [side_of(n) for n in ("a_r", "A_L", "a_r.x", "a_r/speed", "relative", "floor")] == [*"rlrr", "", ""]
+    assert [find_side(n) for n in ("a_r", "A_L", "a_r.x", "a_r/speed", "relative", "floor")] == [*"rlrr", "", ""]

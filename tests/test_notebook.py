@@ -7,11 +7,11 @@ from texts import says
 from gaitdisc.channel import Channel
 from gaitdisc.recording import Recording, Source, Strides, Trial
 from gaitdisc.recording.strides import DroppedStride
-from gaitdisc.words import html_of
+from gaitdisc.words import as_html
 
 
 def test_every_text_is_escaped():
-    assert html_of("<b>", [("a & b", "<i>")]) == (
+    assert as_html("<b>", [("a & b", "<i>")]) == (
         "<table><caption>&lt;b&gt;</caption><tr><th>a &amp; b</th><td>&lt;i&gt;</td></tr></table>"
     )
 

@@ -16,8 +16,8 @@ from manufactured_discovery import manufactured
 
 from gaitdisc.discovery.folder import save_discovery
 from gaitdisc.errors import WriteError
-from gaitdisc.own_files import LIST, claim_file, claim_folder, guarded, note_inputs, under_this_guard
-from gaitdisc.saved.unit_folder import sealed_text
+from gaitdisc.own_files import LIST, claim_file, claim_folder, guard, note_inputs, under_this_guard
+from gaitdisc.saved.unit_folder import seal_text
 from gaitdisc.whole_file import remove_file, whole_file, write_whole
 from gaitdisc.write_lock import write_lock
 
@@ -25,7 +25,7 @@ EXPORT, REPORT = "gaitdisc export", "gaitdisc report"
 
 
 def write(path, text="x", command=EXPORT, **how):
-    with guarded(command, **how):
+    with guard(command, **how):
         write_whole(path, text)
 
 
@@ -61,23 +61,23 @@ def test_a_killed_command_knows_its_file_again(tmp_path, monkeypatch):
 
 def test_what_is_read_on_the_way_is_an_input(tmp_path):
     write(tmp_path / "a.csv")
-    with pytest.raises(WriteError, match=r"a\.csv.*Choose another output"), guarded(EXPORT):
+    with pytest.raises(WriteError, match=r"a\.csv.*Choose another output"), guard(EXPORT):
         note_inputs([tmp_path / "a.csv"])
         claim_file(tmp_path / "a.csv")
 
 
 def test_a_file_is_taken_away_only_where_it_may_be_replaced(tmp_path):
     (tmp_path / "a.csv").write_text("mine")
-    with pytest.raises(WriteError, match="was not written"), guarded(EXPORT):
+    with pytest.raises(WriteError, match="was not written"), guard(EXPORT):
         remove_file(tmp_path / "a.csv")
-    with guarded(EXPORT, overwrite=True):
+    with guard(EXPORT, overwrite=True):
         remove_file(tmp_path / "a.csv")
         remove_file(tmp_path / "none.csv")
     assert not (tmp_path / "a.csv").exists()
 
 
 def test_a_folder_in_which_nothing_came_to_stand_is_not_left(tmp_path):
-    with pytest.raises(ZeroDivisionError), guarded(EXPORT):
+    with pytest.raises(ZeroDivisionError), guard(EXPORT):
         claim_folder(tmp_path / "a" / "b", "x.csv", mended=("units",))
         raise ZeroDivisionError
     assert not list(tmp_path.iterdir())
@@ -85,13 +85,13 @@ def test_a_folder_in_which_nothing_came_to_stand_is_not_left(tmp_path):
 
 def test_units_are_replaced_where_the_command_began_them_and_their_page_is_not(tmp_path):
     for text in ("one", "two"):
-        with guarded("gaitdisc run"):
+        with guard("gaitdisc run"):
             claim_folder(tmp_path, mended=("walks",))
             write_whole(tmp_path / "walks" / "walk.json", text)
             write_whole(tmp_path / "walks" / "report.html", text)
         (tmp_path / "walks" / "walk.json").write_text("damaged")
     (tmp_path / "walks" / "report.html").write_text("edited")
-    with guarded("gaitdisc run"):
+    with guard("gaitdisc run"):
         claim_folder(tmp_path, mended=("walks",))
         with pytest.raises(WriteError, match=r"report\.html.*gaitdisc run"):
             write_whole(tmp_path / "walks" / "report.html", "three")
@@ -99,7 +99,7 @@ def test_units_are_replaced_where_the_command_began_them_and_their_page_is_not(t
 
 def test_units_of_somebody_else_are_refused_at_once(tmp_path):
     (tmp_path / "walks").mkdir()
-    with pytest.raises(WriteError, match=r"walks.*not written by gaitdisc"), guarded("gaitdisc run"):
+    with pytest.raises(WriteError, match=r"walks.*not written by gaitdisc"), guard("gaitdisc run"):
         claim_folder(tmp_path, mended=("walks",))
 
 
@@ -107,26 +107,26 @@ def test_a_result_saved_before_there_were_lists_is_written_again_but_for_what_wa
     save_discovery(manufactured(), tmp_path)
     (tmp_path / "report.html").write_text("page")
     names = ("discovery.json", "held_out.csv", "report.html")
-    with guarded("gaitdisc discover"):
+    with guard("gaitdisc discover"):
         claim_folder(tmp_path, *names)
     (tmp_path / LIST).unlink()
     (tmp_path / "held_out.csv").write_text("changed")
     (tmp_path / "augmented.toml").write_text("changed")
     for name in ("held_out.csv", "augmented.toml"):
-        with pytest.raises(WriteError, match=f"{name} already exists and was"), guarded("gaitdisc discover"):
+        with pytest.raises(WriteError, match=f"{name} already exists and was"), guard("gaitdisc discover"):
             claim_folder(tmp_path, "discovery.json", name)
 
 
-@pytest.mark.parametrize("text", ['{"own_sha256": "0"}', "{", "[]", sealed_text({"sha256": {}})[:-5]])
+@pytest.mark.parametrize("text", ['{"own_sha256": "0"}', "{", "[]", seal_text({"sha256": {}})[:-5]])
 def test_a_json_file_that_is_not_as_it_was_saved_is_somebody_elses(tmp_path, text):
     (tmp_path / "discovery.json").write_text(text)
-    with pytest.raises(WriteError, match=r"discovery\.json"), guarded("gaitdisc discover"):
+    with pytest.raises(WriteError, match=r"discovery\.json"), guard("gaitdisc discover"):
         claim_folder(tmp_path, "discovery.json")
 
 
 def test_another_process_writes_as_this_command_does(tmp_path):
     (tmp_path / "mine.csv").write_text("mine")
-    with guarded(EXPORT), ProcessPoolExecutor(1, get_context("spawn")) as pool:
+    with guard(EXPORT), ProcessPoolExecutor(1, get_context("spawn")) as pool:
         claim_folder(tmp_path)
         pool.submit(under_this_guard(write_whole), tmp_path / "a.csv", "x").result()
         with pytest.raises(WriteError, match=r"mine\.csv.*not written by gaitdisc"):
@@ -136,7 +136,7 @@ def test_another_process_writes_as_this_command_does(tmp_path):
 
 def test_while_a_command_holds_a_folder_another_is_refused(tmp_path):
     (tmp_path / ".lock").write_text(json.dumps({"pid": 1, "host": "elsewhere"}))
-    with pytest.raises(WriteError, match="is writing to"), guarded(EXPORT):
+    with pytest.raises(WriteError, match="is writing to"), guard(EXPORT):
         claim_folder(tmp_path)
 
 

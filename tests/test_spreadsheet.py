@@ -9,7 +9,7 @@ from hypothesis import strategies as st
 from gaitdisc.channel import Channel
 from gaitdisc.ingest.table import read_table, write_table
 from gaitdisc.recording import Recording
-from gaitdisc.spreadsheet import quoted, read_csv, unquoted, write_csv
+from gaitdisc.spreadsheet import quote, read_csv, unquote, write_csv
 
 SIGNS = "=+-@\t\r\n＝＋－＠"
 TEXT = st.text(st.sampled_from("=+-@\t\r\n'a1.;,\" ＝"), max_size=6) | st.text(max_size=6)
@@ -17,18 +17,18 @@ TEXT = st.text(st.sampled_from("=+-@\t\r\n'a1.;,\" ＝"), max_size=6) | st.text(
 
 @pytest.mark.parametrize("sign", SIGNS)
 def test_what_a_spreadsheet_would_compute_begins_with_an_apostrophe(sign):
-    assert quoted(f"{sign}SUM(A1)") == f"'{sign}SUM(A1)"
+    assert quote(f"{sign}SUM(A1)") == f"'{sign}SUM(A1)"
 
 
 @pytest.mark.parametrize("number", ["-0.5", "+3", "-1e-05", "1", "-.5", "2."])
 def test_a_number_stays_a_number(number):
-    assert quoted(number) == number
+    assert quote(number) == number
 
 
 @given(TEXT)
 def test_text_comes_back_and_never_begins_with_a_formula(text):
-    assert unquoted(quoted(text)) == text
-    safe = quoted(text)
+    assert unquote(quote(text)) == text
+    safe = quote(text)
     assert safe == text or safe[0] == "'"
     assert safe[:1] not in SIGNS or not safe or float(safe) == float(text)
 

@@ -8,7 +8,7 @@ from gaitdisc.discovery.catalogue import read_catalogue
 from gaitdisc.errors import GaitdiscError
 from gaitdisc.ingest.study_file import load_study
 from gaitdisc.simulation.simulation_file import read_simulation
-from gaitdisc.toml_text import DEEPEST, parsed_toml
+from gaitdisc.toml_text import DEEPEST, parse_toml
 
 DEEP = {
     "brackets": "a = " + "[" * 5000,
@@ -37,9 +37,9 @@ def test_every_file_of_toml_refuses_it_in_words(tmp_path, read, text):
 
 def test_forty_levels_are_read_and_one_more_is_not():
     depth = DEEPEST
-    assert parsed_toml("a = " + "[" * (depth - 1) + "]" * (depth - 1))
+    assert parse_toml("a = " + "[" * (depth - 1) + "]" * (depth - 1))
     with pytest.raises(tomllib.TOMLDecodeError, match="nested more than 40"):
-        parsed_toml("a = " + "[" * depth + "]" * depth)
+        parse_toml("a = " + "[" * depth + "]" * depth)
 
 
 @pytest.mark.parametrize(
@@ -53,4 +53,4 @@ def test_forty_levels_are_read_and_one_more_is_not():
     ids=["decimals", "sentences", "comment", "literal"],
 )
 def test_dots_that_are_no_key_do_no_harm(text):
-    assert list(parsed_toml(text)) == ["a"]
+    assert list(parse_toml(text)) == ["a"]

@@ -2,7 +2,18 @@ import pytest
 from rich.console import Console
 from rich.table import Table
 
-from gaitdisc.words import counted, direction_words, label, listed, number, p_words, plain, sideless, unit_text, upwards
+from gaitdisc.words import (
+    counted,
+    direction_words,
+    label,
+    listing,
+    number,
+    p_words,
+    plain,
+    sideless,
+    unit_text,
+    upwards,
+)
 
 
 def test_sides_of_known_and_unknown_channels():
@@ -43,7 +54,7 @@ def test_a_share_short_of_all_is_not_all_and_an_amount_is_rounded(value, digits,
 
 def test_counts_lists_and_units():
     assert (counted(0, "stride"), counted(1, "stride")) == ("0 strides", "1 stride")
-    assert (listed(["a"]), listed(["a", "b"])) == ("a", "a and b")
+    assert (listing(["a"]), listing(["a", "b"])) == ("a", "a and b")
     assert unit_text("V/s2") == "V/s²"
 
 

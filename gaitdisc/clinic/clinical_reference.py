@@ -15,7 +15,7 @@ from gaitdisc.errors import SchemaError
 from gaitdisc.processing.leg_curves import BY_NAME, LegCurves
 from gaitdisc.processing.pooled_cycles import PooledCycles
 from gaitdisc.recording import PERCENT
-from gaitdisc.saved.unit_folder import read_sealed, sealed_text
+from gaitdisc.saved.unit_folder import read_sealed, seal_text
 from gaitdisc.spreadsheet import read_csv
 from gaitdisc.whole_file import write_whole
 
@@ -127,9 +127,9 @@ def save_reference(reference: ClinicalReference, folder: Path) -> Path:
         "created": reference.created,
         "settings": dict(reference.settings),
         "versions": dict(reference.versions),
-        "legs": {word: [_rounded(vars(leg)) for leg in own] for word, own in reference.legs.items()},
+        "legs": {word: [_round(vars(leg)) for leg in own] for word, own in reference.legs.items()},
     }
-    return write_whole(folder / FILE, sealed_text(data))
+    return write_whole(folder / FILE, seal_text(data))
 
 
 def load_reference(place: Path) -> ClinicalReference:
@@ -159,12 +159,12 @@ def load_reference(place: Path) -> ClinicalReference:
         ) from error
 
 
-def _rounded(value: Any) -> Any:
+def _round(value: Any) -> Any:
     """What JSON holds of a leg: four digits, and null for what is not known."""
     if isinstance(value, Mapping):
-        return {name: _rounded(one) for name, one in value.items()}
+        return {name: _round(one) for name, one in value.items()}
     if isinstance(value, np.ndarray):
-        return [_rounded(float(one)) for one in value]
+        return [_round(float(one)) for one in value]
     if isinstance(value, float):
         return round(value, DIGITS) if np.isfinite(value) else None
     return value

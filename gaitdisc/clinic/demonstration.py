@@ -11,10 +11,10 @@ import numpy as np
 from scipy.ndimage import gaussian_filter1d
 
 from gaitdisc.channel import Channel
-from gaitdisc.cohort.demonstration import FORCES, planted, write_trial
+from gaitdisc.cohort.demonstration import FORCES, plant, write_trial
 from gaitdisc.cohort.habit import habitual
-from gaitdisc.cohort.measurement import measured
-from gaitdisc.cohort.person import Person, drawn
+from gaitdisc.cohort.measurement import measure
+from gaitdisc.cohort.person import Person, draw_one
 from gaitdisc.cohort.walk import QUICK_HZ, SLOW_HZ, TrueWalk, walked
 from gaitdisc.ingest.study import Conditions, Participant, PlannedTrial, Study
 from gaitdisc.ingest.study_file import write_study
@@ -59,23 +59,23 @@ CHILD = {"age_years": 8.0, "height_m": 1.26, "mass_kg": 26.0}
 NO_GAIT = ("bad file", "child")  # planted, but not into the way of walking
 
 
-def person_of(visit: Visit, seed: int) -> Person:
+def draw_person(visit: Visit, seed: int) -> Person:
     """Somebody drawn; a child walks as fast as the grown person of the same draw, for its size (Hof 1996)."""
-    person = drawn(visit.name, seed + visit.number, "fm"[visit.number % 2])
+    person = draw_one(visit.name, seed + visit.number, "fm"[visit.number % 2])
     if visit.what != "child":
         return person
     smaller = (CHILD["height_m"] / person.height_m) ** 0.5
     return replace(person, **CHILD, speed_m_per_s=smaller * person.speed_m_per_s, stride_s=smaller * person.stride_s)
 
 
-def made_walk(visit: Visit, seed: int) -> Trial:
+def make_walk(visit: Visit, seed: int) -> Trial:
     """Walk of a visit on a treadmill, measured, with what is planted."""
-    walk = walk_of(person_of(visit, seed), visit, seed)
+    walk = make_habit(draw_person(visit, seed), visit, seed)
     what = "" if visit.what in NO_GAIT else visit.what
-    return planted(with_pelvis(walk, measured(walk, f"{visit.name}_{CONDITION}", CONDITION)), what, visit.side)
+    return plant(with_pelvis(walk, measure(walk, f"{visit.name}_{CONDITION}", CONDITION)), what, visit.side)
 
 
-def walk_of(person: Person, visit: Visit, seed: int) -> TrueWalk:
+def make_habit(person: Person, visit: Visit, seed: int) -> TrueWalk:
     """What happens while somebody walks."""
     return walked(person, None, WALK_S, seed=seed + 7 * visit.number + len(visit.session))
 
@@ -113,29 +113,29 @@ def write_week(
 ) -> tuple[Study, Study, dict[str, str]]:
     """Write `controls/` and `week/`, and apart from them what was planted by person and session, "" for the healthy."""
     visits = [Visit(f"C{k + 1:02d}", k) for k in range(controls)]
-    own = _written(folder / "controls", visits, "Controls, made", CONTROLS_SEED, progress)
+    own = _write(folder / "controls", visits, "Controls, made", CONTROLS_SEED, progress)
     truth = {}
     for one in WEEK:
         side = "left" if one.side == "l" else "right"
         truth[f"{one.name} {one.session}".strip()] = one.what if one.what in ("", *NO_GAIT) else f"{one.what} {side}"
     said = "; ".join(f"{who} {what}" for who, what in truth.items() if what)
-    week = _written(folder / "week", WEEK, f"A week, made (simulated, no people). Planted: {said}", WEEK_SEED, progress)
+    week = _write(folder / "week", WEEK, f"A week, made (simulated, no people). Planted: {said}", WEEK_SEED, progress)
     write_whole(folder / "planted.json", json.dumps(truth, indent=1))
     return own, week, truth
 
 
-def _written(folder: Path, visits: Sequence[Visit], title: str, seed: int, progress: Callable[[str], None]) -> Study:
+def _write(folder: Path, visits: Sequence[Visit], title: str, seed: int, progress: Callable[[str], None]) -> Study:
     trials: dict[str, list[PlannedTrial]] = {}
     people: dict[str, Person] = {}
     sessions = tuple(word for word in ("before", "after") if any(one.session == word for one in visits))
     for visit in visits:
         stem = f"raw/{visit.name}/{visit.session or 'only'}/{CONDITION}"
-        files = write_trial(made_walk(visit, seed), folder, stem)
+        files = write_trial(make_walk(visit, seed), folder, stem)
         if visit.what == "bad file":
             for file in files:
                 whole = (folder / file).read_bytes()
                 write_whole(folder / file, whole[: len(whole) // 3])
-        people[visit.name] = person = person_of(visit, seed)
+        people[visit.name] = person = draw_person(visit, seed)
         planned = PlannedTrial(
             condition=CONDITION, session=visit.session or None, files=files, speed_m_per_s=person.speed_m_per_s
         )
@@ -146,13 +146,13 @@ def _written(folder: Path, visits: Sequence[Visit], title: str, seed: int, progr
         sessions=sessions,
         conditions=Conditions(nominal=CONDITION),
         channels={name: f"{name} [N]" for name in FORCES},
-        participants=tuple(participant_of(people[name], tuple(own)) for name, own in trials.items()),
+        participants=tuple(describe_participant(people[name], tuple(own)) for name, own in trials.items()),
     ).placed(folder)
     write_study(study, folder / "study.toml")
     return study
 
 
-def participant_of(person: Person, trials: tuple[PlannedTrial, ...]) -> Participant:
+def describe_participant(person: Person, trials: tuple[PlannedTrial, ...]) -> Participant:
     """What a study says of a made person."""
     return Participant(
         id=person.name, height_m=round(person.height_m, 3), age_years=int(person.age_years), trials=trials

@@ -17,7 +17,7 @@ from gaitdisc.errors import SchemaError
 from gaitdisc.processing.leg_curves import BY_NAME, VARIABLES
 from gaitdisc.processing.tables import VALUES
 from gaitdisc.report.table import Table
-from gaitdisc.toml_text import parsed_toml
+from gaitdisc.toml_text import parse_toml
 from gaitdisc.whole_file import write_whole
 
 if TYPE_CHECKING:
@@ -65,7 +65,7 @@ def load_laboratory(run_folder: Path) -> Laboratory:
     if path is None:
         return Laboratory()
     try:
-        data = parsed_toml(path.read_text(encoding="utf-8"))
+        data = parse_toml(path.read_text(encoding="utf-8"))
     except (ValueError, OSError) as error:
         raise SchemaError(f"{FILE} must be a TOML file", f"it says: {str(error)[:200]}", "Correct the line.") from error
     for key, value in data.items():

@@ -43,7 +43,9 @@ def like_controls(legs: Legs, own: Sequence[LegCurves], leg_m: float | None, age
     of_age = _nearest(legs, AGES, age_years, _age)
     of_both = _nearest(of_age, SPEEDS, speed, dimensionless_speed)
     by = [*(["age"] if of_age != legs else []), *(["speed"] if of_both != of_age else [])]
-    why = "age and speed are unknown" if groups_of(legs) else f"a group needs {FEWEST} controls of similar age or speed"
+    why = (
+        "age and speed are unknown" if list_groups(legs) else f"a group needs {FEWEST} controls of similar age or speed"
+    )
     which = f", the group nearest in {' and '.join(by)}" if by else f", all of the reference ({why})"
     said = [f"Compared with {described(of_both)}{which}."]
     if of_both != of_age:
@@ -76,7 +78,7 @@ def like_published(
     return found, f"Compared with its group “{found.name}”, the nearest in speed: {whose}."
 
 
-def groups_of(legs: Legs) -> list[Legs]:
+def list_groups(legs: Legs) -> list[Legs]:
     """Groups of ten people or more, by age, and within it by speed; none where there is but one."""
     ages = list(_classes(legs, AGES, _age).values()) or [legs]
     found = dict.fromkeys(one for age in ages for one in (*_classes(age, SPEEDS, dimensionless_speed).values(), age))

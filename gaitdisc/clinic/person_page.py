@@ -24,10 +24,10 @@ from gaitdisc.clinic.panels import (
 from gaitdisc.clinic.sentences import (
     contrast_sentences,
     laboratory_sentences,
-    noted_sentences,
     outstanding_sentences,
     quality_sentence,
     score_sentences,
+    write_noted,
 )
 from gaitdisc.clinic.values import (
     MARKS,
@@ -96,7 +96,7 @@ def write_person_page(
         "first": [_contrast(person.before_after, beside, say)] if person.before_after else [],
         "contrasts": [_contrast(one, beside, say) for one in person.contrasts if one is not person.before_after],
         "method": _method(person),
-        "files": _saved(
+        "files": _save(
             words_table("files", f"Files, n = {len(files)}.", ("file", "SHA-256"), files.items()), beside, "", say
         ),
         "versions": say.table(words_table("versions", "Versions.", ("what", "version"), provenance.versions.items())),
@@ -115,7 +115,7 @@ class Sheet(NamedTuple):
     caption: str
 
 
-def sheets_of(reading: ClinicalReading) -> list[Sheet]:
+def list_sheets(reading: ClinicalReading) -> list[Sheet]:
     """Kinematics, kinetics and EMG of a reading, as page and PDF show them; what was not recorded has no panel."""
     people = sorted({band.people for band in reading.bands.values()})
     bands = "No band: there is no reference for this condition."
@@ -144,15 +144,15 @@ def _condition(reading: ClinicalReading, beside: Path, prefix: str, say: PageWor
     }
     if not reading.legs:
         return words
-    profile, sheets = profile_table(reading), sheets_of(reading)
+    profile, sheets = profile_table(reading), list_sheets(reading)
     save_table(panel_numbers(sheets[0].panels), beside / f"{stem}cycles.csv")
     return {
         **words,
         **{one.name: _sheet(one.panels, one.caption, beside, f"{stem}{one.name}", say) for one in sheets},
         "bars": Markup(profile_svg(reading.profile, say)) if reading.profile else "",
-        "distances": _saved(values_table(reading), beside, stem, say),
-        "numbers": _saved(numbers_table(reading), beside, stem, say),
-        "profile": _saved(profile, beside, stem, say) if profile else None,
+        "distances": _save(values_table(reading), beside, stem, say),
+        "numbers": _save(numbers_table(reading), beside, stem, say),
+        "profile": _save(profile, beside, stem, say) if profile else None,
     }
 
 
@@ -164,7 +164,7 @@ def _sheet(panels: list[Panel], caption: str, beside: Path, name: str, say: Page
     return {"panels": drawn, "caption": caption, "file": f"{beside.name}/{name}.csv"}
 
 
-def _saved(table: Table, beside: Path, stem: str, say: PageWords) -> Table:
+def _save(table: Table, beside: Path, stem: str, say: PageWords) -> Table:
     save_table(table.numbers, beside / f"{stem}{table.name}.csv")
     return say.table(table)
 
@@ -178,7 +178,7 @@ def _contrast(contrast: Contrast, beside: Path, say: PageWords) -> dict[str, Any
         if panels:
             one = _sheet(panels, CONTRAST.format(first, second), beside, f"{stem}-{SIDE_WORDS[side]}", say)
             sheets.append({**one, "heading": say(SIDE_WORDS[side]).capitalize()})
-    changes = _saved(change_table(contrast), beside, f"{stem}-", say)
+    changes = _save(change_table(contrast), beside, f"{stem}-", say)
     words = {"heading": f"{first} and {second}", "sentences": contrast_sentences(contrast)}
     return {**words, "sheets": sheets, "changes": changes}
 
@@ -219,7 +219,7 @@ def index_rows(person: PersonSession, name: str, say: PageWords = ENGLISH) -> li
     for reading in person.readings:
         pooled = reading.pooled
         score = reading.profile.both if reading.profile else None
-        tiers = [(MARKS[tier], noted_sentences(reading.noted, tier, say)) for tier in TIERS]
+        tiers = [(MARKS[tier], write_noted(reading.noted, tier, say)) for tier in TIERS]
         first = [
             f"{mark} {sentences[0].partition(';')[0]}" + (f" (+{len(sentences) - 1})" if len(sentences) > 1 else "")
             for mark, sentences in tiers

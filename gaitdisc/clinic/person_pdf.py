@@ -15,7 +15,7 @@ import numpy as np
 from gaitdisc.clinic.clinical_reference import ClinicalReading, Contrast, PersonSession, Profile
 from gaitdisc.clinic.laboratory import ENGLISH, PageWords
 from gaitdisc.clinic.panels import SPANS, Panel, contrast_sheet
-from gaitdisc.clinic.person_page import CONTRAST, sheets_of
+from gaitdisc.clinic.person_page import CONTRAST, list_sheets
 from gaitdisc.clinic.sentences import (
     contrast_sentences,
     laboratory_sentences,
@@ -106,7 +106,7 @@ def _write_reading(
     sheets.text("Scores", size=HEAD, bold=True)
     for sentence in score_sentences(reading):
         sheets.text(sentence)
-    kinematics, *others = sheets_of(reading)
+    kinematics, *others = list_sheets(reading)
     recorded = [one for one in others if one.panels]
     for one in (kinematics, *recorded):
         if recorded and one is recorded[0]:

@@ -6,7 +6,7 @@ import itertools
 from collections.abc import Sequence
 
 from gaitdisc.clinic.clinical_reference import ClinicalReference, PersonSession
-from gaitdisc.clinic.reading import contrast_of, read_beside
+from gaitdisc.clinic.reading import contrast, read_beside
 from gaitdisc.errors import SchemaError
 from gaitdisc.processing.pooled_cycles import CYCLES, PooledCycles
 from gaitdisc.saved.study_run import StudyRun
@@ -26,7 +26,7 @@ def read_session(
     """A session read: kept before refused, then the study's first condition, which each other one is compared with."""
     ordered = sorted(cycles, key=lambda one: (not len(one.kept), one.condition != nominal))
     main, *others = readings = tuple(read_beside(one, reference) for one in ordered)
-    contrasts = tuple(contrast_of(main, other) for other in others if main.legs and other.legs)
+    contrasts = tuple(contrast(main, other) for other in others if main.legs and other.legs)
     return PersonSession(title, readings, contrasts)
 
 
@@ -56,4 +56,4 @@ def before_and_after(
             "Name two sessions, or two conditions, of these.",
         )
     before, after = pairs[0]
-    return PersonSession(" ".join((person, *words)), (after, before), (contrast_of(before, after),))
+    return PersonSession(" ".join((person, *words)), (after, before), (contrast(before, after),))

@@ -23,7 +23,7 @@ from gaitdisc.clinic.like_controls import like_controls, like_published
 from gaitdisc.clinic.reference import bands, spatiotemporal_limits
 from gaitdisc.clinic.rules import outstanding, speed_words
 from gaitdisc.errors import ComparisonError
-from gaitdisc.processing.leg_curves import BY_NAME, FEET, KINEMATICS, PELVIS, PROFILE, TURNED_DEG, LegCurves, legs_of
+from gaitdisc.processing.leg_curves import BY_NAME, FEET, KINEMATICS, PELVIS, PROFILE, TURNED_DEG, LegCurves, make_legs
 from gaitdisc.processing.pooled_cycles import PooledCycles
 from gaitdisc.recording import Finding
 from gaitdisc.statistics.cluster_test import PermutationPlan, two_sample_test
@@ -42,15 +42,15 @@ PLAN = PermutationPlan(alpha=ALPHA)
 
 def read_beside(pooled: PooledCycles, reference: ClinicalReference | None) -> ClinicalReading:
     """Read the cycles of one person, session and condition beside the controls who walked so."""
-    legs = legs_of(pooled)
-    light, reasons = light_of(pooled, legs)
+    legs = make_legs(pooled)
+    light, reasons = choose_light(pooled, legs)
     consistency = {
         (name, side): multiple_correlation(curves) for side, leg in legs.items() for name, curves in leg.cycles.items()
     }
     reading = partial(ClinicalReading, pooled=pooled, legs=legs, light=light, reasons=reasons, consistency=consistency)
     if reference is not None and reference.published and legs:  # means and spreads alone: bands and scores, no limits
         group, words = like_published(reference.published, tuple(legs.values()), pooled.leg_m)
-        profile, no_profile = profile_of(legs, (), group.bands)
+        profile, no_profile = find_profile(legs, (), group.bands)
         return reading(
             numbers=(),
             silent=NO_LEGS,
@@ -69,7 +69,7 @@ def read_beside(pooled: PooledCycles, reference: ClinicalReference | None) -> Cl
         why = f"no person of the reference walked {pooled.condition!r}; it has {there}"
     why = why if legs else NO_CYCLE
     like = like_controls(controls, tuple(legs.values()), pooled.leg_m, pooled.age_years)
-    profile, no_profile = (None, why) if why else profile_of(legs, like.curves)
+    profile, no_profile = (None, why) if why else find_profile(legs, like.curves)
     numbers, silent = ((), why) if why else outstanding(legs, like.curves, None, like.values, profile)
     index, no_index = ({}, why) if why else deviation_index(legs, controls)
     return reading(
@@ -108,7 +108,7 @@ def multiple_correlation(curves: NDArray[np.float64]) -> float:
     return float(np.sqrt(1.0 - within / whole))
 
 
-def light_of(pooled: PooledCycles, legs: dict[str, LegCurves]) -> tuple[str, tuple[str, ...]]:
+def choose_light(pooled: PooledCycles, legs: dict[str, LegCurves]) -> tuple[str, tuple[str, ...]]:
     """Red where nothing is reported, amber where something can be done about it, each with what; else green."""
     if not legs:
         return "red", tuple(refusal.reason for refusal in pooled.refusals) or (NO_CYCLE,)
@@ -157,7 +157,7 @@ def profile_score(scores: Sequence[float]) -> float:
     return float(np.sqrt(np.mean(np.square(scores))))
 
 
-def profile_of(
+def find_profile(
     legs: Mapping[str, LegCurves], reference: Sequence[ReferenceLeg], published: Mapping[str, Band] | None = None
 ) -> tuple[Profile | None, str]:
     """Profile of a person beside a reference, or why there is none.
@@ -263,7 +263,7 @@ def deviation_index(legs: Mapping[str, LegCurves], reference: Sequence[Reference
     return found, "" if found else "the recording lacks one of its nine curves"
 
 
-def contrast_of(first: ClinicalReading, second: ClinicalReading) -> Contrast:
+def contrast(first: ClinicalReading, second: ClinicalReading) -> Contrast:
     """Compare the cycles of two readings leg by leg; second minus first."""
     spans: list[DifferingSpan] = []
     untested: dict[str, str] = {}

@@ -11,7 +11,7 @@ from scipy.stats import t as student
 
 from gaitdisc.clinic.clinical_reference import Band, ClinicalReference, Limits, ReferenceLeg
 from gaitdisc.errors import SchemaError
-from gaitdisc.processing.leg_curves import legs_of
+from gaitdisc.processing.leg_curves import make_legs
 from gaitdisc.processing.pooled_cycles import PooledCycles
 from gaitdisc.recording.arrays import mean_where_known
 from gaitdisc.saved.provenance import Provenance
@@ -23,13 +23,13 @@ FARTHEST = 2.0  # d²/Sxx: how far a line is followed beyond the controls' speed
 SETTINGS = ("filters", "kinematics", "strides")
 
 
-def reference_of(cycles: Sequence[PooledCycles], title: str, provenance: Provenance) -> ClinicalReference:
+def make_reference(cycles: Sequence[PooledCycles], title: str, provenance: Provenance) -> ClinicalReference:
     """Reference of everybody in a run, by condition; of several sessions of a person the first counts."""
     numbers: dict[str, int] = {}
     seen: set[tuple[str, str]] = set()
     legs: dict[str, list[ReferenceLeg]] = {}
     for pooled in cycles:
-        found = legs_of(pooled)
+        found = make_legs(pooled)
         if not found or (pooled.subject, pooled.condition) in seen:
             continue
         seen.add((pooled.subject, pooled.condition))

@@ -66,16 +66,16 @@ class Rule:
             return values.get(self.value)
         if self.variable not in curves:
             return None
-        part = part_of(self.part, stance_percent)
+        part = find_part(self.part, stance_percent)
         if part is None or not np.isfinite(curves[self.variable][part]).all():
             return None
         return float(TAKES[self.take](curves[self.variable][part]))
 
 
-def part_of(part: str, stance_percent: float) -> slice | None:
+def find_part(part: str, stance_percent: float) -> slice | None:
     """Points of a part of the cycle on 101 points; None where it hangs on a foot off that is not known.
 
-    >>> part_of("swing", 60.0), part_of("mid swing", 61.0), part_of("stance", float("nan"))
+    >>> find_part("swing", 60.0), find_part("mid swing", 61.0), find_part("stance", float("nan"))
     (slice(60, 101, None), slice(74, 88, None), None)
     """
     fixed = {"contact": (0, 0), "loading": LOADING, "push-off": PUSH_OFF, "cycle": (0, 100)}

@@ -26,15 +26,15 @@ MANY = 20  # controls from whom on limits lie within four standard deviations (d
 MOST_SPANS = 6
 
 
-def noted_sentences(noted: Sequence[Noted], tier: int, say: Callable[[str], str] = str) -> list[str]:
+def write_noted(noted: Sequence[Noted], tier: int, say: Callable[[str], str] = str) -> list[str]:
     """One sentence for all that says one thing, both legs in one, at its highest tier; at most six, farthest first."""
     together: dict[str, list[Noted]] = {}
     for one in noted:
         together.setdefault(one.group or one.rule, []).append(one)
-    return [_noted(own, say) for own in together.values() if own[0].tier == tier][:MOST]
+    return [_write_note(own, say) for own in together.values() if own[0].tier == tier][:MOST]
 
 
-def _noted(own: Sequence[Noted], say: Callable[[str], str]) -> str:
+def _write_note(own: Sequence[Noted], say: Callable[[str], str]) -> str:
     """Value of the farthest rule beside its limits; what else says the same after it."""
     by_rule: dict[str, list[Noted]] = {}
     for one in own:
@@ -66,7 +66,7 @@ def outstanding_sentences(reading: ClinicalReading, say: Callable[[str], str] = 
     """What stands out by its tier, and after it what could not be said, or why nothing is."""
     if reading.silent:
         return {"": [say("No comparison with controls: {}.").format(reading.silent)]}
-    tiers = {f"{MARKS[tier]} {say(words)}": noted_sentences(reading.noted, tier, say) for tier, words in TIERS.items()}
+    tiers = {f"{MARKS[tier]} {say(words)}": write_noted(reading.noted, tier, say) for tier, words in TIERS.items()}
     found = {words: sentences for words, sentences in tiers.items() if sentences}
     rest = []
     if not found:

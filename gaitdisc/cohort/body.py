@@ -37,12 +37,12 @@ class Leg(NamedTuple):
     sole_m: float  # length of the foot [m]
 
 
-def leg_of(height_m: float, mass_kg: float, added_foot_kg: float = 0.0) -> Leg:
+def make_leg(height_m: float, mass_kg: float, added_foot_kg: float = 0.0) -> Leg:
     """Leg of a person who wears the device.
 
     Source: Winter DA (2009). Biomechanics and Motor Control of Human Movement, 4th edition, table 4.1 and figure 4.1.
 
-    >>> round(leg_of(1.69, 66.5).thigh_m, 3)
+    >>> round(make_leg(1.69, 66.5).thigh_m, 3)
     0.414
     """
     l1, l2, sole, ankle = 0.245 * height_m, 0.246 * height_m, 0.152 * height_m, 0.039 * height_m
@@ -84,7 +84,7 @@ def bias(leg, psi, rate, ax, ay, b):
 
 
 @compiled
-def moved_by_ground(leg, psi, forces, arm, q):
+def add_ground_force(leg, psi, forces, arm, q):
     """Add the ground's force (x, y) at `arm` (x, y) from the ankle to the generalised moments q (3,) [N m]."""
     c1, s1, c2, s2, _, _ = _turns(psi)
     q[0] += leg.thigh_m * (c1 * forces[0] + s1 * forces[1])
@@ -136,17 +136,17 @@ def joint_moments(
     step_s: between two samples [s]
     returns (phase, 3) [N m]: hip and knee towards flexion, ankle towards dorsiflexion
     """
-    return _needed(leg, psi, cycle_rate(psi, step_s), cycle_rate(psi, step_s, 2), hip, ground)
+    return _inverse_dynamics(leg, psi, cycle_rate(psi, step_s), cycle_rate(psi, step_s, 2), hip, ground)
 
 
 @compiled
-def _needed(leg, psi, rate, speedup, hip, ground):
+def _inverse_dynamics(leg, psi, rate, speedup, hip, ground):
     m, b, q, found = np.empty((3, 3)), np.empty(3), np.empty(3), np.empty((len(psi), 3))
     for sample in range(len(psi)):
         inertia(leg, psi[sample], m)
         bias(leg, psi[sample], rate[sample], hip[sample, 0], hip[sample, 1], b)
         q[:] = 0.0
-        moved_by_ground(leg, psi[sample], ground[sample, :2], ground[sample, 2:], q)
+        add_ground_force(leg, psi[sample], ground[sample, :2], ground[sample, 2:], q)
         for link in range(3):
             b[link] -= q[link]
             for other in range(3):

@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 
 from gaitdisc.cohort.other_people import PATTERNS, walking_with
-from gaitdisc.cohort.person import STIFFNESS, Person, Spring, drawn
+from gaitdisc.cohort.person import STIFFNESS, Person, Spring, draw_one
 from gaitdisc.errors import SchemaError
 from gaitdisc.recording import Trial
 
@@ -41,12 +41,12 @@ def the_twelve(calibration: bool = False) -> tuple[Person, ...]:
     """
     seed = CALIBRATION_SEED if calibration else REPORTED_SEED
     letter = "C" if calibration else "W"
-    people = [drawn(f"{letter}{number + 1:02d}", seed + number, "fm"[number % 2]) for number in range(12)]
+    people = [draw_one(f"{letter}{number + 1:02d}", seed + number, "fm"[number % 2]) for number in range(12)]
     people[CHANGES] = replace(people[CHANGES], change_s=CHANGE_SHARE * WALK_S)
     return tuple(people)
 
 
-def walks_of(person: Person, duration_s: float = WALK_S, hidden: str = "spring", markers: bool = False) -> Walks:
+def make_walks(person: Person, duration_s: float = WALK_S, hidden: str = "spring", markers: bool = False) -> Walks:
     """Walk a person in both conditions and measure it.
 
     duration_s: length of each walk [s]; a late change of gait keeps its share of it
@@ -58,7 +58,7 @@ def walks_of(person: Person, duration_s: float = WALK_S, hidden: str = "spring",
         forces
     """
     from gaitdisc.cohort.marker_trial import marker_trial
-    from gaitdisc.cohort.measurement import measured
+    from gaitdisc.cohort.measurement import measure
     from gaitdisc.cohort.walk import walked
 
     person = replace(person, change_s=person.change_s * duration_s / WALK_S)
@@ -74,7 +74,7 @@ def walks_of(person: Person, duration_s: float = WALK_S, hidden: str = "spring",
     }
     trials = {}
     for word, walk in walks.items():
-        trial = measured(walk, f"{person.name}_{word}", word, late_s if word == "exo" else 0.0)
+        trial = measure(walk, f"{person.name}_{word}", word, late_s if word == "exo" else 0.0)
         if markers:
             seen = marker_trial(walk, trial.name, word)
             trial = replace(seen, streams={**seen.streams, "emg": trial.stream("emg")})
@@ -95,10 +95,10 @@ def walks_of(person: Person, duration_s: float = WALK_S, hidden: str = "spring",
     return Walks(person, trials, truth)
 
 
-def walked_cohort(duration_s: float = WALK_S, hidden: str = "spring") -> Iterator[Walks]:
+def walk_cohort(duration_s: float = WALK_S, hidden: str = "spring") -> Iterator[Walks]:
     """Walk the twelve for `duration_s` [s] each; only one person is in memory at a time."""
     for person in the_twelve():
-        yield walks_of(person, duration_s, hidden)
+        yield make_walks(person, duration_s, hidden)
 
 
 def _with_effect(person: Person, hidden: str) -> tuple[Spring | None, Person, float]:
@@ -108,7 +108,7 @@ def _with_effect(person: Person, hidden: str) -> tuple[Spring | None, Person, fl
         )
     spring = Spring(STIFFNESS * (0.6 if hidden == "scaled moment" else 1.0))
     if hidden in ("spring", "scaled moment"):
-        return spring, person.adapted_to(spring), 0.0
+        return spring, person.adapt_to(spring), 0.0
     if hidden in PATTERNS:
         return None, walking_with(person, hidden), 0.0
     weak = replace(person, plantarflexors=0.75 if hidden == "weak plantarflexor" else 1.0)

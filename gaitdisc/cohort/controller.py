@@ -14,7 +14,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from gaitdisc.cohort.body import GRAVITY, ankle_place, cycle_rate, joint_moments, leg_of
+from gaitdisc.cohort.body import GRAVITY, ankle_place, cycle_rate, joint_moments, make_leg
 from gaitdisc.cohort.habit import activity
 from gaitdisc.cohort.leg_path import (
     PHASES,
@@ -24,12 +24,12 @@ from gaitdisc.cohort.leg_path import (
     habit_angles,
     habitual_force,
     hip_motion,
-    pressed_point,
+    map_phase,
     pressure_centre,
-    staged,
+    pressure_point,
     thigh_shank_foot,
 )
-from gaitdisc.cohort.muscles import MOST, capacities, cycle_activation, cycle_excitation, strength_of
+from gaitdisc.cohort.muscles import MOST, capacities, cycle_activation, cycle_excitation, find_strength
 from gaitdisc.cohort.person import FOOT_KG, GROUPS, SHANK_KG, STIFFNESS, Person, Recruitment, Spring
 
 LAG_S = 0.030  # of what the muscles leave of the moments
@@ -69,32 +69,32 @@ def learnt_table(person: Person, side: int, drifted: float = 0.0) -> NDArray[np.
     returns (phase, column): `PHASES` rows and the first once more; columns as in `COLUMNS`
     """
     phase = np.arange(PHASES) / PHASES
-    leg = leg_of(person.height_m, person.mass_kg)
+    leg = make_leg(person.height_m, person.mass_kg)
     angles = habit_angles(person, side, phase, drifted)
     hip_rate = hip_motion(person, phase)
     psi = belt_held(person, leg, thigh_shank_foot(angles), hip_rate)
     whole_kg = person.mass_kg + 2 * (SHANK_KG + FOOT_KG)
-    stage = staged(person, phase)
+    stage = map_phase(person, phase)
     force = habitual_force(stage, person.dimensionless_speed) * whole_kg * GRAVITY
-    arm = pressed_point(leg, psi[:, 2], pressure_centre(stage, leg.sole_m))
+    arm = pressure_point(leg, psi[:, 2], pressure_centre(stage, leg.sole_m))
     step_s = person.stride_s / PHASES
     hip = cycle_rate(hip_rate, step_s)
     moments = joint_moments(leg, psi, hip, np.hstack([force, arm]), step_s)
     expected = moments.copy()
     if person.learnt is not None:  # the commands allow for a part of the spring's moment
-        expected[:, 2] -= person.adaptation.relief * engaged_moment(person.learnt, person, psi)
-    strength = strength_of(person.mass_kg, person.style.strength[side])
+        expected[:, 2] -= person.adaptation.relief * spring_moment(person.learnt, person, psi)
+    strength = find_strength(person.mass_kg, person.style.strength[side])
     joint, joint_rate = _by_joint(psi), _by_joint(cycle_rate(psi, step_s))
     capacity = capacities(strength, joint, joint_rate)
     habit = habitual_activation(person, side, stage)
     recruitment = person.style.recruitment
     # where a muscle cannot let go in time, others act in the second pass
     rest = np.broadcast_to(recruitment.rest, habit.shape)
-    excitation, activation = _nearest(shared(expected, capacity, habit, rest, recruitment.dear), recruitment, step_s)
+    excitation, activation = _nearest(share(expected, capacity, habit, rest, recruitment.dear), recruitment, step_s)
     least = np.where(excitation > rest + AT_REST, rest, activation)
-    excitation, activation = _nearest(shared(expected, capacity, habit, least, recruitment.dear), recruitment, step_s)
+    excitation, activation = _nearest(share(expected, capacity, habit, least, recruitment.dear), recruitment, step_s)
     others = expected - np.matmul(activation[:, None], capacity)[:, 0]
-    others = _smoothed(others + LAG_S * cycle_rate(others, step_s), SMOOTH)
+    others = _smooth(others + LAG_S * cycle_rate(others, step_s), SMOOTH)
     side_angles = np.radians(angles[:, 1:3])
     place = ankle_place(leg, psi)
     rows = [psi, by_phase(psi), place, by_phase(place), force, arm, gate(stage)[:, None], excitation, others]
@@ -103,7 +103,7 @@ def learnt_table(person: Person, side: int, drifted: float = 0.0) -> NDArray[np.
     return np.ascontiguousarray(np.vstack([table, table[:1]]))
 
 
-def engaged_moment(spring: Spring, person: Person, psi: NDArray[np.float64]) -> NDArray[np.float64]:
+def spring_moment(spring: Spring, person: Person, psi: NDArray[np.float64]) -> NDArray[np.float64]:
     """Moment of a spring on the ankle [N m]; psi (phase, 3) [rad]: thigh, shank, foot."""
     return spring.moment(np.degrees(psi[:, 2] - psi[:, 1]), person.engaged_deg)
 
@@ -125,7 +125,7 @@ def _nearest(
     activation: NDArray[np.float64], recruitment: Recruitment, step_s: float
 ) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
     """Excitation and activation that come nearest to an activation which need not be possible."""
-    excitation = cycle_excitation(_smoothed(activation, TAPER), recruitment.rest, step_s)
+    excitation = cycle_excitation(_smooth(activation, TAPER), recruitment.rest, step_s)
     return excitation, cycle_activation(excitation, step_s, 3)
 
 
@@ -133,7 +133,7 @@ def _by_joint(psi: NDArray[np.float64]) -> NDArray[np.float64]:
     return np.column_stack([psi[:, 0], psi[:, 0] - psi[:, 1], psi[:, 2] - psi[:, 1]])
 
 
-def _smoothed(cycle: NDArray[np.float64], harmonics: int) -> NDArray[np.float64]:
+def _smooth(cycle: NDArray[np.float64], harmonics: int) -> NDArray[np.float64]:
     spectrum = np.fft.rfft(cycle, axis=0)
     spectrum *= np.exp(-((np.arange(len(spectrum)) / harmonics) ** 2))[:, None]
     return np.fft.irfft(spectrum, len(cycle), axis=0)
@@ -144,7 +144,7 @@ STEPS, HALVINGS = 60, 20
 NEARLY = 1e-7  # of the largest moment
 
 
-def shared(
+def share(
     wanted: NDArray[np.float64],
     capacity: NDArray[np.float64],
     habit: NDArray[np.float64],

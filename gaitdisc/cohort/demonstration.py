@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.ndimage import gaussian_filter1d
 
-from gaitdisc.cohort.cohort import the_twelve, walks_of
+from gaitdisc.cohort.cohort import make_walks, the_twelve
 from gaitdisc.cohort.marker_trial import overground, standing
 from gaitdisc.cohort.person import Person
 from gaitdisc.errors import SchemaError
@@ -50,7 +50,7 @@ def write_demonstration(
         raise SchemaError(f"laboratories are {', '.join(LABORATORIES)}", f"found {laboratory!r}", "Use one of these.")
     participants, markers = [], laboratory != "angles"
     for person in the_twelve()[:people]:
-        walks = walks_of(person, duration_s, hidden, markers)
+        walks = make_walks(person, duration_s, hidden, markers)
         write = write_marker_trial if markers else write_trial
         belt = None if laboratory == "overground" else person.speed_m_per_s
         planned = tuple(
@@ -128,7 +128,7 @@ PLANTED: dict[str, Callable[[Trial, str], Trial]] = {"stiff knee": stiff_knee, "
 FOUND_AS = {"stiff knee": "knee flexion in swing", "drop foot": "dorsiflexion in swing"}  # rule that must speak
 
 
-def planted(trial: Trial, what: str, side: str) -> Trial:
+def plant(trial: Trial, what: str, side: str) -> Trial:
     """Walk with gait planted: `stiff knee`, `drop foot`; as it is for an empty word."""
     if not what:
         return trial

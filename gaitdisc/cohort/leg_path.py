@@ -88,7 +88,7 @@ RELUCTANCE = 1.5  # power of a harmonic's order that makes it dear: swing needs 
 LEAN_DEG = {0: 0.6, 3: -0.7}
 
 
-def staged(person: Person, phase: NDArray[np.float64]) -> NDArray[np.float64]:
+def map_phase(person: Person, phase: NDArray[np.float64]) -> NDArray[np.float64]:
     """Phase of the published curves at a phase of the person's own stride.
 
     Contact stays contact; the middle of the stride comes later, by as much as puts the end of the stance where the
@@ -96,9 +96,9 @@ def staged(person: Person, phase: NDArray[np.float64]) -> NDArray[np.float64]:
 
     phase , any shape [share of a stride]: 0 at contact
 
-    >>> from gaitdisc.cohort.person import drawn
-    >>> person = drawn("W01", 1, "f")
-    >>> round(float(staged(person, np.array([person.stance]))[0]), 3) == LOADED_SHARE
+    >>> from gaitdisc.cohort.person import draw_one
+    >>> person = draw_one("W01", 1, "f")
+    >>> round(float(map_phase(person, np.array([person.stance]))[0]), 3) == LOADED_SHARE
     True
     """
     delay = 2 * (person.stance - LOADED_SHARE) / (1 - np.cos(2 * np.pi * person.stance))
@@ -108,11 +108,11 @@ def staged(person: Person, phase: NDArray[np.float64]) -> NDArray[np.float64]:
 def habit_angles(person: Person, side: int, phase: NDArray[np.float64], drifted: float = 0.0) -> NDArray[np.float64]:
     """Joint angles of a person's habit, before the belt has its say.
 
-    phase (phase,) [share of a stride]: 0 at contact; the curves follow the person's own stance (`staged`)
+    phase (phase,) [share of a stride]: 0 at contact; the curves follow the person's own stance (`map_phase`)
     drifted: how far the habit has wandered [1]
     returns (phase, joint) [deg]: in the order of `JOINTS`; hip flexion is counted from the vertical
     """
-    speed, style, phase = person.dimensionless_speed, person.style, staged(person, phase)
+    speed, style, phase = person.dimensionless_speed, person.style, map_phase(person, phase)
     curves = np.column_stack([habitual(joint, speed).at(phase) for joint in JOINTS])
     curves[:, 0] -= habitual("pelvis_tilt", speed).at(phase)
     for joint, lean in LEAN_DEG.items():
@@ -144,7 +144,7 @@ def hip_motion(person: Person, phase: NDArray[np.float64]) -> NDArray[np.float64
     phase (phase,) [share of a stride]: one whole cycle from the contact of the hip's own foot
     returns (phase, 2) [m/s]: forwards, upwards; means of zero
     """
-    phase = staged(person, phase)
+    phase = map_phase(person, phase)
     force = habitual_force(phase, person.dimensionless_speed)
     both = GRAVITY * (force + np.roll(force, len(phase) // 2, axis=0))
     spectrum = np.fft.rfft(both, axis=0)  # its periodic integral, without the mean
@@ -172,7 +172,7 @@ def belt_held(person: Person, leg: Leg, psi: NDArray[np.float64], hip_rate: NDAr
     turn = 2 * np.pi * np.outer(phase, order)
     waves = np.hstack([np.cos(turn), np.sin(turn)])
     slopes = 2 * np.pi * np.hstack([-order * np.sin(turn), order * np.cos(turn)])
-    stage = staged(person, phase)
+    stage = map_phase(person, phase)
     # 1 while the foot stands alone, falling to 0 at contact and at the toe's end: there a shoe gives and rolls
     share = (stage - 0.5 * STANCE) / (0.5 * STANCE)
     weight = np.clip((1.0 - np.abs(share)) / HELD_EDGE, 0.0, 1.0) / (person.speed_m_per_s * person.stride_s)
@@ -182,7 +182,7 @@ def belt_held(person: Person, leg: Leg, psi: NDArray[np.float64], hip_rate: NDAr
     moved, found = np.zeros(6 * CORRECTED), psi
     for _ in range(4):
         slip, rate = contact_path(leg, found, pressure) - wanted, by_phase(found)
-        lever = pressed_point(leg, found[:, 2], pressure)
+        lever = pressure_point(leg, found[:, 2], pressure)
         c, s = np.cos(found), np.sin(found)
         l1, l2 = leg.thigh_m, leg.shank_m
         along = [l1 * c[:, 0], l2 * c[:, 1], -lever[:, 1]], [l1 * s[:, 0], l2 * s[:, 1], lever[:, 0]]
@@ -205,11 +205,11 @@ def contact_path(leg: Leg, psi: NDArray[np.float64], pressure: NDArray[np.float6
     pressure (phase,) [m]: centre of pressure along the foot
     returns (phase, 2) [m]: forwards, upwards
     """
-    lever, turning = pressed_point(leg, psi[:, 2], pressure), by_phase(psi)[:, 2:]
+    lever, turning = pressure_point(leg, psi[:, 2], pressure), by_phase(psi)[:, 2:]
     return by_phase(ankle_place(leg, psi)) + turning * lever[:, ::-1] * (-1.0, 1.0)
 
 
-def pressed_point(leg: Leg, foot: NDArray[np.float64], pressure: NDArray[np.float64]) -> NDArray[np.float64]:
+def pressure_point(leg: Leg, foot: NDArray[np.float64], pressure: NDArray[np.float64]) -> NDArray[np.float64]:
     """Point under the pressure, from the ankle, in the laboratory's directions.
 
     foot (phase,) [rad]: absolute angle of the foot

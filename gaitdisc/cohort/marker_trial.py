@@ -20,9 +20,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from gaitdisc.channel import Channel
-from gaitdisc.cohort.body import Leg, ankle_place, leg_of
+from gaitdisc.cohort.body import Leg, ankle_place, make_leg
 from gaitdisc.cohort.habit import habitual
-from gaitdisc.cohort.leg_path import PHASES, hip_motion, pressed_point, pressure_centre, staged, thigh_shank_foot
+from gaitdisc.cohort.leg_path import PHASES, hip_motion, map_phase, pressure_centre, pressure_point, thigh_shank_foot
 from gaitdisc.cohort.person import Person
 from gaitdisc.cohort.walk import QUICK_HZ, SLOW_HZ, TrueWalk
 from gaitdisc.recording import Recording, Source, Surface, Trial
@@ -71,7 +71,7 @@ def belts() -> tuple[Surface, Surface]:
 def standing(person: Person) -> Trial:
     """Static trial of a person, all joints straight, at 100 Hz."""
     count = round(STANDING_S * SLOW_HZ)
-    leg = leg_of(person.height_m, person.mass_kg)
+    leg = make_leg(person.height_m, person.mass_kg)
     angles = np.zeros((count, 2, 5))
     angles[:, :, 0] = _tilt(person)
     height = leg.thigh_m + leg.shank_m + leg.ankle_m
@@ -84,7 +84,7 @@ def standing(person: Person) -> Trial:
 def marker_trial(walk: TrueWalk, name: str, condition: str) -> Trial:
     """Markers at 100 Hz, and both belts' forces and moments at 1000 Hz (`plate_1` is the right one)."""
     person = walk.person
-    leg = leg_of(person.height_m, person.mass_kg, person.foot_kg)
+    leg = make_leg(person.height_m, person.mass_kg, person.foot_kg)
     angles = walk.angles.copy()
     angles[:, :, 0] += _tilt(person)
     hips = _pelvis(walk, leg)
@@ -115,21 +115,21 @@ def _pelvis(walk: TrueWalk, leg: Leg) -> NDArray[np.float64]:
     sway = SWAY_M * np.cos(2 * np.pi * (phase - SWAY_AT))
     moved = np.column_stack([own[0] + walk.pelvis[:, 0], own[1] + walk.pelvis[:, 1], sway])
     stands = (phase > 0.15) & (phase < 0.40)
-    moved[:, 1] -= np.mean(moved[stands, 1] + _pressed(walk, leg, 0)[stands, 1])
+    moved[:, 1] -= np.mean(moved[stands, 1] + _pressure_from_hip(walk, leg, 0)[stands, 1])
     return moved
 
 
-def _pressed(walk: TrueWalk, leg: Leg, side: int) -> NDArray[np.float64]:
+def _pressure_from_hip(walk: TrueWalk, leg: Leg, side: int) -> NDArray[np.float64]:
     """Point under the pressure from the hip (time, 2), forwards and up [m]."""
     psi = thigh_shank_foot(walk.angles[:, side])
     phase = walk.phase[:: round(QUICK_HZ / SLOW_HZ)] + 0.5 * side
-    pressure = pressure_centre(staged(walk.person, phase % 1.0), leg.sole_m)
-    return ankle_place(leg, psi) + pressed_point(leg, psi[:, 2], pressure)
+    pressure = pressure_centre(map_phase(walk.person, phase % 1.0), leg.sole_m)
+    return ankle_place(leg, psi) + pressure_point(leg, psi[:, 2], pressure)
 
 
 def _segments(person: Person, leg: Leg, angles: NDArray[np.float64], hips: NDArray[np.float64]) -> Segments:
     """Origin (time, 3) and rotation (time, 3, 3) of each segment, in forwards, up, right."""
-    pelvis = np.repeat(_turned(np.array([[-_tilt(person), 0.0, 0.0]])), len(angles), axis=0)
+    pelvis = np.repeat(_rotation(np.array([[-_tilt(person), 0.0, 0.0]])), len(angles), axis=0)
     found = {"pelvis": (hips - pelvis @ _hip(person, 0.0), pelvis)}
     for column, (side, sign) in enumerate(SIDES):
         own = angles[:, column]
@@ -140,7 +140,7 @@ def _segments(person: Person, leg: Leg, angles: NDArray[np.float64], hips: NDArr
             ("shank", (-own[:, 3], flat, flat), leg.shank_m),
             ("foot", (own[:, 4], flat, flat), 0.0),
         ):
-            above = above @ _turned(np.column_stack(turns))
+            above = above @ _rotation(np.column_stack(turns))
             found[f"{part}_{side}"] = (place, above)
             place = place + above @ np.array([0.0, -length, 0.0])
     return found
@@ -152,7 +152,7 @@ def _hip(person: Person, sign: float) -> NDArray[np.float64]:
     return np.array([-0.24 * depth - 0.0099, -0.30 * width - 0.0109, sign * (0.33 * width + 0.0073)])
 
 
-def _turned(angles_deg: NDArray[np.float64]) -> NDArray[np.float64]:
+def _rotation(angles_deg: NDArray[np.float64]) -> NDArray[np.float64]:
     """Flexion about the proximal z, adduction about the floating axis, rotation about the distal y."""
     (a, b, c), (ca, cb, cc) = np.sin(np.radians(angles_deg.T)), np.cos(np.radians(angles_deg.T))
     rows = [
@@ -213,7 +213,7 @@ def _forces(walk: TrueWalk, leg: Leg, segments: Segments, rng: np.random.Generat
     pelvis, turned = segments["pelvis"]
     hips = pelvis + turned @ _hip(walk.person, 0.0)
     for column, ((side, sign), belt) in enumerate(zip(SIDES, belts(), strict=True)):
-        at = _pressed(walk, leg, column) + hips[:, :2]
+        at = _pressure_from_hip(walk, leg, column) + hips[:, :2]
         foot = segments[f"foot_{side}"][0][:, 2]
         slow = np.column_stack([at[:, 0], np.zeros(len(at)), foot]) @ TO_LABORATORY.T
         point = np.column_stack([np.interp(walk.quick_s, walk.slow_s, one) for one in slow.T])

@@ -17,16 +17,16 @@ FRAME_DEG, SWAY_DEG, SWAY_HZ = 0.15, (0.15, 0.12, 0.20, 0.15, 0.15), 8.0
 FORCE_N = 4.0
 
 
-def measured(walk: TrueWalk, name: str, condition: str, emg_late_s: float = 0.0) -> Trial:
+def measure(walk: TrueWalk, name: str, condition: str, emg_late_s: float = 0.0) -> Trial:
     """Measure a walk.
 
     emg_late_s: delay of the EMG against the rest, a fault that is hidden on request [s]
     returns: `kinematics` (10 angles, 100 Hz), `emg` (14 channels, 1000 Hz, amplified, 16 bits of +-5 V), `forces`
         (forwards and upwards under each foot, 1000 Hz)
 
-    >>> from gaitdisc.cohort.person import drawn
+    >>> from gaitdisc.cohort.person import draw_one
     >>> from gaitdisc.cohort.walk import walked
-    >>> trial = measured(walked(drawn("W01", 1, "f"), None, 4.0, seed=3), "W01_nominal", "nominal")
+    >>> trial = measure(walked(draw_one("W01", 1, "f"), None, 4.0, seed=3), "W01_nominal", "nominal")
     >>> {key: (stream.rate_hz, len(stream.names)) for key, stream in trial.streams.items()}
     {'kinematics': (100.0, 10), 'emg': (1000.0, 14), 'forces': (1000.0, 4)}
     """
@@ -105,14 +105,14 @@ def electrode_volts(
 
     moments = np.arange(len(excitation)) - round((late_s - DELAY_S) * rate_hz)
     drive = excitation[np.clip(moments, 0, len(excitation) - 1)]  # the ends are held
-    carrier = np.asarray(sosfilt(butter(2, BAND_HZ, "bandpass", fs=rate_hz, output="sos"), _drawn(rng, drive), axis=0))
+    carrier = np.asarray(sosfilt(butter(2, BAND_HZ, "bandpass", fs=rate_hz, output="sos"), _draw(rng, drive), axis=0))
     carrier /= carrier.std(axis=0)
     keep = np.exp(-1 / (UNITS_S * rate_hz))
-    share = np.asarray(lfilter([np.sqrt(1 - keep**2)], [1.0, -keep], _drawn(rng, drive), axis=0))
+    share = np.asarray(lfilter([np.sqrt(1 - keep**2)], [1.0, -keep], _draw(rng, drive), axis=0))
     carrier *= drive * np.maximum(0.1, 1.0 + UNITS * share)
     caught = np.exp(np.random.default_rng(round(person.mass_kg * 1e6)).normal(0.0, CATCH, drive.shape[1]))
     volts = VOLTS * caught * (carrier @ heard(drive.shape[1] // len(MUSCLES)).T)
-    volts += FLOOR_V * _drawn(rng, drive)
+    volts += FLOOR_V * _draw(rng, drive)
     step = RANGE_V / STEPS
     return np.clip(np.round(volts / step), -STEPS, STEPS - 1) * step
 
@@ -125,5 +125,5 @@ def heard(sides: int) -> NDArray[np.float64]:
     return np.asarray(np.kron(np.eye(sides), leg), dtype=np.float64)
 
 
-def _drawn(rng: np.random.Generator, like: NDArray[np.float64]) -> NDArray[np.float64]:
+def _draw(rng: np.random.Generator, like: NDArray[np.float64]) -> NDArray[np.float64]:
     return rng.standard_normal(like.shape)

@@ -14,9 +14,9 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from gaitdisc.cohort.body import bias, inertia, moved_by_ground, solved
+from gaitdisc.cohort.body import add_ground_force, bias, inertia, solved
 from gaitdisc.cohort.controller import COLUMNS, LAG_S
-from gaitdisc.cohort.muscles import LEAST, MOST, activated, muscle_moments
+from gaitdisc.cohort.muscles import LEAST, MOST, activate, muscle_moments
 from gaitdisc.compiled import compiled
 
 STEP_S = 0.0005
@@ -70,7 +70,7 @@ class Worn(NamedTuple):
 
 
 @compiled
-def moved(leg, strength, belt, loop, worn, tables, noise):  # noqa: PLR0912, PLR0915
+def integrate(leg, strength, belt, loop, worn, tables, noise):  # noqa: PLR0912, PLR0915
     """Integrate the walk of both legs.
 
     `tables` (2 drifts, 2 sides, phase, column), `noise` (time at 200 Hz, channel) of standard deviation 1, its last
@@ -158,7 +158,7 @@ def moved(leg, strength, belt, loop, worn, tables, noise):  # noqa: PLR0912, PLR
                     u += take * reflex[s, j]
                 u = min(MOST, max(LEAST, u))
                 excitation[s, muscle] = u
-                activation[s, muscle] = activated(u, activation[s, muscle], STEP_S)
+                activation[s, muscle] = activate(u, activation[s, muscle], STEP_S)
             joint[0], joint[1], joint[2] = psi[s, 0], psi[s, 0] - psi[s, 1], psi[s, 2] - psi[s, 1]
             muscle_moments(strength[s], activation[s], joint, joint_rate, moments)
             for j in range(3):
@@ -205,7 +205,7 @@ def moved(leg, strength, belt, loop, worn, tables, noise):  # noqa: PLR0912, PLR
             # equations of motion
             ankle = moments[2] + spring[s]
             q[0], q[1], q[2] = moments[0] + moments[1], -moments[1] - ankle, ankle + turn
-            moved_by_ground(leg, psi[s], force[s], arm, q)
+            add_ground_force(leg, psi[s], force[s], arm, q)
             hip_x = row[s, COLUMNS.hip] + pelvis_speedup[0]
             hip_y = row[s, COLUMNS.hip + 1] + pelvis_speedup[1]
             inertia(leg, psi[s], m)

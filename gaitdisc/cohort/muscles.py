@@ -69,10 +69,10 @@ class Strength(NamedTuple):
     abduction: float  # of gluteus medius [N m]
 
 
-def strength_of(mass_kg: float, strong: NDArray[np.float64] | None = None) -> Strength:
+def find_strength(mass_kg: float, strong: NDArray[np.float64] | None = None) -> Strength:
     """Muscles of a person's leg; `strong` is how strong each group is against others of that mass.
 
-    >>> strength_of(70.0).reach.shape
+    >>> find_strength(70.0).reach.shape
     (9, 3)
     """
     anatomy = [ANATOMY[name] for name in GROUPS]
@@ -90,7 +90,7 @@ def strength_of(mass_kg: float, strong: NDArray[np.float64] | None = None) -> St
 
 
 @compiled
-def activated(excitation, activation, step_s):
+def activate(excitation, activation, step_s):
     """Activation after one step of first-order dynamics, faster in rising than in falling [1]."""
     pace = RISE_S if excitation > activation else FALL_S
     return activation + (excitation - activation) * step_s / pace
@@ -143,7 +143,7 @@ def cycle_activation(excitation, step_s, turns):
         for _ in range(turns):
             for sample in range(count):
                 found[sample, muscle] = level
-                level = activated(excitation[sample, muscle], level, step_s)
+                level = activate(excitation[sample, muscle], level, step_s)
     return found
 
 

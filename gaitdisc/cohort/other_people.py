@@ -9,7 +9,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass, replace
 
-from gaitdisc.cohort.person import CADENCE, CADENCE_SPEED, GROUPS, JOINTS, Bump, Person, drawn
+from gaitdisc.cohort.person import CADENCE, CADENCE_SPEED, GROUPS, JOINTS, Bump, Person, draw_one
 from gaitdisc.errors import SchemaError
 from gaitdisc.recording.trial import LEG_OF_STATURE
 
@@ -47,9 +47,9 @@ WEAKNESS = 0.6  # of soleus and gastrocnemius, which the person's own commands d
 
 def somebody(kind: str, seed: int = 1, sex: str = "f") -> Person:
     """Somebody of one of `PEOPLE`, drawn from a seed."""
-    person = drawn(kind, seed, sex)
+    person = draw_one(kind, seed, sex)
     if kind in SIZES:
-        return _sized(person, kind)
+        return _resize(person, kind)
     if kind == WEAK:
         return replace(person, plantarflexors=WEAKNESS)
     return walking_with(person, kind)
@@ -73,7 +73,7 @@ def walking_with(person: Person, pattern: str) -> Person:
     return replace(person, style=replace(person.style, strength=strength, bumps=bumps))
 
 
-def _sized(person: Person, kind: str) -> Person:
+def _resize(person: Person, kind: str) -> Person:
     """A person of another size or speed, with the cadence that goes with both."""
     height, mass, age, faster = SIZES[kind]
     height = height or person.height_m

@@ -105,8 +105,8 @@ class Adaptation:
 class Person:
     """Somebody of the cohort.
 
-    >>> person = drawn("W01", seed=1, sex="f")
-    >>> person.learnt is None, person.adapted_to(Spring()).learnt
+    >>> person = draw_one("W01", seed=1, sex="f")
+    >>> person.learnt is None, person.adapt_to(Spring()).learnt
     (True, Spring(stiffness=5.0, slack_deg=0.0))
     """
 
@@ -130,7 +130,7 @@ class Person:
     plantarflexors: float = 1.0
     foot_kg: float = 0.0  # mass on each foot that the commands do not know of [kg]
 
-    def adapted_to(self, spring: Spring) -> Person:
+    def adapt_to(self, spring: Spring) -> Person:
         """Return the same person after practice with a spring."""
         return replace(self, learnt=spring)
 
@@ -139,7 +139,7 @@ class Person:
         nothing = Adaptation(0.0, 0 * self.adaptation.habit_deg, 0 * self.adaptation.effort)
         return replace(self, adaptation=nothing)
 
-    def relieved(self, relief: float) -> Person:
+    def relieve(self, relief: float) -> Person:
         """Return the same person, who learns another share of the spring's moment.
 
         relief: share of the spring's moment that the commands allow for, 0 to 1
@@ -152,43 +152,43 @@ class Person:
         return self.speed_m_per_s / float(np.sqrt(9.81 * LEG_OF_STATURE * self.height_m))
 
 
-def drawn(name: str, seed: int, sex: str) -> Person:
+def draw_one(name: str, seed: int, sex: str) -> Person:
     """Draw a person.
 
     Sizes follow the dissertation's twelve adults (1.69 +- 0.10 m, 66.5 +- 11.7 kg, 1.36 +- 0.11 m/s); cadence follows
     speed and leg length with the dimensionless cadence of Schwartz et al. (2008), as the square root of speed.
 
-    >>> 1.4 < drawn("W01", 7, "f").height_m < 1.9
+    >>> 1.4 < draw_one("W01", 7, "f").height_m < 1.9
     True
     """
     rng = np.random.default_rng([seed, 4])
-    height = (1.63 if sex == "f" else 1.755) + 0.065 * _held(rng)
-    mass = (22.6 if sex == "f" else 23.8) * (1 + 0.09 * _held(rng)) * height**2
-    speed = 1.36 + 0.11 * _held(rng)
+    height = (1.63 if sex == "f" else 1.755) + 0.065 * _bounded_normal(rng)
+    mass = (22.6 if sex == "f" else 23.8) * (1 + 0.09 * _bounded_normal(rng)) * height**2
+    speed = 1.36 + 0.11 * _bounded_normal(rng)
     leg = LEG_OF_STATURE * height
-    cadence = CADENCE * np.sqrt(speed / np.sqrt(9.81 * leg) / CADENCE_SPEED) * (1 + 0.02 * _held(rng))
+    cadence = CADENCE * np.sqrt(speed / np.sqrt(9.81 * leg) / CADENCE_SPEED) * (1 + 0.02 * _bounded_normal(rng))
     return Person(
         name,
         sex,
-        age_years=float(23.9 + 1.8 * _held(rng)),
+        age_years=float(23.9 + 1.8 * _bounded_normal(rng)),
         height_m=float(height),
         mass_kg=float(mass),
         speed_m_per_s=float(speed),
         stride_s=float(2 / cadence * np.sqrt(leg / 9.81)),
-        engaged_deg=float(-1.0 + 1.5 * _held(rng)),
+        engaged_deg=float(-1.0 + 1.5 * _bounded_normal(rng)),
         style=_style(rng, np.random.default_rng([seed, 15])),
         adaptation=Adaptation(
-            float(np.clip(0.40 + 0.15 * _held(rng), 0.05, 0.95)),
+            float(np.clip(0.40 + 0.15 * _bounded_normal(rng), 0.05, 0.95)),
             _waves(rng, 0.9, 0.3),
             np.clip(0.10 * rng.normal(size=len(GROUPS)), -0.25, 0.25),
         ),
         drift_deg=_waves(rng, 0.15, 0.06),
-        unrest=float(np.clip(1 + 0.15 * _held(rng), 0.7, 1.3)),
-        stance=float(STANCE + STANCE_SPREAD * _held(rng)),
+        unrest=float(np.clip(1 + 0.15 * _bounded_normal(rng), 0.7, 1.3)),
+        stance=float(STANCE + STANCE_SPREAD * _bounded_normal(rng)),
     )
 
 
-def _held(rng: np.random.Generator) -> float:
+def _bounded_normal(rng: np.random.Generator) -> float:
     """Normal number, held within two standard deviations: a cohort of nondisabled people has no outliers."""
     return float(np.clip(rng.normal(), -2.0, 2.0))
 
@@ -209,7 +209,7 @@ def _recruitment(rng: np.random.Generator) -> Recruitment:
     weight = np.exp(apart * (0.9 * rng.normal(size=shape) + 0.3 * rng.normal(size=(2, *shape))))
     width = np.clip(1 + 0.10 * rng.normal(size=len(GROUPS)), 0.75, 1.25)
     rest = PEAK * rng.uniform(0.02, 0.05, len(GROUPS))
-    cocontraction = float(np.exp(0.25 * _held(rng)))
+    cocontraction = float(np.exp(0.25 * _bounded_normal(rng)))
     dear = DEAR * np.exp(DEAR_APART * rng.normal(size=len(GROUPS)))
     return Recruitment(delay, weight, width, rest, dear, cocontraction)
 

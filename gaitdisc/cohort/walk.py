@@ -7,7 +7,7 @@ from dataclasses import dataclass, field
 import numpy as np
 from numpy.typing import NDArray
 
-from gaitdisc.cohort.body import leg_of
+from gaitdisc.cohort.body import make_leg
 from gaitdisc.cohort.controller import learnt_table
 from gaitdisc.cohort.leg_path import Belt
 from gaitdisc.cohort.motion import (
@@ -20,9 +20,9 @@ from gaitdisc.cohort.motion import (
     WANDER,
     Loop,
     Worn,
-    moved,
+    integrate,
 )
-from gaitdisc.cohort.muscles import strength_of
+from gaitdisc.cohort.muscles import find_strength
 from gaitdisc.cohort.person import FOOT_KG, GROUPS, MUSCLES, SHANK_KG, Person, Spring
 from gaitdisc.errors import StrideError
 from gaitdisc.recording.trial import LEG_OF_STATURE
@@ -44,8 +44,8 @@ DRIFT_S = 25.0
 class TrueWalk:
     """Everything that happened during a walk.
 
-    >>> from gaitdisc.cohort.person import drawn
-    >>> walk = walked(drawn("W01", 1, "f"), None, 5.0, seed=3)
+    >>> from gaitdisc.cohort.person import draw_one
+    >>> walk = walked(draw_one("W01", 1, "f"), None, 5.0, seed=3)
     >>> walk.angles.shape, walk.excitation.shape
     ((500, 2, 5), (5000, 2, 9))
     """
@@ -106,14 +106,14 @@ def walked(person: Person, device: Spring | None, duration_s: float, seed: int) 
     duration_s: length of the recording, after `WARM_UP_S` that are not kept [s]
     seed: of the variability; the same seed gives the same walk
 
-    >>> from gaitdisc.cohort.person import drawn
-    >>> walk = walked(drawn("W01", 1, "f"), Spring(5.0), 5.0, seed=3)
+    >>> from gaitdisc.cohort.person import draw_one
+    >>> walk = walked(draw_one("W01", 1, "f"), Spring(5.0), 5.0, seed=3)
     >>> bool(walk.spring.min() < -5.0)
     True
     """
     device = device or Spring(0.0)
-    leg = leg_of(person.height_m, person.mass_kg, person.foot_kg)
-    strengths = [strength_of(person.mass_kg, person.style.strength[side]) for side in (0, 1)]
+    leg = make_leg(person.height_m, person.mass_kg, person.foot_kg)
+    strengths = [find_strength(person.mass_kg, person.style.strength[side]) for side in (0, 1)]
     for strength in strengths:
         strength.reach[[MUSCLES.index("emg_gas"), MUSCLES.index("emg_sol")], 2] *= person.plantarflexors
     engaged = np.radians(person.engaged_deg + device.slack_deg)
@@ -122,14 +122,16 @@ def walked(person: Person, device: Spring | None, duration_s: float, seed: int) 
         [np.stack([learnt_table(person, side, drifted) for side in (0, 1)]) for drifted in (0.0, CHANGE_SIZE)]
     )
     noise = _noise(person, device, duration_s + WARM_UP_S, seed)
-    quick, slow, upright = moved(leg, tuple(strengths), Belt(), _loop(person), worn=worn, tables=tables, noise=noise)
+    quick, slow, upright = integrate(
+        leg, tuple(strengths), Belt(), _loop(person), worn=worn, tables=tables, noise=noise
+    )
     if not upright:
         raise StrideError(
             "the legs of a simulated walk must stay under the body",
             f"{person.name}, {device.stiffness:g} N m/deg, seed {seed}: a segment turned by more than 143 deg",
             "Draw another person, and please report the seed.",
         )
-    return _kept(person, device, seed, quick, slow)
+    return _keep_walk(person, device, seed, quick, slow)
 
 
 def _loop(person: Person) -> Loop:
@@ -181,7 +183,9 @@ def _noise(person: Person, device: Spring, duration_s: float, seed: int) -> NDAr
     return found
 
 
-def _kept(person: Person, device: Spring, seed: int, quick: NDArray[np.float64], slow: NDArray[np.float64]) -> TrueWalk:
+def _keep_walk(
+    person: Person, device: Spring, seed: int, quick: NDArray[np.float64], slow: NDArray[np.float64]
+) -> TrueWalk:
     quick, slow = quick[round(WARM_UP_S * QUICK_HZ) :], slow[round(WARM_UP_S * SLOW_HZ) :]
     psi = slow[:, 1:7].reshape(-1, 2, 3)
     hips = slow[:, 7:11].reshape(-1, 2, 2)

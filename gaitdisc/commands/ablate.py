@@ -7,7 +7,7 @@ from typing import Annotated
 import typer
 
 from gaitdisc.commands.options import Cluster, Jobs, Quiet, RunPlace, StudyPlace
-from gaitdisc.commands.run_report import claimed, report_on
+from gaitdisc.commands.run_report import claim_run, report_on
 
 
 def ablate(
@@ -24,6 +24,6 @@ def ablate(
     from gaitdisc.run.vary_study import ablate_study
     from gaitdisc.run.workers import Workers
 
-    loaded, folder = claimed(study, out)
+    loaded, folder = claim_run(study, out)
     lengths, workers = tuple(length) if length else LENGTHS_S, Workers(jobs, cluster)
     report_on(lambda progress: ablate_study(loaded, folder, lengths, part, workers, progress), loaded, folder, quiet)

@@ -32,7 +32,7 @@ def angles(
 
     from gaitdisc.ingest.c3d_kinetics import body_measures_in
     from gaitdisc.ingest.reading import read_trial, write_recording
-    from gaitdisc.kinematics.motion import moved_body, segment_angles
+    from gaitdisc.kinematics.motion import move_body, segment_angles
     from gaitdisc.own_files import claim_file
     from gaitdisc.recording.trial import BodyMeasures
 
@@ -49,7 +49,7 @@ def angles(
             measures = replace(measures, knee_width_m=knees, ankle_width_m=ankles)
         standing = stood.stream("markers") if stood is not None else None
         markers = walk.stream("markers")
-        moved = moved_body(markers, standing, marker_set or None, measures, forward, joints or None)
+        moved = move_body(markers, standing, marker_set or None, measures, forward, joints or None)
         found, made = moved.angles, moved.findings
         seen = [*(stood.findings if stood is not None else ()), *seen]
     write_recording(found, out)

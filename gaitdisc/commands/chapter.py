@@ -10,7 +10,7 @@ import typer
 from gaitdisc.commands.options import SOME_REFUSED, Quiet
 from gaitdisc.commands.run_report import stoppable_bar
 from gaitdisc.errors import LOG
-from gaitdisc.run.chapter_parts import Part, costs, parts_of
+from gaitdisc.run.chapter_parts import Part, costs, list_parts
 
 NEARLY = 0.97  # of the time that a part is expected to take, as far as the bar goes before it is done
 
@@ -26,10 +26,10 @@ def chapter(
     quiet: Quiet = False,
 ) -> None:
     """Compute a chapter's tables."""
-    from gaitdisc.run.chapter_run import lack_of, run_part
+    from gaitdisc.run.chapter_run import find_lack, run_part
 
-    parts = parts_of(number, part)
-    lacks = {one: lack_of(one, data) for one in parts}
+    parts = list_parts(number, part)
+    lacks = {one: find_lack(one, data) for one in parts}
     possible = [one for one in parts if part or lacks[one] is None]
     seconds = {one: 60 * (one.quick_minutes if quick else one.minutes) for one in possible}
     left = sum(seconds.values())

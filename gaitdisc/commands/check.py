@@ -45,12 +45,12 @@ def _inspections(what: Path) -> Iterator[Inspection]:
     from gaitdisc.ingest.c3d import C3DReader
     from gaitdisc.ingest.reading import ENDINGS
     from gaitdisc.ingest.study_file import load_study
-    from gaitdisc.processing.inspection import inspected_file, inspected_study
+    from gaitdisc.processing.inspection import inspect_file, inspect_study
 
     if not what.exists():
         raise SchemaError("the path must be a study, recording or folder", f"{what} does not exist", "Check the path.")
     if what.suffix == ".toml" or (what / "study.toml").is_file():
-        yield from inspected_study(load_study(what))
+        yield from inspect_study(load_study(what))
         return
     files = [what]
     if what.is_dir():
@@ -63,7 +63,7 @@ def _inspections(what: Path) -> Iterator[Inspection]:
             )
     with C3DReader() as reader:
         for file in files:
-            yield inspected_file(file, reader)
+            yield inspect_file(file, reader)
 
 
 def _print_inspections(seen: list[Inspection], notes: bool) -> None:

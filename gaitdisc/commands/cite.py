@@ -13,10 +13,10 @@ def cite(
     out: Annotated[Path | None, typer.Option(help="File to write, .bib; by default it is printed.")] = None,
 ) -> None:
     """Print BibTeX of this program and of the methods that the result in a folder used."""
-    from gaitdisc.run.citations import citations_of
+    from gaitdisc.run.citations import list_citations
     from gaitdisc.whole_file import write_whole
 
-    cited = citations_of(folder)
+    cited = list_citations(folder)
     text = "\n\n".join(f"% {'; '.join(one.methods)}\n{one.entry}" for one in cited) + "\n"
     if out is None:
         typer.echo(text, nl=False)

@@ -39,7 +39,7 @@ def keep_reference(place: Path | None, run_folder: Path) -> None:
         remove_file(own / PUBLISHED)
 
 
-def kept_reference(run_folder: Path) -> ClinicalReference | None:
+def load_kept_reference(run_folder: Path) -> ClinicalReference | None:
     """Reference that was copied into a run; None where none was."""
     from gaitdisc.clinic.clinical_reference import FILE, PUBLISHED, load_reference
 
@@ -75,7 +75,7 @@ def _english() -> list[str]:
     return english_words(rule_words())
 
 
-def kept_words(run_folder: Path) -> PageWords:
+def load_kept_words(run_folder: Path) -> PageWords:
     """Words of the pages of a run, English where no others were kept; and what `clinic.toml` says."""
     from gaitdisc.clinic.laboratory import ENGLISH, load_laboratory, read_words
 
@@ -106,22 +106,22 @@ def say_new_recordings(study: Study) -> None:
 def page_of_run(run: StudyRun, run_folder: Path) -> Path:
     """Page of a run with pages of its people and their index, drawn where they are not those of this very run."""
     from gaitdisc.clinic.laboratory import Laboratory, load_laboratory
-    from gaitdisc.report.saved_page import page_of
+    from gaitdisc.report.saved_page import find_page
     from gaitdisc.saved.kind import find_kind
-    from gaitdisc.saved.unit_folder import sealed_text
+    from gaitdisc.saved.unit_folder import seal_text
 
     own, place = load_laboratory(run_folder), run_folder / LABORATORY / "laboratory.json"
     if own == Laboratory():
         remove_file(place)
     else:  # so that pages of another laboratory do not stand
-        write_whole(place, sealed_text(asdict(own)))
+        write_whole(place, seal_text(asdict(own)))
 
     def drawn() -> Path:
         page = find_kind(run_folder).draw(run, run_folder)
         write_people(run, run_folder)
         return page
 
-    return page_of(run_folder, drawn)
+    return find_page(run_folder, drawn)
 
 
 def write_people(
@@ -202,7 +202,7 @@ class _Pages:
 
     def __init__(self, run: StudyRun, run_folder: Path, pdf: bool) -> None:
         self.report, self._provenance, self._pdf = run_folder / "report", run.provenance, pdf
-        self.reference, self.say = kept_reference(run_folder), kept_words(run_folder)
+        self.reference, self.say = load_kept_reference(run_folder), load_kept_words(run_folder)
 
     def write(self, person: PersonSession, name: str) -> list[Path]:
         """Write the page of a person and session as HTML and where wanted as PDF."""

@@ -58,7 +58,7 @@ def _clinic(folder: Path, jobs: int) -> None:
     """A made week of a clinic, from recordings to pages that find what was planted."""
     from gaitdisc.clinic.clinical_reference import save_reference
     from gaitdisc.clinic.demonstration import write_week
-    from gaitdisc.clinic.reference import reference_of
+    from gaitdisc.clinic.reference import make_reference
     from gaitdisc.commands.clinic_pages import keep_reference, write_people
     from gaitdisc.own_files import claim_folder
     from gaitdisc.run.run_study import run_study
@@ -72,7 +72,7 @@ def _clinic(folder: Path, jobs: int) -> None:
     controls, week, planted = write_week(folder, progress=lambda who: LOG.info(f"  {who}"))
     workers = Workers(jobs)
     own = run_study(controls, controls.folder / "run", workers)
-    save_reference(reference_of(own.cycles, own.title, own.provenance), folder / "reference")
+    save_reference(make_reference(own.cycles, own.title, own.provenance), folder / "reference")
     run_folder = week.folder / "run"
     keep_reference(folder / "reference", run_folder)
     index = write_people(run_study(week, run_folder, workers), run_folder)

@@ -71,7 +71,7 @@ def discover(  # noqa: PLR0913, PLR0917 these are the options of a command
         found: Discovery, models: Callable[[Path], list[str]], notes: Sequence[str] = (), folder: Path = out
     ) -> Discovery:
         """Write what was found together with the augmented model, and say it."""
-        with written_together():
+        with write_together():
             place = save_discovery(found, folder, models(folder))
         if draw:
             from gaitdisc.discovery.page import write_discovery_report
@@ -95,7 +95,7 @@ def discover(  # noqa: PLR0913, PLR0917 these are the options of a command
         from gaitdisc.discovery.kept_work import kept_work
         from gaitdisc.simulation.simulation_file import names_engine
         from gaitdisc.simulation.writing import write_simulation
-        from gaitdisc.whole_file import written_together
+        from gaitdisc.whole_file import write_together
 
         given = tuple(one.strip() for one in effects.split(",") if one.strip())
         with kept_work(out, say) as work:

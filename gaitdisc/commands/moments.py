@@ -24,12 +24,12 @@ def moments(
     """Joint moments [N m/kg] and powers [W/kg], internal; frames without a known load of the foot are empty."""
     from gaitdisc.ingest.c3d_kinetics import body_measures_in
     from gaitdisc.ingest.reading import read_trial, write_recording
-    from gaitdisc.kinematics.motion import moved_body
+    from gaitdisc.kinematics.motion import move_body
     from gaitdisc.kinetics.body_inertia import Person
     from gaitdisc.kinetics.joint_moments import KineticsSettings
     from gaitdisc.kinetics.trial_kinetics import trial_kinetics
     from gaitdisc.own_files import claim_file
-    from gaitdisc.processing.markers_to_moments import foot_paths_of
+    from gaitdisc.processing.markers_to_moments import find_foot_paths
     from gaitdisc.processing.side_checks import check_weight, standing_weight_n
 
     claim_file(out)
@@ -38,9 +38,9 @@ def moments(
     weighed_n = standing_weight_n(stood)
     person = Person(measures.mass_kg if mass is None else mass, sex, measures.height_m, weighed_n)
     weighed = check_weight(weighed_n, person.kg, static.name)
-    moved = moved_body(walk.stream("markers"), standing, marker_set or None, measures)
+    moved = move_body(walk.stream("markers"), standing, marker_set or None, measures)
     settings = KineticsSettings(force_cutoff_hz=force_hz)
-    found = trial_kinetics(walk, moved.poses, foot_paths_of(moved), person, settings)
+    found = trial_kinetics(walk, moved.poses, find_foot_paths(moved), person, settings)
     write_recording(found.moments, out)
     for finding in dict.fromkeys((*stood.findings, *weighed, *walk.findings, *moved.findings, *found.findings)):
         typer.echo(finding.line())

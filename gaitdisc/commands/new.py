@@ -37,13 +37,13 @@ def new(
     if is_model(recordings):
         _write_mapping(out, recordings, degrees)
         return
-    from gaitdisc.ingest.new_study import found_study
+    from gaitdisc.ingest.new_study import draft_study
     from gaitdisc.ingest.study_file import write_study
     from gaitdisc.words import counted
 
     file = out / "study.toml"
     claim_file(file)
-    draft, notes = found_study(recordings, out)
+    draft, notes = draft_study(recordings, out)
     write_study(draft, file)
     for note in notes:
         typer.echo(f"  {note}")
@@ -74,12 +74,12 @@ def _write_mapping(file: Path, model: Path, degrees: bool) -> None:
 
 
 def _write_tracked(file: Path, model: Path, loads: Path | None, forces: Path | None, actuators: Path | None) -> None:
-    from gaitdisc.engines.tracked_files import drafted_tracked
+    from gaitdisc.engines.tracked_files import draft_tracked
     from gaitdisc.engines.tracked_mapping import write_tracked_mapping
     from gaitdisc.words import counted
 
     _claim_mapping(file, model)
-    tracked, engine = drafted_tracked(model, loads, forces, actuators)
+    tracked, engine = draft_tracked(model, loads, forces, actuators)
     write_tracked_mapping(tracked, file)
     given = f"forces of {counted(len(engine.actuators), 'actuator')}" if tracked.forces else "no forces of muscles"
     typer.echo(

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from gaitdisc.commands.options import Jobs
-from gaitdisc.commands.run_report import claimed
+from gaitdisc.commands.run_report import claim_run
 from gaitdisc.errors import SchemaError
 
 if TYPE_CHECKING:
@@ -23,13 +23,13 @@ def reference(
 ) -> None:
     """Process controls like a study, and save the mean cycles of their legs for `--reference`."""
     from gaitdisc.clinic.clinical_reference import FILE, save_reference
-    from gaitdisc.clinic.like_controls import described, groups_of
-    from gaitdisc.clinic.reference import FEWEST, reference_of
+    from gaitdisc.clinic.like_controls import described, list_groups
+    from gaitdisc.clinic.reference import FEWEST, make_reference
     from gaitdisc.own_files import claim_folder
     from gaitdisc.processing.pooled_cycles import CYCLES
 
     claim_folder(out, FILE)
-    run = _run_of(controls, jobs)
+    run = _find_run(controls, jobs)
     cycles = tuple(one for one in run.of(CYCLES) if not group or one.group == group)
     if not cycles:
         groups = ", ".join(sorted({one.group or "no group" for one in run.of(CYCLES)})) or "no cycles"
@@ -38,18 +38,18 @@ def reference(
             f"{controls} has {groups}",
             "Name a group of the study, or record walks of several trials.",
         )
-    found = reference_of(cycles, run.title, run.provenance)
+    found = make_reference(cycles, run.title, run.provenance)
     path = save_reference(found, out)
     for word in found.legs:
         count = found.people(word)
         few = f"; fewer than {FEWEST}: bands are drawn, but no deviation is reported" if count < FEWEST else ""
         typer.echo(f"  {word}: {count} people, {len(found.of(word))} legs{few}")
-        for own in groups_of(found.of(word)):
+        for own in list_groups(found.of(word)):
             typer.echo(f"    group: {described(own)}")
     typer.echo(f"reference: {path}")
 
 
-def _run_of(controls: Path, jobs: int) -> StudyRun:
+def _find_run(controls: Path, jobs: int) -> StudyRun:
     """Run of a folder, or of a study, which is computed as far as it is not."""
     from gaitdisc.saved.study_run import StudyRun, load_run_as
 
@@ -58,5 +58,5 @@ def _run_of(controls: Path, jobs: int) -> StudyRun:
     from gaitdisc.run.run_study import run_study
     from gaitdisc.run.workers import Workers
 
-    study, folder = claimed(controls, None)
+    study, folder = claim_run(controls, None)
     return run_study(study, folder, Workers(jobs))

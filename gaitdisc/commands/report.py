@@ -80,9 +80,9 @@ def _people(
         )
     if person:
         for page in write_person(run, run_folder, person, (before, after) if before else (), pdf):
-            _said(page)
+            _say(page)
     elif pdf:
-        typer.echo(f"people: {write_people(run, run_folder, pdf, _said)}")
+        typer.echo(f"people: {write_people(run, run_folder, pdf, _say)}")
     else:
         typer.echo(f"report: {page_of_run(run, run_folder)}")
         for word, page in draw_beside(RUN, run_folder).items():
@@ -91,5 +91,5 @@ def _people(
             typer.echo(f"people: {run_folder / 'report' / 'index.html'}")
 
 
-def _said(page: Path) -> None:
+def _say(page: Path) -> None:
     typer.echo(f"page: {page}")

@@ -9,7 +9,7 @@ import typer
 
 from gaitdisc.commands.clinic_pages import keep_reference
 from gaitdisc.commands.options import Cluster, Jobs, Quiet, RunPlace, StudyPlace
-from gaitdisc.commands.run_report import claimed, report_on
+from gaitdisc.commands.run_report import claim_run, report_on
 
 
 def run(
@@ -25,7 +25,7 @@ def run(
     from gaitdisc.run.run_study import run_study
     from gaitdisc.run.workers import Workers
 
-    loaded, folder = claimed(study, out)
+    loaded, folder = claim_run(study, out)
     if participant:
         chosen = tuple(loaded.participant(name) for name in participant)
         loaded = loaded.model_copy(update={"participants": chosen})

@@ -25,7 +25,7 @@ if TYPE_CHECKING:
 Result = TypeVar("Result")
 
 
-def claimed(place: Path, out: Path | None) -> tuple[Study, Path]:
+def claim_run(place: Path, out: Path | None) -> tuple[Study, Path]:
     """A study and the folder of its run, which is held until the command ends."""
     from gaitdisc.ingest.study_file import load_study
     from gaitdisc.saved.study_run import claim_run
@@ -39,7 +39,7 @@ def claimed(place: Path, out: Path | None) -> tuple[Study, Path]:
 def report_on(work: Callable[[StudyProgress], ResponseRun], study: Study, folder: Path, quiet: bool) -> None:
     """Do the work with its progress shown, draw the report, and say who was refused."""
     started = time.perf_counter()
-    done = worked(work, [person.id for person in study.participants], quiet)
+    done = work_with_bar(work, [person.id for person in study.participants], quiet)
     say_renewed(done.renewed)
     say_new_recordings(study)
     page = page_of_run(done, folder)
@@ -64,11 +64,11 @@ def vary(place: Path, out: Path | None, question: str, jobs: int, cluster: str, 
     from gaitdisc.run.vary_study import vary_study
     from gaitdisc.run.workers import Workers
 
-    study, folder = claimed(place, out)
+    study, folder = claim_run(place, out)
     started, side_by_side = time.perf_counter(), Workers(jobs, cluster)
     claim_file(folder / question / "report.html")
     people = [person.id for person in study.participants]
-    done = worked(lambda progress: vary_study(study, folder, question, side_by_side, progress), people, quiet)
+    done = work_with_bar(lambda progress: vary_study(study, folder, question, side_by_side, progress), people, quiet)
     say_renewed(done.renewed)
     page = write_variants(done, folder / question)
     for sentence in variant_sentences(done):
@@ -82,7 +82,7 @@ def say_renewed(renewed: Sequence[str]) -> None:
         LOG.info(f"not used, computed again: {line}")
 
 
-def worked(work: Callable[[StudyProgress], Result], people: list[str], quiet: bool) -> Result:
+def work_with_bar(work: Callable[[StudyProgress], Result], people: list[str], quiet: bool) -> Result:
     """Do the work, with a bar that counts participants unless it shall be quiet."""
     shares = dict.fromkeys(people, 0.0)
     with stoppable_bar(quiet) as bar:

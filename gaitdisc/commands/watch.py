@@ -10,7 +10,7 @@ import typer
 from gaitdisc.commands.options import REFUSED, STOPPED, Jobs, Overwrite, Quiet
 from gaitdisc.commands.run import run
 from gaitdisc.errors import LOG, GaitdiscError, ReadError
-from gaitdisc.own_files import guarded
+from gaitdisc.own_files import guard
 
 if TYPE_CHECKING:
     from gaitdisc.ingest.new_study import Looked
@@ -44,11 +44,11 @@ def watch(
             if not files:
                 continue
             try:
-                notes = _grown(file, recordings, files, looked)
+                notes = _grow_study(file, recordings, files, looked)
                 for note in (one for one in notes if one not in said):
                     typer.echo(f"  {note}")
                 said.update(notes)
-                with guarded("gaitdisc run", [file, *(recordings / one for one in files)], overwrite):
+                with guard("gaitdisc run", [file, *(recordings / one for one in files)], overwrite):
                     run(file, out=None, participant=None, jobs=jobs, cluster="", reference=reference, quiet=quiet)
                 code = 0
             except typer.Exit as ended:
@@ -63,17 +63,17 @@ def watch(
     raise typer.Exit(code)
 
 
-def _grown(file: Path, recordings: Path, files: list[Path], looked: Looked) -> list[str]:
+def _grow_study(file: Path, recordings: Path, files: list[Path], looked: Looked) -> list[str]:
     """Write the study with what came; what cannot be read yet is not in it, and said in the notes."""
-    from gaitdisc.ingest.new_study import found_study
-    from gaitdisc.ingest.study_file import grown_study, load_study, write_study
+    from gaitdisc.ingest.new_study import draft_study
+    from gaitdisc.ingest.study_file import grow_study, load_study, write_study
 
-    draft, notes = found_study(recordings, file.parent, files, looked)
+    draft, notes = draft_study(recordings, file.parent, files, looked)
     if not file.is_file():
         write_study(draft, file)
         return notes
     study = load_study(file)
-    grown = grown_study(study, draft)
+    grown = grow_study(study, draft)
     if grown != study:
         write_study(grown, file)
     return [note for note in notes if note.startswith("left out")]

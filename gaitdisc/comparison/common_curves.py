@@ -13,7 +13,7 @@ from gaitdisc.comparison.mismatch import Alignment
 from gaitdisc.errors import ChannelError
 from gaitdisc.processing.pooled_cycles import WalkSummary
 from gaitdisc.recording import Finding
-from gaitdisc.recording.wrapping import turn_of
+from gaitdisc.recording.wrapping import find_turn
 
 LEAST_KEPT = 0.5  # of a walk's strides: a channel that would cost more is left out
 SPOILED = ("frozen", "clipped", "dead")  # kinds of findings: what is left of the channel does not move as the joint did
@@ -44,7 +44,7 @@ def common_curves(walks: Sequence[WalkSummary], wanted: Sequence[str] = ()) -> C
     frozen, clipped or dead (unless they are requested). The foot with fewer strides decides how many are used of both.
     """
     findings: list[Finding] = []
-    shared = _shared(walks, wanted, findings)
+    shared = _list_shared(walks, wanted, findings)
     spoiled = {f.channel: f.kind for walk in walks for f in walk.findings if f.kind in SPOILED and f.severity != "note"}
     named = [f"{c.name} ({spoiled[c.name]})" for c in shared if c.name in spoiled and not wanted]
     if named:
@@ -76,7 +76,7 @@ def common_curves(walks: Sequence[WalkSummary], wanted: Sequence[str] = ()) -> C
     return CommonCurves(tuple(shared), tuple(curves), tuple(findings))
 
 
-def _shared(walks: Sequence[WalkSummary], wanted: Sequence[str], findings: list[Finding]) -> list[Channel]:
+def _list_shared(walks: Sequence[WalkSummary], wanted: Sequence[str], findings: list[Finding]) -> list[Channel]:
     units = [{channel.name: channel.unit for channel in walk.channels} for walk in walks]
     everywhere = [name for name in units[0] if all(name in unit for unit in units)]
     for name in wanted:
@@ -114,7 +114,7 @@ def _whole_strides(walks: Sequence[WalkSummary], channel: Channel) -> list[NDArr
     for walk in walks:
         curves = walk.curves[:, :, [one.name for one in walk.channels].index(channel.name)]
         parts.append(curves[np.isfinite(curves).all(axis=1)])
-    turn = turn_of(channel)
+    turn = find_turn(channel)
     if turn is None or not len(parts[0]):
         return parts
     middle = parts[0].mean()
@@ -183,19 +183,19 @@ def common_shift(first: NDArray[np.float64], second: NDArray[np.float64]) -> Ali
 
     >>> percent = np.arange(101.0)
     >>> wave = np.stack([np.sin(2 * np.pi * k * percent / 100 + k) for k in (1, 2, 3)], axis=1)
-    >>> found = common_shift(shifted(wave, -7.0), wave + [0.0, 5.0, -2.0])
+    >>> found = common_shift(shift_curves(wave, -7.0), wave + [0.0, 5.0, -2.0])
     >>> round(found.percent, 1), found.applied, found.agreeing
     (7.0, True, 3)
     """
     count = first.shape[1]
     shifts = np.arange(-MOST_SHIFT, MOST_SHIFT + 1.0)
-    gains = np.array([_correlation(shifted(first, shift), second).mean() for shift in shifts])
+    gains = np.array([_correlation(shift_curves(first, shift), second).mean() for shift in shifts])
     at = int(np.argmax(gains))
     if at in (0, len(shifts) - 1) or count < FEWEST_CHANNELS:
         return Alignment(0.0, False, 0, count)
     before, peak, after = gains[at - 1 : at + 2]  # a parabola through them
     percent = round(float(shifts[at] + 0.5 * (before - after) / min(before - 2 * peak + after, -1e-12)), 1)
-    moved = shifted(first, percent)
+    moved = shift_curves(first, percent)
     left = (moved - second)[:-1].std(axis=0) / np.maximum((first - second)[:-1].std(axis=0), 1e-12)
     gain = float(_correlation(moved, second).mean()) - gains[MOST_SHIFT]
     agreeing = int(np.sum(left < 1.0))
@@ -208,7 +208,7 @@ def common_shift(first: NDArray[np.float64], second: NDArray[np.float64]) -> Ali
     return Alignment(percent, applied, agreeing, count, largest.tolist())
 
 
-def shifted(curves: NDArray[np.float64], percent: float) -> NDArray[np.float64]:
+def shift_curves(curves: NDArray[np.float64], percent: float) -> NDArray[np.float64]:
     """Curves (phase, ...) on 101 points moved later by percent of the closed stride, linearly between points."""
     places = (np.arange(100.0) - percent) % 100.0
     low = np.floor(places).astype(int) % 100
@@ -217,9 +217,9 @@ def shifted(curves: NDArray[np.float64], percent: float) -> NDArray[np.float64]:
     return np.concatenate([moved, moved[:1]])
 
 
-def aligned(walks: Sequence[NDArray[np.float64]], percent: float) -> list[NDArray[np.float64]]:
+def align(walks: Sequence[NDArray[np.float64]], percent: float) -> list[NDArray[np.float64]]:
     """Strides of walks, each complete (stride, phase, channel), moved later by percent of the stride."""
-    return [np.moveaxis(shifted(np.moveaxis(curves, 1, 0), percent), 0, 1) for curves in walks]
+    return [np.moveaxis(shift_curves(np.moveaxis(curves, 1, 0), percent), 0, 1) for curves in walks]
 
 
 def _correlation(first: NDArray[np.float64], second: NDArray[np.float64]) -> NDArray[np.float64]:

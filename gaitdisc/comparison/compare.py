@@ -10,12 +10,12 @@ import pandas as pd
 from numpy.typing import NDArray
 
 from gaitdisc.channel import Channel
-from gaitdisc.comparison.common_curves import CommonCurves, aligned, common_curves, common_shift, walk_name
+from gaitdisc.comparison.common_curves import CommonCurves, align, common_curves, common_shift, walk_name
 from gaitdisc.comparison.mismatch import CHANNEL_COLUMNS, REGION_COLUMNS, Alignment, Exchange, Mismatch, Smallest
 from gaitdisc.errors import ComparisonError
 from gaitdisc.processing.pooled_cycles import WalkSummary
 from gaitdisc.recording import PERCENT
-from gaitdisc.saved.provenance import made_now
+from gaitdisc.saved.provenance import provenance_now
 from gaitdisc.statistics.cluster_test import (
     FEWEST_IN_EACH,
     FEWEST_IN_ONE,
@@ -92,7 +92,7 @@ def compare_walks(
     one, other = common.curves
     alignment = common_shift(one.mean(axis=0), other.mean(axis=0))
     if alignment.applied:
-        [one] = aligned([one], alignment.percent)
+        [one] = align([one], alignment.percent)
     as_curve = len(one) < FEWEST_IN_EACH
     fewest = FEWEST_IN_ONE if as_curve else FEWEST_IN_EACH
     if len(other) < fewest:
@@ -146,7 +146,7 @@ def compare_people(
     curves = [list(common.curves[k::2]) for k in (0, 1)]
     alignment = common_shift(*(np.mean([own.mean(axis=0) for own in part], axis=0) for part in curves))
     if alignment.applied:
-        curves[0] = aligned(curves[0], alignment.percent)
+        curves[0] = align(curves[0], alignment.percent)
     means = [np.array([own.mean(axis=0) for own in part]) for part in curves]
     test = one_sample_test(means[1] - means[0], plan)
     before, after = (
@@ -232,7 +232,7 @@ def _mismatch(
         summary=_summary(common.channels, compared),
         exchange=exchange,
         findings=tuple(sorted(kept, key=lambda finding: finding.rank)),
-        provenance=made_now(asdict(plan) | limits, plan.seed, files, SECTION),
+        provenance=provenance_now(asdict(plan) | limits, plan.seed, files, SECTION),
         alignment=compared.alignment,
     )
 

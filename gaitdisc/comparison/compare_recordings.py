@@ -12,9 +12,9 @@ from gaitdisc.errors import SchemaError
 from gaitdisc.ingest.public_words import PublicWords, package_words
 from gaitdisc.ingest.reading import read_trial
 from gaitdisc.ingest.study import Study
-from gaitdisc.ingest.trial_sets import not_compared, refused_participant
+from gaitdisc.ingest.trial_sets import not_compared, why_refused
 from gaitdisc.processing.pooled_cycles import WalkSummary
-from gaitdisc.processing.processed_walks import processed_walks
+from gaitdisc.processing.processed_walks import process_walks
 from gaitdisc.processing.walk_pair import COMPARED, walk_pair
 from gaitdisc.recording import Finding
 from gaitdisc.signals.butterworth import KINEMATICS_HZ
@@ -43,7 +43,7 @@ def compare_files(
     trials = []
     for path, name in zip((first, second), names, strict=True):
         trial = replace(public, files={path.name: name}).trial(replace(read_trial(path), name=name))
-        trials.append(public.known_channels(trial, COMPARED))
+        trials.append(public.keep_known_channels(trial, COMPARED))
     walks = walk_pair(trials[0], trials[1], cutoff_hz, detector)
     if walks[0].files and set(walks[0].files.values()) == set(walks[1].files.values()):
         raise SchemaError(
@@ -66,7 +66,7 @@ def compare_study(
     """
     settings = study.public_settings({"filters", "strides", "conditions"})
     if participant:
-        walks = _walks_of(study, participant)
+        walks = _pick_walks(study, participant)
         if isinstance(walks, str):
             raise SchemaError(
                 f"both walks of {participant} must be usable for a comparison",
@@ -76,7 +76,7 @@ def compare_study(
         return _with_settings(compare_walks(walks[0], walks[1], channels, smallest=smallest), settings)
     pairs, left_out = [], []
     for person in study.participants:
-        walks = _walks_of(study, person.id)
+        walks = _pick_walks(study, person.id)
         if isinstance(walks, str):
             left_out.append(Finding("refused", "left out", person.id, walks, "this participant's part"))
         else:
@@ -86,14 +86,14 @@ def compare_study(
     return _with_settings(replace(mismatch, findings=(*left_out, *mismatch.findings)), settings)
 
 
-def _walks_of(study: Study, participant: str) -> tuple[WalkSummary, WalkSummary] | str:
+def _pick_walks(study: Study, participant: str) -> tuple[WalkSummary, WalkSummary] | str:
     """Nominal and device walk, or why there are none."""
     person = study.participant(participant)
     nominal, device = study.conditions.both
-    lacking = refused_participant(study, person) or not_compared(study, person)
+    lacking = why_refused(study, person) or not_compared(study, person)
     if lacking:
         return lacking
-    walks, refusals = processed_walks(study, person)
+    walks, refusals = process_walks(study, person)
     if refusals:
         return "; ".join(f"{refusal.condition}: {refusal.reason}" for refusal in refusals)
     return walks[nominal].summary(), walks[device].summary()

@@ -16,7 +16,7 @@ from gaitdisc.recording import PERCENT, Finding
 from gaitdisc.recording.arrays import read_only
 from gaitdisc.saved.kind import CSV, Kind, Saved, check_columns
 from gaitdisc.saved.provenance import Provenance
-from gaitdisc.words import html_of
+from gaitdisc.words import as_html
 
 AGAIN = "Compare the walks again: `gaitdisc compare`."
 CURVES = ("first", "second", "sd_first", "sd_second", "gap", "low", "high", "t")
@@ -159,7 +159,7 @@ class Mismatch(Saved, file="mismatch.json"):
         rows += [
             (f"RMS gap of {channel.name}", f"{self.rmse[channel.name]:.3g} {channel.unit}") for channel in self.channels
         ]
-        return html_of("Mismatch", [*rows, ("regions beyond chance", str(len(self.regions)))])
+        return as_html("Mismatch", [*rows, ("regions beyond chance", str(len(self.regions)))])
 
     def __repr__(self) -> str:
         return f"Mismatch({self.second} minus {self.first}: {len(self.names)} channels, {len(self.regions)} regions)"

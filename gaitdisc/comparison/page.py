@@ -9,14 +9,14 @@ from typing import TYPE_CHECKING, Any
 
 import pandas as pd
 
-from gaitdisc.channel import side_of
+from gaitdisc.channel import find_side
 from gaitdisc.comparison.mismatch import Mismatch
 from gaitdisc.comparison.sentences import method_sentences, mismatch_sentences, smallest_p_sentence
 from gaitdisc.processing.curves_figure import sides_together
 from gaitdisc.report.figure import Figure, save_figures
 from gaitdisc.report.page import write_page
 from gaitdisc.report.panels import SIDES, WITHOUT_DEVICE, Room, in_style, legend, panels_for, sheets
-from gaitdisc.report.table import Table, provenance_tables, save_table, save_tables, seen_table
+from gaitdisc.report.table import Table, provenance_tables, save_table, save_tables, tabulate_findings
 from gaitdisc.words import NONE, amount, counted, label, p_cell, plain, spoken, unit_text, upwards, with_unit
 
 if TYPE_CHECKING:
@@ -58,11 +58,11 @@ def _figure(mismatch: Mismatch, names: list[str], name: str, kind: str, draw: Dr
     said = []
     for axes, channel in zip(cells, names, strict=True):
         curves, regions = numbers[numbers["channel"] == channel], mismatch.regions_of(channel)
-        draw(axes, curves, regions, SIDES[side_of(channel)].colour)
+        draw(axes, curves, regions, SIDES[find_side(channel)].colour)
         spans = ", ".join(f"{row['from_percent']:.0f}-{row['to_percent']:.0f} %" for row in regions)
         largest = f"{spoken(channel)} {curves['gap'].iloc[int(curves['gap'].abs().argmax())]:.3g}"
         said.append(f"{largest}, differs at {spans}" if spans else f"{largest}, no significant gap")
-        axes.set_title(label(channel), color=SIDES[side_of(channel)].colour, fontsize=7.6)
+        axes.set_title(label(channel), color=SIDES[find_side(channel)].colour, fontsize=7.6)
         up = upwards(channel)
         unit = unit_text(str(curves["unit"].iloc[0]))
         axes.set_ylabel(f"[{unit}]" + (f" ↑ {up}" if up and len(up) < 22 else ""), fontsize=6.8, labelpad=1)
@@ -175,7 +175,7 @@ def channels_table(mismatch: Mismatch) -> Table:
         (
             spoken(str(row["channel"])),
             "yes" if row["differs"] else "too small" if row["too_small"] else "no",
-            _signed(float(row["largest_gap"]), str(row["unit"])),
+            _sign_number(float(row["largest_gap"]), str(row["unit"])),
             f"{row['at_percent']:.0f}",
             amount(float(row["rms_gap"])),
             amount(float(row["rms_sd"])),
@@ -184,7 +184,7 @@ def channels_table(mismatch: Mismatch) -> Table:
             amount(float(row["visible"])),
             f"{row['shift_percent']:+.0f}" if row["shift_percent"] else "0",
             amount(float(row["rms_shifted"])),
-            _signed(float(row["offset"]), str(row["unit"])),
+            _sign_number(float(row["offset"]), str(row["unit"])),
             amount(float(row["shape"])),
             amount(float(row["limit"])),
             other,
@@ -207,9 +207,9 @@ def channels_table(mismatch: Mismatch) -> Table:
     return Table("channels", caption, headings, rows, mismatch.summary)
 
 
-def findings_of(mismatch: Mismatch) -> Table:
+def sort_findings(mismatch: Mismatch) -> Table:
     """What was seen on the way, the severest first."""
-    return seen_table(mismatch.findings, f"Findings in both walks, n = {len(mismatch.findings)}.")
+    return tabulate_findings(mismatch.findings, f"Findings in both walks, n = {len(mismatch.findings)}.")
 
 
 def mismatch_text(mismatch: Mismatch) -> rich.table.Table:
@@ -233,7 +233,7 @@ def _rows(mismatch: Mismatch, name: str) -> list[tuple[str, ...]]:
         (
             spoken(name),
             f"{row['from_percent']:.0f} to {row['to_percent']:.0f}" if regions else NONE,
-            _signed(float(row["gap" if regions else "largest_gap"]), str(row["unit"])),
+            _sign_number(float(row["gap" if regions else "largest_gap"]), str(row["unit"])),
             f"{row['at_percent']:.0f}",
             amount(abs(row["gap_sd"])) if math.isfinite(row["gap_sd"]) else NONE,
             p_cell(float(row["p"])),
@@ -242,7 +242,7 @@ def _rows(mismatch: Mismatch, name: str) -> list[tuple[str, ...]]:
     ]
 
 
-def _signed(gap: float, unit: str) -> str:
+def _sign_number(gap: float, unit: str) -> str:
     return with_unit(f"{'−' if gap < 0 else '+'}{amount(abs(gap))}", unit)
 
 
@@ -251,7 +251,7 @@ def write_mismatch_report(mismatch: Mismatch, folder: Path) -> Path:
     tables = {
         "regions": regions_table(mismatch),
         "channels": channels_table(mismatch),
-        "findings": findings_of(mismatch),
+        "findings": sort_findings(mismatch),
         **provenance_tables(mismatch.provenance),
     }
     save_tables(tables.values(), folder)

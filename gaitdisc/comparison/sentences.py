@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 
 from gaitdisc.comparison.mismatch import Exchange, Mismatch
-from gaitdisc.words import amount, counted, direction_words, listed, number, p_words, region_words, spoken, with_unit
+from gaitdisc.words import amount, counted, direction_words, listing, number, p_words, region_words, spoken, with_unit
 
 MOST_NAMED = 3
 MOST_LISTED = 8
@@ -25,7 +25,7 @@ def mismatch_sentences(mismatch: Mismatch) -> list[str]:
     if unseen:
         bounds, sure = _by_unit(mismatch, unseen, "within"), f"{100 * (1 - done.alpha):g} %"
         agreeing.append(
-            f"No significant gap in {_shortened(unseen)}: with {sure} confidence they agree to within {bounds} at "
+            f"No significant gap in {_shorten(unseen)}: with {sure} confidence they agree to within {bounds} at "
             f"every point."
         )
     if not ordered and not small:
@@ -42,7 +42,7 @@ def mismatch_sentences(mismatch: Mismatch) -> list[str]:
     if not ordered:
         return [
             f"No difference exceeds the smallest one that is named: {walks} differ significantly in "
-            f"{_shortened(small)}, but by less than {_by_unit(mismatch, small, 'limit')} at every such point.",
+            f"{_shorten(small)}, but by less than {_by_unit(mismatch, small, 'limit')} at every such point.",
             *moved,
             *agreeing,
         ]
@@ -52,12 +52,12 @@ def mismatch_sentences(mismatch: Mismatch) -> list[str]:
     sentences += [_gap(mismatch, name, further=True) for name in ordered[1:MOST_NAMED]]
     if len(ordered) > MOST_NAMED:
         more = len(ordered) - MOST_NAMED
-        others = _shortened(ordered[MOST_NAMED:])
+        others = _shorten(ordered[MOST_NAMED:])
         sentences.append(f"{counted(more, 'further channel')} {'differs' if more == 1 else 'differ'} too: {others}.")
     sentences += [timing] if (timing := _timing(mismatch, ordered[0])) else []
     if small:
         less = _by_unit(mismatch, small, "limit")
-        sentences.append(f"Significant, but less than {less} and not named: {_shortened(small)}.")
+        sentences.append(f"Significant, but less than {less} and not named: {_shorten(small)}.")
     return [*sentences, *agreeing]
 
 
@@ -158,10 +158,10 @@ def _blocks(done: Exchange, counts: str) -> str:
     return f", in {counts} blocks{done.unit.removeprefix('block')} because successive strides are correlated,"
 
 
-def _shortened(names: list[str]) -> str:
+def _shorten(names: list[str]) -> str:
     words = [spoken(name) for name in names]
     if len(words) <= MOST_LISTED + 1:
-        return listed(words)
+        return listing(words)
     return f"{', '.join(words[:MOST_LISTED])} and {len(words) - MOST_LISTED} more"
 
 
@@ -199,4 +199,4 @@ def _by_unit(mismatch: Mismatch, names: list[str], column: str, smallest: bool =
         if smallest and len(of_unit) > 1:
             text = f"{ends[0][0]} ({ends[0][1]}) to {text} ({ends[1][1]})"
         parts.append(text)
-    return listed(parts)
+    return listing(parts)

@@ -13,23 +13,23 @@ from gaitdisc.discovery.case import Case
 from gaitdisc.discovery.criteria import CRITERIA
 from gaitdisc.discovery.decision import Verdict
 from gaitdisc.discovery.effect_words import amount, spoken, with_unit
-from gaitdisc.discovery.estimates import NORMAL_95, estimates_of
+from gaitdisc.discovery.estimates import NORMAL_95, list_estimates
 from gaitdisc.discovery.held_out import (
     Proof,
     Trial,
     compare_runs,
-    drawn_runs,
     gap_size,
     grows_along_runs,
-    proof_of,
-    runs_of,
+    prove,
+    run_trials,
+    tabulate_runs,
 )
 from gaitdisc.discovery.influence import nearly_off
 from gaitdisc.discovery.odd_trials import KIND as ODD_TRIAL
 from gaitdisc.discovery.result import Correction, Discovery, Estimate, Explanation, FoundEffect, GapSize, Whereabouts
 from gaitdisc.discovery.scored_model import ScoredModel
 from gaitdisc.discovery.search import Search
-from gaitdisc.discovery.wording import sentence_of
+from gaitdisc.discovery.wording import write_sentence
 from gaitdisc.recording import Finding
 from gaitdisc.recording.arrays import Values
 from gaitdisc.simulation.evaluating import Points, evaluate
@@ -69,16 +69,16 @@ def answer(
     now, base = verdict.found, case.search.base
     channels = tuple(name for name, _ in base.observations)
     floor, proof = case.noise_floor(now.noise.size), verdict.proof
-    before, after = (runs_of(case, one, case.learned, now) for one in (as_read, now))
+    before, after = (run_trials(case, one, case.learned, now) for one in (as_read, now))
     train = gap_size(before, after, floor, channels, compare_runs(case, before, after, now))
-    held = proof if proof and now.model.parts else proof_of(case, as_read, now, now)
+    held = proof if proof and now.model.parts else prove(case, as_read, now, now)
     of = f"trial {', '.join(case.measured.trials[one] for one in case.held_out)}"
     held_out = replace(gap_size(held.before, held.after, floor, channels, (proof or held).test), of=of)
     gained = bic_gain(case.search, now)
-    rivals = rivals_of(case.search, now, verdict.rivals, gained)
+    rivals = weigh_rivals(case.search, now, verdict.rivals, gained)
     stated = replace(verdict, found=replace(now, model=refitted(now)))
-    parts, moved = stated.found.model.parts, corrections_of(stated.found.model, base)
-    effects = effects_of(case, stated, 1 - held_out.unexplained, gained)
+    parts, moved = stated.found.model.parts, list_corrections(stated.found.model, base)
+    effects = list_effects(case, stated, 1 - held_out.unexplained, gained)
     if verdict.given:
         effects = tuple(replace(one, small=idle) for one, idle in zip(effects, verdict.given, strict=True))
     named = (Explanation(effects, held_out, *first_run(case, held.after, held_out)),) if effects else ()
@@ -89,7 +89,7 @@ def answer(
         where=whereabouts(case, stated, train) if effects or not agrees else (),
         effects=effects,
         rivals=(
-            *(reported_rival(case, one) for one in rivals if one.part.candidate.label not in now.labels),
+            *(report_rival(case, one) for one in rivals if one.part.candidate.label not in now.labels),
             *(
                 FoundEffect(one.candidate.kind, one.candidate.place, one.candidate.name, one.term, small=True)
                 for one in verdict.small  # that close too little of the gap to be named
@@ -99,16 +99,16 @@ def answer(
         held_out=held_out,
         channels=channels,
         units=tuple(unit_of_channel(base, name) for name in channels),
-        runs=drawn_runs(case, held.before, held.after),
+        runs=tabulate_runs(case, held.before, held.after),
         findings=(*case.measured.findings, *nearly_off(effects, case.measured.source), *exact_inputs(case, now)),
         corrections=moved,
         explanations=(*named, *list_explanations(case, verdict, held, held_out, rivals))[:MOST_EXPLANATIONS],
         given=("proven" if held.bears_out and not all(verdict.given) else "refuted") if verdict.given else "",
     )
-    augmented = augmented_of(corrected(base, moved), parts).with_starts(
+    augmented = augment_with(corrected(base, moved), parts).with_starts(
         {name: float(f"{start.value:.6g}") for name, start in verdict.starts.items()}
     )
-    said = sentence_of(discovery, base, parts)
+    said = write_sentence(discovery, base, parts)
     return replace(said, sentence=" ".join([said.sentence, *left_out(case.measured.findings)])), augmented
 
 
@@ -117,7 +117,7 @@ def left_out(findings: tuple[Finding, ...]) -> list[str]:
     return [f"{one.what[0].upper()}{one.what[1:]}; it was left out." for one in findings if one.kind == ODD_TRIAL]
 
 
-def effects_of(case: Case, verdict: Verdict, closed: float, gained: float) -> tuple[FoundEffect, ...]:
+def list_effects(case: Case, verdict: Verdict, closed: float, gained: float) -> tuple[FoundEffect, ...]:
     """List what was found: a random push, wrong starts, or the explanations that were selected."""
     if verdict.process_noise:
         place = verdict.process_noise.place
@@ -138,14 +138,14 @@ def effects_of(case: Case, verdict: Verdict, closed: float, gained: float) -> tu
     return tuple(found)
 
 
-def augmented_of(base: Simulation, parts: tuple[Part, ...]) -> Simulation:
+def augment_with(base: Simulation, parts: tuple[Part, ...]) -> Simulation:
     """Return a simulation with explanations in it, their numbers written in."""
     for part in parts:
         base = part.candidate.written(base, part.written)
     return base
 
 
-def reported_rival(case: Case, rival: Rival, part: int = -1) -> FoundEffect:
+def report_rival(case: Case, rival: Rival, part: int = -1) -> FoundEffect:
     """Say one of a rival's explanations, the last by default, with its numbers."""
     number = part % len(rival.scored.model.parts)
     return replace(_effect(case, rival.scored, number), term="", states={}, bic=rival.gained, tied=rival.tied)
@@ -154,7 +154,7 @@ def reported_rival(case: Case, rival: Rival, part: int = -1) -> FoundEffect:
 def _effect(case: Case, now: ScoredModel, number: int) -> FoundEffect:
     """Return one of a model's explanations with its numbers."""
     part, base = now.model.parts[number], case.search.base
-    one, estimates = part.candidate, estimates_of(now.model, number, base)
+    one, estimates = part.candidate, list_estimates(now.model, number, base)
     bounds, states = file_bounds(base, one), one.states_at(part.written)
     return FoundEffect(one.kind, one.place, one.name, part.term, estimates, bounds=bounds, states=states)
 
@@ -164,7 +164,7 @@ def bic_gain(search: Search, now: ScoredModel) -> float:
     return search.with_others(now, ()).bic - now.bic if now.model.parts else 0.0
 
 
-def rivals_of(search: Search, now: ScoredModel, found: tuple[ScoredModel, ...], gained: float) -> tuple[Rival, ...]:
+def weigh_rivals(search: Search, now: ScoredModel, found: tuple[ScoredModel, ...], gained: float) -> tuple[Rival, ...]:
     """Weigh other explanations against an answer: alone, and in the place of each that the answer is made of.
 
     now: the simulation with what was found; without any explanation, rivals keep the criterion that they were found
@@ -202,8 +202,8 @@ def list_explanations(
     found: list[tuple[float, Explanation]] = []
     floor = np.array([floor for _, _, floor in size.channels.values()])
     for one in rivals:
-        after = runs_of(case, one.scored, case.held_out, verdict.found)
-        effects = tuple(reported_rival(case, one, number) for number in range(len(one.scored.model.parts)))
+        after = run_trials(case, one.scored, case.held_out, verdict.found)
+        effects = tuple(report_rival(case, one, number) for number in range(len(one.scored.model.parts)))
         test = compare_runs(case, held.before, after, verdict.found)
         left = gap_size(held.before, after, floor, tuple(size.channels), test)
         explanation = Explanation(effects, replace(left, of=size.of), *first_run(case, after, size))
@@ -234,8 +234,8 @@ def whereabouts(case: Case, verdict: Verdict, train: GapSize) -> tuple[Whereabou
             part.candidate.kind,
             part.candidate.place,
             share / len(now.model.parts),
-            phase_of(case, now, part),
-            region_of(part),
+            find_phase(case, now, part),
+            find_region(part),
         )
         for part in now.model.parts
     )
@@ -258,7 +258,7 @@ def push_along(case: Case, now: ScoredModel, part: Part) -> Values | None:
     return np.abs([evaluate(now.model.simulation, term, run) for run in runs])
 
 
-def phase_of(case: Case, now: ScoredModel, part: Part) -> tuple[float, ...]:
+def find_phase(case: Case, now: ScoredModel, part: Part) -> tuple[float, ...]:
     """Return the part of the stride in which an effect is at least half as strong as at its strongest."""
     names = [one.name for one in case.search.base.inputs]
     push = push_along(case, now, part) if "phase" in names else None
@@ -290,7 +290,7 @@ def exact_inputs(case: Case, now: ScoredModel) -> tuple[Finding, ...]:
     return tuple(found)
 
 
-def region_of(part: Part) -> str:
+def find_region(part: Part) -> str:
     """Say in which states an effect acts."""
     candidate = part.candidate
     if candidate.name == "one_sided_spring":
@@ -301,7 +301,7 @@ def region_of(part: Part) -> str:
     return ""
 
 
-def corrections_of(model: CandidateModel, base: Simulation) -> tuple[Correction, ...]:
+def list_corrections(model: CandidateModel, base: Simulation) -> tuple[Correction, ...]:
     """List the numbers that were fitted within their bounds and moved, each with its 95 % interval inside these."""
     prior, free = model.fit.prior, model.fit.free
     error = np.sqrt(np.diag(model.fit.covariance))

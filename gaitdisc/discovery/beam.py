@@ -14,7 +14,7 @@ from dataclasses import dataclass, field, replace
 
 import numpy as np
 
-from gaitdisc.discovery.candidate import Identity, unnamed_terms
+from gaitdisc.discovery.candidate import Identity, list_unnamed_terms
 from gaitdisc.discovery.candidate_model import Explanations, Part, fit_model
 from gaitdisc.discovery.case import Case
 from gaitdisc.discovery.criteria import CRITERIA
@@ -69,11 +69,11 @@ class Beam:
         self.known[begin.model.explanations] = begin
         if begin is not self.as_read:
             for one in far:
-                self._extended([one])
+                self._extend([one])
         most = min(MOST, max(1, len(begin.errors) // 3))
         beam = [begin]
         for _ in range(len(begin.model.explanations), most):
-            longer = self._extended(beam)
+            longer = self._extend(beam)
             if not longer:
                 break
             least = min(one.gap for one in beam)
@@ -87,7 +87,7 @@ class Beam:
                 break
         return self.best
 
-    def _extended(self, beam: list[CrossValidated]) -> list[CrossValidated]:
+    def _extend(self, beam: list[CrossValidated]) -> list[CrossValidated]:
         """Fit the most promising sets of one explanation more; those that are known already stand beside them."""
         size = len(beam[0].model.explanations) + 1
         found = {key: one for key, one in self.known.items() if len(key) == size and np.isfinite(one.gap)}
@@ -208,7 +208,7 @@ def closing_most(case: Case, also: tuple[tuple[Part, ...], ...]) -> Outcome | No
     also: sets that another search found, weighed beside those that are found here
     """
     search, scale = case.search, case.scale
-    search = replace(search, candidates=(*search.candidates, *unnamed_terms(search.base, search.places)))
+    search = replace(search, candidates=(*search.candidates, *list_unnamed_terms(search.base, search.places)))
     as_read = near_runs(case)
     if scale.agrees(as_read.model.fit) or not as_read.gap:
         return None
@@ -240,7 +240,7 @@ def near_runs(case: Case) -> CrossValidated:
     period = min(case.rhythm.period, case.rhythm.duration / 2) * case.rhythm.rate
     samples, scale, tried = case.longest, case.scale, []
     while True:
-        shooting = case.learned_runs(samples)
+        shooting = case.cut_learned_runs(samples)
         plain = shooting.with_noise(white_noise(scale.spread))  # as if it erred by the whole spread of the channels
         enough, starts = CONVERGED * shooting.seen.size, case.guess.starts(shooting.segments)
         begun = fit_model(plain, case.search.base, (), starts, TURNS, enough)
@@ -260,10 +260,10 @@ def on_longer_runs(case: Case, now: CrossValidated) -> CrossValidated | None:
     while samples < longest:
         before, samples = found or now, min(2 * samples, longest)
         guess = guess.with_run(before.shooting.segments, before.model.fit.states)
-        shooting = replace(case.learned_runs(samples), past=guess.states)
-        shooting = shooting.with_noise(scale.error_of(before.model.fit))
+        shooting = replace(case.cut_learned_runs(samples), past=guess.states)
+        shooting = shooting.with_noise(scale.white_error(before.model.fit))
         starts = guess.starts(shooting.segments)
-        begun = before.model.refitted(shooting, starts=starts, turns=TURNS)
+        begun = before.model.refit(shooting, starts=starts, turns=TURNS)
         longer = cross_validated(scale, ScoredModel(begun, shooting), begun.parts)
         if not scale.relative(longer.model.fit) < CRITERIA.near:
             break
@@ -273,8 +273,8 @@ def on_longer_runs(case: Case, now: CrossValidated) -> CrossValidated | None:
 
 def as_read_on(scale: GapScale, as_read: CrossValidated, longer: CrossValidated) -> CrossValidated:
     """Run the simulation as read over the runs of what was found; an error beyond the spread counts as the spread."""
-    shooting = longer.shooting.with_noise(scale.error_of(as_read.model.fit))
-    model = as_read.model.refitted(shooting, starts=longer.model.fit.starts, turns=TURNS)
+    shooting = longer.shooting.with_noise(scale.white_error(as_read.model.fit))
+    model = as_read.model.refit(shooting, starts=longer.model.fit.starts, turns=TURNS)
     most = CRITERIA.lost * (scale.spread / scale.size) ** 2
     square = np.fmin((model.fit.residual / scale.size) ** 2, most)  # the greater where a run has failed
     mean = float(square[shooting.known].mean())

@@ -10,7 +10,7 @@ from dataclasses import dataclass, field
 from gaitdisc.discovery.catalogue import Shape, with_names
 from gaitdisc.discovery.criteria import CRITERIA
 from gaitdisc.discovery.places import Place, kinematic_rates
-from gaitdisc.simulation.expression import Tree, parsed, substituted, written
+from gaitdisc.simulation.expression import Tree, parse, substitute, written
 from gaitdisc.simulation.parts import Parameter, State, Term
 from gaitdisc.simulation.running import compile_simulation
 from gaitdisc.simulation.simulation import Simulation
@@ -130,9 +130,9 @@ class Candidate:
             return simulation.with_input(self.place, form.format(s=self.place, **numbers))
         seen = dict(simulation.observations)[self.place]
         if self.name == "sensor_lag":
-            whole = {"seen": _written_out(simulation, seen, {})}
-            late = parsed(f"delay(seen, {numbers['seconds']})")
-            seen = written(substituted(late, whole, simulation.signals))
+            whole = {"seen": _write_out(simulation, seen, {})}
+            late = parse(f"delay(seen, {numbers['seconds']})")
+            seen = written(substitute(late, whole, simulation.signals))
         return simulation.with_observation(self.place, form.format(s=seen, **numbers))
 
     @property
@@ -201,15 +201,15 @@ class Candidate:
         return {slot: self.place if self.verdict == "wrong_parameter" else f"{tag}_{slot}" for slot in self.slots}
 
 
-def _written_out(simulation: Simulation, expression: str, known: Mapping[str, Tree]) -> Tree:
+def _write_out(simulation: Simulation, expression: str, known: Mapping[str, Tree]) -> Tree:
     """An expression with the definitions that stand in it written out, and with what is known of other names."""
     by = {**known}
     for name, text in simulation.definitions:
-        by[name] = substituted(parsed(text), by, simulation.signals)
-    return substituted(parsed(expression), by, simulation.signals)
+        by[name] = substitute(parse(text), by, simulation.signals)
+    return substitute(parse(expression), by, simulation.signals)
 
 
-def candidates_of(
+def list_candidates(
     simulation: Simulation, places: tuple[Place, ...], shapes: tuple[Shape, ...]
 ) -> tuple[Candidate, ...]:
     """List everything that could explain a gap, missing physics beside wrong numbers, inputs and sensors."""
@@ -222,7 +222,7 @@ def candidates_of(
             "wrong_parameter",
             means="a wrong number",
             value=parameter.value,
-            bounds=bounds_of(parameter),
+            bounds=find_bounds(parameter),
         )
         for parameter in simulation.parameters
     ]
@@ -232,7 +232,9 @@ def candidates_of(
             found += [Candidate("input_error", "input", name, error) for error in ("input_delay", *scaled)]
     if isinstance(simulation, Simulation):
         found += [
-            _lagged(simulation, each.name) for each in simulation.driving if _occurs(each.name, used) and not each.wraps
+            _lag_input(simulation, each.name)
+            for each in simulation.driving
+            if _occurs(each.name, used) and not each.wraps
         ]
     for name, _ in simulation.observations:
         found += [
@@ -269,7 +271,7 @@ def candidates_of(
     return tuple(found)
 
 
-def _lagged(simulation: Simulation, name: str) -> Candidate:
+def _lag_input(simulation: Simulation, name: str) -> Candidate:
     """An input that acts through a first-order lag."""
     own = free_name(f"{name}_lagged", {*simulation.signals})
     states, names = {own: f"({name} - {own})/_seconds"}, {"seconds": "time_constant"}
@@ -299,7 +301,7 @@ def free_name(name: str, taken: Collection[str]) -> str:
     return next(one for one in numbered if one not in taken)
 
 
-def bounds_of(parameter: Parameter) -> tuple[float, ...]:
+def find_bounds(parameter: Parameter) -> tuple[float, ...]:
     """Return a parameter's `low` and `high`, or nothing where it has not both."""
     low, high = parameter.low, parameter.high
     return (low, high) if low is not None and high is not None and low < high else ()
@@ -337,17 +339,17 @@ def _occurs(name: str, text: str) -> bool:
     return re.search(rf"\b{re.escape(name)}\b", text) is not None
 
 
-def unnamed(place: Place, pieces: tuple[str, ...], role: str) -> Candidate:
+def no_shape(place: Place, pieces: tuple[str, ...], role: str) -> Candidate:
     """Return a term that no shape is; role: what stands for x in it."""
     return Candidate("missing_physics", place.kind, place.name, UNNAMED, pieces, role=role, means=UNNAMED_MEANS)
 
 
-def unnamed_terms(simulation: Simulation, places: tuple[Place, ...]) -> tuple[Candidate, ...]:
+def list_unnamed_terms(simulation: Simulation, places: tuple[Place, ...]) -> tuple[Candidate, ...]:
     """List plain terms that no shape is: an input, a state times an input, the acceleration of another body."""
     rate_of = kinematic_rates(simulation, compile_simulation(simulation))
     inputs = [one.name for one in simulation.driving if one.name != "phase"]
     return tuple(
-        unnamed(place, (term,), place.motions[0][0])
+        no_shape(place, (term,), place.motions[0][0])
         for place in places
         for term in _terms(simulation, place, inputs, rate_of)
     )
@@ -361,5 +363,5 @@ def _terms(simulation: Simulation, place: Place, inputs: list[str], rate_of: dic
     if rate and isinstance(simulation, Simulation):
         for other, speed in rate_of.items():
             if other != own:
-                nothing = {port.name: parsed("0") for port in simulation.ports}
-                yield written(_written_out(simulation, dict(simulation.equations)[speed], nothing))
+                nothing = {port.name: parse("0") for port in simulation.ports}
+                yield written(_write_out(simulation, dict(simulation.equations)[speed], nothing))

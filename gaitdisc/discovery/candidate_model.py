@@ -8,7 +8,7 @@ import numpy as np
 
 from gaitdisc.discovery.candidate import Candidate, Identity
 from gaitdisc.discovery.first_states import with_own_states
-from gaitdisc.discovery.fitted import Fitted, prior_of
+from gaitdisc.discovery.fitted import Fitted, read_prior
 from gaitdisc.discovery.shooting import ENOUGH, TURNS, Shooting
 from gaitdisc.recording.arrays import Values
 from gaitdisc.simulation.compiled_simulation import Compiled
@@ -71,7 +71,7 @@ class CandidateModel:
         """Information criterion (BIC): misfit plus log(N) for each number fitted; the smaller the better."""
         return self.fit.misfit + self.size * float(np.log(self.fit.white.size))
 
-    def refitted(
+    def refit(
         self,
         shooting: Shooting,
         parts: tuple[Part, ...] | None = None,
@@ -130,7 +130,7 @@ def fit_model(
     like: whose numbers with bounds the fit begins with; the file's where absent
     """
     simulation, names = with_parts(base, parts)
-    prior = prior_of(base, frozenset(part.candidate.place for part in parts if part.candidate.kind == "parameter"))
+    prior = read_prior(base, frozenset(part.candidate.place for part in parts if part.candidate.kind == "parameter"))
     machine = compile_simulation(simulation)
     values = machine.defaults.copy()
     if like:

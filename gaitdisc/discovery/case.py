@@ -7,23 +7,23 @@ from functools import cached_property, partial
 
 import numpy as np
 
-from gaitdisc.discovery.candidate import candidates_of
+from gaitdisc.discovery.candidate import list_candidates
 from gaitdisc.discovery.candidate_model import CandidateModel, fit_model
-from gaitdisc.discovery.catalogue import ALL, Request, known_shapes
+from gaitdisc.discovery.catalogue import ALL, Request, read_shapes
 from gaitdisc.discovery.criteria import CRITERIA
-from gaitdisc.discovery.estimated_filter import record_filter_of
+from gaitdisc.discovery.estimated_filter import find_record_filter
 from gaitdisc.discovery.first_states import StateGuess, guess_states
 from gaitdisc.discovery.gap_share import GapScale
-from gaitdisc.discovery.grids import Rhythm, rhythm_of
+from gaitdisc.discovery.grids import Rhythm, find_rhythm
 from gaitdisc.discovery.influence import Idle, idle_parts, refuse_idle
 from gaitdisc.discovery.input_errors import with_constant_errors
 from gaitdisc.discovery.linearised import linearise, linearise_along
-from gaitdisc.discovery.matched import matched
+from gaitdisc.discovery.matched import match_channels
 from gaitdisc.discovery.noise import sensor_noise, white_noise
-from gaitdisc.discovery.places import kinematic_rates, places_of
+from gaitdisc.discovery.places import kinematic_rates, list_places
 from gaitdisc.discovery.record_filter import RecordFilter
 from gaitdisc.discovery.result import ALPHA
-from gaitdisc.discovery.scored_model import ScoredModel, leaves, scored
+from gaitdisc.discovery.scored_model import ScoredModel, leaves, score
 from gaitdisc.discovery.search import Search
 from gaitdisc.discovery.segments import Segments, cut_segments
 from gaitdisc.discovery.shooting import Shooting
@@ -128,7 +128,7 @@ class Case:
         """Samples of the longest run that every learned trial holds."""
         return int(min(self.measured.drive.samples[trial] for trial in self.learned))
 
-    def learned_runs(self, samples: int) -> Shooting:
+    def cut_learned_runs(self, samples: int) -> Shooting:
         """Return the learned trials cut into runs, ready to be fitted."""
         return self.shooting(self.segments(self.learned, samples / self.rhythm.samples))
 
@@ -143,10 +143,10 @@ class Case:
         begun = fit_model(first, self.search.base, (), self.guess.starts(first.segments))
         guess = self.guess.with_run(first.segments, begun.fit.states)
         shooting = self.shooting(self.segments(self.learned, periods).spread(MOST_SEARCHED))
-        model = begun.refitted(shooting, starts=guess.starts(shooting.segments))
+        model = begun.refit(shooting, starts=guess.starts(shooting.segments))
         if not np.isfinite(model.fit.misfit):  # short runs leave hidden states open, and a long one may end with these
             model = fit_model(shooting, self.search.base, (), self.guess.starts(shooting.segments))
-        return scored(shooting.with_past(model.fit.states), model)
+        return score(shooting.with_past(model.fit.states), model)
 
     def predictable_periods(self) -> float:
         """Return how long a run may be, in periods, before a change of its start has grown by `growth`."""
@@ -161,12 +161,12 @@ class Case:
         """Whether runs were cut at a whole period, and not earlier, as chaos demands."""
         return now.shooting.segments.span >= WHOLE_PERIOD * self.rhythm.samples
 
-    def fitted_over(self, shooting: Shooting, now: ScoredModel) -> CandidateModel:
+    def fit_over(self, shooting: Shooting, now: ScoredModel) -> CandidateModel:
         """Fit a model to other runs, which begin along its own."""
         starts = self.guess.with_run(now.shooting.segments, now.model.fit.states).starts(shooting.segments)
-        return now.model.refitted(shooting, starts=starts)
+        return now.model.refit(shooting, starts=starts)
 
-    def lengthened(self, now: ScoredModel, most: int = 10**9) -> ScoredModel:
+    def lengthen(self, now: ScoredModel, most: int = 10**9) -> ScoredModel:
         """Return a model fitted to runs as long as it can follow.
 
         most: longest run wanted [samples]
@@ -174,11 +174,11 @@ class Case:
         longest = min(most, self.longest - 2 * now.shooting.segments.margin)
         followed = np.sqrt(1 + (CRITERIA.follows**2 - 1) / self.record_filter.gains**2)
         while now.shooting.segments.span * 2 < longest:
-            shooting = self.learned_runs(min(LENGTHENED * now.shooting.segments.span, longest))
-            longer = self.fitted_over(shooting.with_noise(now.noise), now)
+            shooting = self.cut_learned_runs(min(LENGTHENED * now.shooting.segments.span, longest))
+            longer = self.fit_over(shooting.with_noise(now.noise), now)
             if not np.isfinite(longer.fit.misfit):
                 break
-            longer = replace(scored(shooting.with_past(longer.fit.states), longer), gained=now.gained)
+            longer = replace(score(shooting.with_past(longer.fit.states), longer), gained=now.gained)
             if (longer.noise.size > followed * now.noise.size).any() or not self.search.sensible(longer.model):
                 break
             fit = longer.model.fit
@@ -196,19 +196,19 @@ def set_up_case(simulation: Simulation, measured: Measured, request: Request = A
 
     measured: its trials; of four, one is held out, of one, the last quarter of its time
     """
-    simulation = with_constant_errors(matched(simulation, measured, request.shapes))
+    simulation = with_constant_errors(match_channels(simulation, measured, request.shapes))
     if len(measured.trials) == 1:
         measured = split_in_time(measured)
     machine = compile_simulation(simulation)
-    rate_of, places = kinematic_rates(simulation, machine), places_of(simulation, machine)
-    rhythm = rhythm_of(measured.observed, measured.drive.rate)
-    listed = candidates_of(simulation, places, (*known_shapes(), *request.shapes))
+    rate_of, places = kinematic_rates(simulation, machine), list_places(simulation, machine)
+    rhythm = find_rhythm(measured.observed, measured.drive.rate)
+    listed = list_candidates(simulation, places, (*read_shapes(), *request.shapes))
     considered = tuple(filter(request.possible, (*listed, *request.added)))
     search = Search(simulation, places, considered, rhythm, request.progress)
     trials = len(measured.drive.samples)
     held = max(round(trials / 4), 1)
     guess = guess_states(simulation, measured, rhythm.period, rate_of)
-    passed, findings = record_filter_of(simulation, measured, rhythm.period, guess)
+    passed, findings = find_record_filter(simulation, measured, rhythm.period, guess)
     measured = replace(measured, findings=(*measured.findings, *findings))
     learned, held_out = tuple(range(trials - held)), tuple(range(trials - held, trials))
     case = Case(search, measured, learned, held_out, guess, passed, alpha=request.alpha)

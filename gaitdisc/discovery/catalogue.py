@@ -15,8 +15,8 @@ from gaitdisc.discovery.result import ALPHA
 from gaitdisc.errors import ReadError, SchemaError, SimulationError
 from gaitdisc.regular_file import check_regular
 from gaitdisc.simulation.expression import names as names_in
-from gaitdisc.simulation.expression import parsed
-from gaitdisc.toml_text import parsed_toml
+from gaitdisc.simulation.expression import parse
+from gaitdisc.toml_text import parse_toml
 
 if TYPE_CHECKING:
     from gaitdisc.discovery.candidate import Candidate
@@ -127,14 +127,14 @@ def with_names(expression: str, names: Mapping[str, str]) -> str:
 
 
 @cache
-def known_shapes() -> tuple[Shape, ...]:
+def read_shapes() -> tuple[Shape, ...]:
     """Return the shapes that come with the package.
 
-    >>> "coulomb_friction" in {shape.name for shape in known_shapes()}
+    >>> "coulomb_friction" in {shape.name for shape in read_shapes()}
     True
     """
     text = (files("gaitdisc") / "discovery" / "catalogue.toml").read_text(encoding="utf-8")
-    return _shapes(parsed_toml(text), "catalogue.toml")
+    return _shapes(parse_toml(text), "catalogue.toml")
 
 
 def read_catalogue(path: Path | str) -> tuple[Shape, ...]:
@@ -149,7 +149,7 @@ def read_catalogue(path: Path | str) -> tuple[Shape, ...]:
     path = Path(path)
     try:
         check_regular(path, LARGEST_CATALOGUE_BYTES)
-        content = parsed_toml(path.read_text(encoding="utf-8"))
+        content = parse_toml(path.read_text(encoding="utf-8"))
     except ReadError:
         raise
     except (OSError, ValueError) as error:
@@ -217,7 +217,7 @@ def _shape(entry: Any, where: str) -> Shape:
 
 def _check_piece(piece: str, known: tuple[str, ...], where: str) -> None:
     try:
-        written = set(names_in(parsed(piece)))
+        written = set(names_in(parse(piece)))
     except SimulationError as error:
         found = f"{where}, piece {piece[:60]!r}: {error.found}"
         raise SchemaError("pieces must be expressions as in a simulation file", found, error.remedy) from error

@@ -29,12 +29,12 @@ from gaitdisc.processing.muscle_moment import (
     Form,
     MuscleMoment,
     Sums,
-    bounded,
     cycle,
-    model_of,
+    make_model,
     parts_of_stride,
+    solve_ridge,
     solved,
-    sums_of,
+    sum_pieces,
     tied,
     usual_angle,
 )
@@ -90,7 +90,7 @@ class Changed:
     rival_leaves: float  # squared error beside the rival, of that beside the change
 
 
-def changed_moment(model: MuscleMoment, nominal: Walk, device: Walk, changes: Sequence[Change]) -> Changed | None:
+def find_change(model: MuscleMoment, nominal: Walk, device: Walk, changes: Sequence[Change]) -> Changed | None:
     """Return the change that explains both walks best.
 
     None where strides left out do not bear it out, or its interval holds that nothing changed.
@@ -104,28 +104,28 @@ def changed_moment(model: MuscleMoment, nominal: Walk, device: Walk, changes: Se
     held = 1 - both.held_out(best, value) / both.held_out(nothing, 0.0)
     if held < CLOSES:
         return None
-    found, number, draws = _drawn_anew(both, best, value, DRAWS)
-    errors = [float(np.std(draws)), _doubted(model.form, nominal, device, best, value)]
+    found, number, draws = _draw_anew(both, best, value, DRAWS)
+    errors = [float(np.std(draws)), _doubt_number(model.form, nominal, device, best, value)]
     if len(best.values) > 1 and not best.columns(device.driven, value).shape[1]:  # known to a step of the finer grid
         errors.append((FINER[1] - FINER[0]) * abs(best.values[1] - best.values[0]) / np.sqrt(12))
     spread = float(np.linalg.norm(errors))
     if abs(number - best.neutral) < NORMAL_95 * spread:
         return None
-    changed = model_of(model.form, found, model.gains.shape[0], model.left_nm, model.before_nm)
+    changed = make_model(model.form, found, model.gains.shape[0], model.left_nm, model.before_nm)
     return Changed(best, changed, number, spread, held, rival=rival, rival_leaves=rival_left / left)
 
 
-def _doubted(form: Form, nominal: Walk, device: Walk, change: Change, about: float) -> float:
+def _doubt_number(form: Form, nominal: Walk, device: Walk, change: Change, about: float) -> float:
     """Standard deviation of a number by what nobody measured: the muscles' form, and the device walk's usual stride."""
     both = _Both.of(form, nominal, device)
-    number = _drawn_anew(both, change, about, 0)[1]
+    number = _draw_anew(both, change, about, 0)[1]
     others = [
         [_Both.of(replace(form, fastest=pace * form.fastest), nominal, device) for pace in SPEEDS],
         [_Both.of(replace(form, lag_s=more * form.lag_s), nominal, device) for more in LAGS],
         [replace(both, respect=more * both.respect) for more in RESPECTS],
         [replace(both, own=replace(form, usual=form.usual + shift)) for shift in shifts_of_usual()],
     ]
-    moved = [[_drawn_anew(one, change, about, 0)[1] - number for one in each] for each in others]
+    moved = [[_draw_anew(one, change, about, 0)[1] - number for one in each] for each in others]
     return float(np.linalg.norm([np.sqrt(np.mean(np.square(one))) for one in moved]))
 
 
@@ -152,7 +152,7 @@ class _Both:
     @classmethod
     def of(cls, form: Form, nominal: Walk, device: Walk) -> _Both:
         """Sum up the strides of the Nominal walk."""
-        own = sums_of(form.columns(nominal.driven), nominal.moment, nominal.stride, int(nominal.stride.max()) + 1)
+        own = sum_pieces(form.columns(nominal.driven), nominal.moment, nominal.stride, int(nominal.stride.max()) + 1)
         count = int(device.stride.max()) + 1
         return cls(form, own, device, (np.arange(count) < LEARNED * count).astype(float), form)
 
@@ -161,7 +161,7 @@ class _Both:
         driven = self.device.driven
         more = change.columns(driven, value)
         columns = np.hstack([self.own.columns(change.driven(driven, value)), more])
-        mine = sums_of(columns, self.device.moment, self.device.stride, len(self.learned))
+        mine = sum_pieces(columns, self.device.moment, self.device.stride, len(self.learned))
         wide = more.shape[1]
         squares = np.pad(self.nominal.squares, ((0, 0), (0, wide), (0, wide)))
         return Sums(squares, np.pad(self.nominal.match, ((0, 0), (0, wide))), self.nominal.power), mine
@@ -187,7 +187,7 @@ class _Both:
         return float((1 - self.learned) @ sums[1].left(self.found(sums, self.once)[0]))
 
 
-def _drawn_anew(both: _Both, change: Change, about: float, draws: int) -> tuple[Values, float, list[float]]:
+def _draw_anew(both: _Both, change: Change, about: float, draws: int) -> tuple[Values, float, list[float]]:
     """The coefficients, the number of a change, and that number from blocks of strides drawn anew."""
     step = change.values[1] - change.values[0] if len(change.values) > 1 else 0.0
     values = about + step * (FINER if step else np.zeros(1))
@@ -200,7 +200,7 @@ def _drawn_anew(both: _Both, change: Change, about: float, draws: int) -> tuple[
         return tried[at][0], float(tried[at][0][-1]) if linear else float(values[at])
 
     found, number = best(both.once)
-    return found, number, [best(weights)[1] for weights in drawn_blocks(both.once)[:draws]]
+    return found, number, [best(weights)[1] for weights in draw_blocks(both.once)[:draws]]
 
 
 def together(walks: Iterable[Sums], weights: Iterable[Values]) -> Sums:
@@ -209,7 +209,7 @@ def together(walks: Iterable[Sums], weights: Iterable[Values]) -> Sums:
     return Sums(*(a + b for a, b in zip(*parts, strict=True)))
 
 
-def drawn_blocks(once: Sequence[Values]) -> list[list[Values]]:
+def draw_blocks(once: Sequence[Values]) -> list[list[Values]]:
     """How often each stride of each walk is drawn, blocks of neighbours together; `DRAWS` times (Efron 1979)."""
     rng, blocks = np.random.default_rng(0), [np.arange(len(one)) // BLOCK for one in once]
     counts = [block[-1] + 1 for block in blocks]
@@ -232,11 +232,11 @@ def foot_mass(model: MuscleMoment, nominal: Walk, device: Walk, per_kg: Values) 
 
     per_kg: what each kg adds to the net moment of the device walk (sample,) [N m/kg]
     """
-    values, spreads = zip(*(_weighed(model.form, nominal, device, per_kg, parts) for parts in PARTS), strict=True)
+    values, spreads = zip(*(_weigh_mass(model.form, nominal, device, per_kg, parts) for parts in PARTS), strict=True)
     return float(np.mean(values)), float(np.hypot(np.mean(spreads), np.std(values)))
 
 
-def _weighed(form: Form, nominal: Walk, device: Walk, per_kg: Values, parts: int) -> tuple[float, float]:
+def _weigh_mass(form: Form, nominal: Walk, device: Walk, per_kg: Values, parts: int) -> tuple[float, float]:
     """Mass and its standard deviation with stiffness in some parts of the stride."""
     muscles = len(nominal.driven.signs)
     own = replace(form, usual=usual_angle(device.driven, device.stride >= 0))
@@ -246,16 +246,16 @@ def _weighed(form: Form, nominal: Walk, device: Walk, per_kg: Values, parts: int
 
     def sums(walk: Walk, usual: Form, carried: Values, expected: Values) -> Sums:
         columns = _columns(usual, walk.driven, expected, parts)
-        return sums_of(np.column_stack([columns, -carried]), walk.moment, walk.stride, int(walk.stride.max()) + 1)
+        return sum_pieces(np.column_stack([columns, -carried]), walk.moment, walk.stride, int(walk.stride.max()) + 1)
 
     def mass(each: Iterable[Sums], weights: Iterable[Values]) -> float:
         total = together(each, weights)
-        return float(bounded(tied(total.squares, muscles), total.match, signed)[-1])
+        return float(solve_ridge(tied(total.squares, muscles), total.match, signed)[-1])
 
     first = sums(nominal, form, np.zeros(len(nominal.moment)), form.usual)
     both = first, sums(device, own, per_kg, form.usual)
     value = mass(both, once)
-    drawn = [mass(both, weights) for weights in drawn_blocks(once)]
+    drawn = [mass(both, weights) for weights in draw_blocks(once)]
     shifted = [mass((first, sums(device, own, per_kg, form.usual + one)), once) for one in shifts_of_usual()]
     return value, float(np.hypot(np.std(drawn), np.std(shifted)))
 

@@ -12,13 +12,13 @@ from gaitdisc.discovery.case import Case
 from gaitdisc.discovery.criteria import CRITERIA
 from gaitdisc.discovery.estimates import wrong_starts
 from gaitdisc.discovery.fitted import Prior
-from gaitdisc.discovery.fitted_shape import fitted_shape
-from gaitdisc.discovery.forward_selection import pruned, select_forward
+from gaitdisc.discovery.fitted_shape import fit_shape
+from gaitdisc.discovery.forward_selection import prune, select_forward
 from gaitdisc.discovery.gap_share import cross_validated
-from gaitdisc.discovery.held_out import Proof, free_run_error, free_runs, is_uninformative, proof_of, strays
+from gaitdisc.discovery.held_out import Proof, free_run_error, free_runs, is_uninformative, prove, strays
 from gaitdisc.discovery.process_noise import MOST_NUMBERS, ProcessNoise, rank_process_noise
 from gaitdisc.discovery.result import Estimate
-from gaitdisc.discovery.scored_model import ScoredModel, compared, ranked, scored
+from gaitdisc.discovery.scored_model import ScoredModel, compared, ranked, score
 from gaitdisc.discovery.search import is_certain
 
 MOST_NAMES = 2  # where they leave more than noise; where they leave nothing else, MOST
@@ -46,16 +46,16 @@ class Verdict:
 
 def decide(case: Case, as_read: ScoredModel) -> Verdict:
     """Search, and decide which of the contract's verdicts the data support."""
-    as_read, named, rivals = searched(case, as_read)
-    named = kept_on_longer_runs(case, as_read, named)
+    as_read, named, rivals = search_runs(case, as_read)
+    named = check_on_longer_runs(case, as_read, named)
     exact = case.leaves_noise(named)
     plain = None if exact else plainest(case, named)
     if plain:
-        return shape_that_leaves_noise(case, as_read, fitted_shape(case, as_read), plain) or plain
+        return shape_that_leaves_noise(case, as_read, fit_shape(case, as_read), plain) or plain
     names = len(named.model.parts)
     suspect = named.noise.is_autocorrelated and not (exact and case.search.base.inexact)
     wanted = names > 1 or suspect
-    shape = fitted_shape(case, as_read) if wanted else None
+    shape = fit_shape(case, as_read) if wanted else None
     autocorrelated = with_autocorrelation(case, as_read, named, shape, rivals) if suspect or not names else None
     if autocorrelated:
         return autocorrelated
@@ -66,22 +66,22 @@ def decide(case: Case, as_read: ScoredModel) -> Verdict:
     if not names:
         wrong = wrong_starts(case.search.base, as_read)
         return Verdict("wrong_initial_condition" if wrong else "no_gap", as_read, tuple(rivals), starts=wrong)
-    longer, rivals = decided(case, named if exact else pruned(case.search, named, np.inf, MOST_NAMES), rivals)
-    kept = needed(case, as_read, longer)
+    longer, rivals = settle(case, named if exact else prune(case.search, named, np.inf, MOST_NAMES), rivals)
+    kept = keep_useful(case, as_read, longer)
     if kept is not longer:  # named anew: the best of fewer is not the best less a part
-        alone = decided(case, rivals[0], rivals) if rivals else (kept, rivals)
-        if alone[0] is kept or (len(kept.model.parts) > 1 and proof_of(case, alone[0], kept, kept).bears_out):
-            longer = scored(kept.shooting, kept.model)
+        alone = settle(case, rivals[0], rivals) if rivals else (kept, rivals)
+        if alone[0] is kept or (len(kept.model.parts) > 1 and prove(case, alone[0], kept, kept).bears_out):
+            longer = score(kept.shooting, kept.model)
         else:
             longer, rivals = alone
-    proof = held_out_proof(case, as_read, longer)
+    proof = prove_held_out(case, as_read, longer)
     if not proof.bears_out or (not exact and names > MOST_NAMES and proof.closed < CRITERIA.half):
         blind = is_uninformative(case, as_read, longer)
         pushed = None if blind else with_random_pushes(case, as_read, as_read, [])
         return pushed or Verdict("no_gap", as_read, (longer, *rivals), proof=proof)
     verdict = Verdict(longer.word, longer, tuple(rivals), proof=proof)
     if not wanted and not case.leaves_noise(longer):
-        shape = fitted_shape(case, as_read)
+        shape = fit_shape(case, as_read)
     return shape_that_leaves_noise(case, as_read, shape, verdict) or verdict
 
 
@@ -99,7 +99,7 @@ def shape_that_leaves_noise(
         return None
     if free_run_error(case, shape) > free_run_error(case, names.found):
         return None
-    if not held_out_proof(case, names.found, shape).bears_out:
+    if not prove_held_out(case, names.found, shape).bears_out:
         return None
     return proven_shape(case, as_read, shape, (names.found, *names.rivals))
 
@@ -108,15 +108,15 @@ def proven_shape(
     case: Case, as_read: ScoredModel, shape: ScoredModel, others: tuple[ScoredModel, ...]
 ) -> Verdict | None:
     """Return the verdict on a shape without a name that the held-out data bear out; None where they do not."""
-    proof = held_out_proof(case, as_read, shape)
+    proof = prove_held_out(case, as_read, shape)
     return Verdict("unnamed", shape, others, proof=proof) if proof.bears_out else None
 
 
-def needed(case: Case, as_read: ScoredModel, now: ScoredModel) -> ScoredModel:
+def keep_useful(case: Case, as_read: ScoredModel, now: ScoredModel) -> ScoredModel:
     """Return what was named without the explanations that the held-out data do not bear out beside the others."""
     while len(now.model.parts) > 1:
         fewer = [case.search.without(now, number) for number in range(len(now.model.parts))]
-        tests = [held_out_proof(case, one, now, as_read).test for one in fewer]
+        tests = [prove_held_out(case, one, now, as_read).test for one in fewer]
         idle = max(range(len(fewer)), key=lambda number: np.nan_to_num(tests[number].p, nan=1.0))
         if tests[idle].bears_out:
             break
@@ -136,13 +136,13 @@ def plainest(case: Case, named: ScoredModel) -> Verdict | None:
     plain, likelier = compared([found.as_read, found.now])
     if plain.bic - likelier.bic < CRITERIA.margin:
         return None
-    now = needed(case, found.as_read, found.now)
+    now = keep_useful(case, found.as_read, found.now)
     fit, names = now.model.fit, now.model.size
     known = fit.starts.shape[1] + names  # names that cancel each other do so whatever the file's numbers are
     alone = replace(fit, free=fit.free[:names], slopes=fit.slopes[..., :known], prior=Prior())
     if not is_certain(replace(now.model, fit=alone)):
         return None
-    proof = held_out_proof(case, found.as_read, now)
+    proof = prove_held_out(case, found.as_read, now)
     if now is found.now and proof.closed > CRITERIA.half and not proof.bears_out:  # few pieces are held out
         proof = replace(proof, test=found.test)
     if not proof.bears_out:
@@ -157,7 +157,7 @@ def prefer_on_held_out(case: Case, now: ScoredModel, near: tuple[ScoredModel, ..
     near: what costs hardly more; of these, what has no more numbers. The plainest of what is preferred is returned
     """
     equal = [one for one in near if one.model.size <= now.model.size]
-    proofs = [proof_of(case, now, one, one) for one in equal]
+    proofs = [prove(case, now, one, one) for one in equal]
     better = [
         (one.model.penalty, -proof.test.fall, one)
         for proof, one in zip(proofs, equal, strict=True)
@@ -166,7 +166,7 @@ def prefer_on_held_out(case: Case, now: ScoredModel, near: tuple[ScoredModel, ..
     return min(better, key=lambda one: one[:2])[2] if better else now
 
 
-def searched(case: Case, as_read: ScoredModel) -> tuple[ScoredModel, ScoredModel, list[ScoredModel]]:
+def search_runs(case: Case, as_read: ScoredModel) -> tuple[ScoredModel, ScoredModel, list[ScoredModel]]:
     """Search on short runs, and on longer ones where these show nothing and the system is not chaotic.
 
     returns as_read, named: the simulation as read and with what was selected, on the same runs
@@ -175,25 +175,25 @@ def searched(case: Case, as_read: ScoredModel) -> tuple[ScoredModel, ScoredModel
     named, rivals = select_forward(case.search, as_read, MOST, case.scale)
     if named.model.parts or not case.spans_a_period(as_read):
         return as_read, named, rivals
-    longer = case.lengthened(as_read)
+    longer = case.lengthen(as_read)
     if longer is as_read:
         return as_read, named, rivals
     named, rivals = select_forward(case.search, longer, MOST, case.scale)
     return (longer, named, rivals) if named.model.parts else (as_read, as_read, rivals)
 
 
-def kept_on_longer_runs(case: Case, as_read: ScoredModel, named: ScoredModel) -> ScoredModel:
+def check_on_longer_runs(case: Case, as_read: ScoredModel, named: ScoredModel) -> ScoredModel:
     """Return what was selected less what longer runs have no use for, on the runs that it was found on.
 
     Where chaos keeps runs short, several explanations together can do what one does with another number.
     """
     if len(named.model.parts) < 2 or case.spans_a_period(as_read):
         return named
-    longer = case.lengthened(named)
-    kept = pruned(case.search, longer, CRITERIA.margin).model.parts
+    longer = case.lengthen(named)
+    kept = prune(case.search, longer, CRITERIA.margin).model.parts
     if len(kept) == len(named.model.parts):
         return named
-    return scored(named.shooting, named.model.refitted(named.shooting, kept))
+    return score(named.shooting, named.model.refit(named.shooting, kept))
 
 
 def with_autocorrelation(
@@ -202,12 +202,12 @@ def with_autocorrelation(
     """Return a verdict where residuals are autocorrelated, and process noise or a shape explain it better."""
     plain, *found = compared([as_read, named, *([shape] if shape else [])])
     likelier = [one for one in found if one.model.parts and plain.bic - one.bic >= CRITERIA.margin]
-    ordered = [one for one in likelier if held_out_proof(case, plain, one).bears_out]
+    ordered = [one for one in likelier if prove_held_out(case, plain, one).bears_out]
     if not ordered:
         return with_random_pushes(case, as_read, named, rivals)
     worth = CRITERIA.matters * (plain.bic - found[0].bic) + CRITERIA.margin
     if shape and found[1] in ordered and found[1].bic < found[0].bic - worth:
-        return Verdict("unnamed", found[1], (named, *rivals), proof=held_out_proof(case, plain, found[1]))
+        return Verdict("unnamed", found[1], (named, *rivals), proof=prove_held_out(case, plain, found[1]))
     return None
 
 
@@ -249,7 +249,7 @@ def find_term_before(case: Case, as_read: ScoredModel, named: ScoredModel, rival
         before, now = compared([as_read, one])
         beside = rank_process_noise(now.shooting, now.model, case.search.places)[0]
         likelier = pushes.bic - min(beside.bic, beside.rival) - now.model.size * float(np.log(beside.numbers))
-        proof = held_out_proof(case, before, now)
+        proof = prove_held_out(case, before, now)
         likelier += proof.gained - 2 * float(np.log(among))
         stays = not case.spans_a_period(as_read) or not strays(case, now, free_run_error(case, before))
         if one.model.parts and likelier > CRITERIA.margin and stays:
@@ -270,13 +270,13 @@ def says_more(shape: ScoredModel, named: ScoredModel) -> bool:
     return shape.bic < named.bic - CRITERIA.margin
 
 
-def decided(case: Case, named: ScoredModel, rivals: list[ScoredModel]) -> tuple[ScoredModel, list[ScoredModel]]:
+def settle(case: Case, named: ScoredModel, rivals: list[ScoredModel]) -> tuple[ScoredModel, list[ScoredModel]]:
     """Return what was named, fitted to long runs; where a rival comes near, the one that long runs prefer."""
-    longer = case.lengthened(named)
+    longer = case.lengthen(named)
     if len(named.model.parts) > 1:
         return longer, rivals
     near = [one for one in rivals if one is not named and one.bic < named.bic + CRITERIA.support][:MOST_NEAR]
-    near = [case.lengthened(one, longer.shooting.segments.span) for one in near]
+    near = [case.lengthen(one, longer.shooting.segments.span) for one in near]
     near = [one for one in near if one.shooting.segments.span == longer.shooting.segments.span]
     first, *others = ranked(compared([longer, *near]), case.search.candidates)
     others = [replace(one, gained=first.gained + first.bic - one.bic) for one in others]
@@ -293,12 +293,12 @@ def runs_that_pushes_move(case: Case, as_read: ScoredModel) -> ScoredModel:
     samples = min(case.longest, MOST_NUMBERS // fit.residual.shape[2])
     if samples < 2 * as_read.shooting.segments.span or not case.spans_a_period(as_read):
         return as_read
-    shooting = case.learned_runs(samples).with_noise(as_read.noise)
-    model = case.fitted_over(shooting, as_read)
+    shooting = case.cut_learned_runs(samples).with_noise(as_read.noise)
+    model = case.fit_over(shooting, as_read)
     return ScoredModel(model, shooting) if np.isfinite(model.fit.misfit) else as_read
 
 
-def held_out_proof(case: Case, before: ScoredModel, now: ScoredModel, as_read: ScoredModel | None = None) -> Proof:
+def prove_held_out(case: Case, before: ScoredModel, now: ScoredModel, as_read: ScoredModel | None = None) -> Proof:
     """Test on the held-out trials whether the error falls with what was found.
 
     Over runs as long as it was fitted to, which show a small effect best; where chaos makes these too long, over those
@@ -306,8 +306,8 @@ def held_out_proof(case: Case, before: ScoredModel, now: ScoredModel, as_read: S
 
     as_read: the simulation as read, on the runs that the search began with; `before` where absent
     """
-    proof, first = proof_of(case, before, now, now), as_read or before
+    proof, first = prove(case, before, now, now), as_read or before
     if proof.bears_out or case.spans_a_period(first):
         return proof
-    shorter = proof_of(case, before, now, replace(first, shooting=first.shooting.with_noise(now.noise)))
+    shorter = prove(case, before, now, replace(first, shooting=first.shooting.with_noise(now.noise)))
     return shorter if shorter.bears_out else proof

@@ -10,19 +10,19 @@ import numpy as np
 import pandas as pd
 
 from gaitdisc.discovery.candidate import Candidate
-from gaitdisc.discovery.changed_moment import NORMAL_95, Changed, changed_moment, foot_mass
+from gaitdisc.discovery.changed_moment import NORMAL_95, Changed, find_change, foot_mass
 from gaitdisc.discovery.effect_words import estimate_text, spoken
-from gaitdisc.discovery.joint_and_trials import changes_of, nominal_moment, walk_of, weighed
+from gaitdisc.discovery.joint_and_trials import as_walk, changes, nominal_moment, weighed
 from gaitdisc.discovery.result import Discovery, Estimate, FoundEffect
 from gaitdisc.errors import ChannelError, SchemaError
 from gaitdisc.ingest.c3d import C3DReader
-from gaitdisc.ingest.public_words import PublicWords, of_trial, words_of
+from gaitdisc.ingest.public_words import PublicWords, list_words, of_trial
 from gaitdisc.ingest.study import Participant, Study
 from gaitdisc.ingest.trial_sets import not_compared
 from gaitdisc.kinetics.newton_euler import GRAVITY
 from gaitdisc.models.ridge import fit_ridge
 from gaitdisc.processing.joint_record import JointRecord, joint_record
-from gaitdisc.processing.muscle_moment import JOINTS, MuscleMoment, driven_of, fitted_moment
+from gaitdisc.processing.muscle_moment import JOINTS, MuscleMoment, drives, fit_moment
 from gaitdisc.processing.process import ReadWalk, StudyWalks
 from gaitdisc.processing.processed_walks import public_trial
 from gaitdisc.recording import Finding, Samples, Trial
@@ -50,7 +50,7 @@ class DeviceWalks:
     @cached_property
     def changed(self) -> Changed | None:
         """What the strides of both walks together say that changed; None where nothing is borne out."""
-        return changed_moment(self.model, walk_of(self.nominal), walk_of(self.device), changes_of(self.device))
+        return find_change(self.model, as_walk(self.nominal), as_walk(self.device), changes(self.device))
 
     @property
     def both_walks_model(self) -> MuscleMoment:
@@ -60,7 +60,7 @@ class DeviceWalks:
     @cached_property
     def agrees(self) -> bool:
         """Whether the device walk bears out no change and is followed as Nominal strides left out of the fit are."""
-        walk = walk_of(self.device)
+        walk = as_walk(self.device)
         left = walk.moment - self.model.net(walk.driven)
         kept = np.isfinite(left) & (walk.stride >= 0)
         return self.changed is None and float(np.sqrt(np.mean(left[kept] ** 2))) < AGREES * self.model.left_nm
@@ -99,7 +99,7 @@ class DeviceWalks:
     def _calibration(self) -> Finding:
         model, word = self.model, JOINTS[self.nominal.joint]
         late_ms = 1000 * (model.form.delay_s + model.form.lag_s)
-        driven = driven_of(self.nominal)
+        driven = drives(self.nominal)
         unseen = np.nanstd(model.others(driven)[np.isfinite(self.nominal.moment)])
         what = (
             f"the residual of the {word}'s moment model is {model.left_nm:.1f} N m of {model.before_nm:.1f} N m on "
@@ -149,7 +149,7 @@ class PersonWalks:
 
     @cached_property
     def _words(self) -> PublicWords:
-        return words_of(self.study, self.participant)
+        return list_words(self.study, self.participant)
 
     @cached_property
     def _walks(self) -> StudyWalks:
@@ -195,7 +195,7 @@ def against(study: Study, condition: str) -> Study:
     return study.model_copy(update={"conditions": conditions}).placed(study.folder)
 
 
-def weighed_foot(walks: Mapping[str, DeviceWalks]) -> Estimate | None:
+def weigh_foot(walks: Mapping[str, DeviceWalks]) -> Estimate | None:
     """Return the mass at the foot that the knee shows and the hip bears out [kg]; None where they show none.
 
     At the hip it comes out too small: the two strongest muscles, which take part in carrying it, have no electrode.
@@ -203,7 +203,7 @@ def weighed_foot(walks: Mapping[str, DeviceWalks]) -> Estimate | None:
     found = {}
     for joint, one in walks.items():
         if one.device.per_kg.size and one.model.r2 >= LEAST_R2:
-            found[joint] = foot_mass(one.model, walk_of(one.nominal), walk_of(one.device), one.device.per_kg)
+            found[joint] = foot_mass(one.model, as_walk(one.nominal), as_walk(one.device), one.device.per_kg)
     if set(found) != set(FOOT_SHOWS_AT):
         return None
     (value, spread), (beside, its_spread) = (found[joint] for joint in FOOT_SHOWS_AT)
@@ -215,7 +215,7 @@ def weighed_foot(walks: Mapping[str, DeviceWalks]) -> Estimate | None:
 def with_foot_mass(found: Discovery, walks: PersonWalks, condition: str) -> Discovery:
     """Return what was found at the ankle where nothing is missing there, with a mass that knee and hip show."""
     try:
-        mass = weighed_foot({joint: walks.at(condition, joint) for joint in FOOT_SHOWS_AT})
+        mass = weigh_foot({joint: walks.at(condition, joint) for joint in FOOT_SHOWS_AT})
     except ChannelError:  # files that know the ankle alone
         return found
     if mass is None:
@@ -288,7 +288,7 @@ def beside(walks: DeviceWalks, found: Discovery) -> dict[str, float]:
     held &= device.stride >= 0
     known = np.isfinite(device.moment) & np.isfinite(device.phase) & np.isfinite(device.rate)
     learned = known & ~held
-    driven = driven_of(device)
+    driven = drives(device)
     nominal = model.net(driven)
     angle, rate, phase = (np.nan_to_num(each) for each in (device.angle, device.rate, device.phase))
     seen = (angle, rate, angle**2, rate**2, angle * rate, *model.by_muscle(driven).T, 100 * phase)
@@ -297,7 +297,7 @@ def beside(walks: DeviceWalks, found: Discovery) -> dict[str, float]:
     samples = Samples(library, (device.moment - nominal)[:, None], names, ("left",), device.time, library[:, -1])
     augmented = nominal + fit_ridge(samples.rows(learned), HARMONICS)(library)[:, 0]
     blocks = np.where(learned, device.stride * 4 // (int(device.stride.max()) + 1), -1)
-    exo_model = fitted_moment(driven, np.where(learned, device.moment, np.nan), blocks, model.form)
+    exo_model = fit_moment(driven, np.where(learned, device.moment, np.nan), blocks, model.form)
     exo = exo_model.net(driven)
     own = known & held
     _, after, _ = found.held_out.channels["net_moment"]

@@ -9,15 +9,15 @@ from functools import partial
 
 import numpy as np
 
-from gaitdisc.discovery.answer import answer, augmented_of
+from gaitdisc.discovery.answer import answer, augment_with
 from gaitdisc.discovery.candidate_model import Part
 from gaitdisc.discovery.case import FEWEST_SAMPLES, TRIED_SUBSTEPS, Case, hangs_on_step, set_up_case, split_in_time
 from gaitdisc.discovery.catalogue import ALL, Request
-from gaitdisc.discovery.decision import Verdict, decide, held_out_proof
+from gaitdisc.discovery.decision import Verdict, decide, prove_held_out
 from gaitdisc.discovery.held_out import grows_along_runs, holding_out_others, is_uninformative, noted
 from gaitdisc.discovery.odd_trials import agreeing_trials, without_trial_apart
 from gaitdisc.discovery.result import Discovery
-from gaitdisc.discovery.scored_model import ScoredModel, scored
+from gaitdisc.discovery.scored_model import ScoredModel, score
 from gaitdisc.discovery.search import Search, is_certain
 from gaitdisc.discovery.second_look import look_at_whole_runs, prefer_delay, prefer_relatives, without_small
 from gaitdisc.discovery.spiked_samples import without_spikes
@@ -53,13 +53,13 @@ def discover(simulation: Simulation, measured: Measured, request: Request = ALL)
     suspected = agreeing_trials(whole, measured)
     case, as_read, verdict = explained(suspected)
     if suspected is not measured:  # a trial is odd where what explains the others says so too
-        explanation = augmented_of(whole.search.base, verdict.found.model.parts)
+        explanation = augment_with(whole.search.base, verdict.found.model.parts)
         kept = agreeing_trials(replace(whole, search=replace(whole.search, base=explanation)), measured)
         if kept.trials != suspected.trials:
             progress("the identified effects explain a trial that was left out: the search is repeated with it")
             case, as_read, verdict = explained(kept)
     progress("testing the answer on held-out data")
-    return answer(case, as_read, verdict, request.refitted)
+    return answer(case, as_read, verdict, request.refit)
 
 
 def weigh_explanations(
@@ -147,13 +147,13 @@ def fit_given(case: Case, as_read: ScoredModel, effects: tuple[str, ...]) -> Ver
                 f"with {given!r} once more the simulation leaves all bounds, or runs as without it",
                 "Give another effect or place.",
             )
-        now = scored(now.shooting, min(tried, key=lambda one: one.fit.misfit))
-    now = case.lengthened(now)
+        now = score(now.shooting, min(tried, key=lambda one: one.fit.misfit))
+    now = case.lengthen(now)
     count = len(now.model.parts)
     idle = [
         not is_certain(now.model, number, number + 1)
-        or (count > 1 and not held_out_proof(case, search.without(now, number), now, as_read).bears_out)
+        or (count > 1 and not prove_held_out(case, search.without(now, number), now, as_read).bears_out)
         for number in range(count)
     ]
-    proof = held_out_proof(case, as_read, now)
+    proof = prove_held_out(case, as_read, now)
     return Verdict(now.word, now, (), proof=proof, given=tuple(idle))

@@ -11,25 +11,25 @@ import numpy as np
 
 from gaitdisc.discovery.candidate import saturations
 from gaitdisc.discovery.catalogue import ALL, Request
-from gaitdisc.discovery.discover_files import discovered, sealed
+from gaitdisc.discovery.discover_files import find_missing, seal
 from gaitdisc.discovery.effect_words import named_at
 from gaitdisc.discovery.first_states import guess_states
-from gaitdisc.discovery.fit_by_engine import EngineFit, base_runs, borne_out, held_out, with_own_runs
-from gaitdisc.discovery.grids import rhythm_of
+from gaitdisc.discovery.fit_by_engine import EngineFit, base_runs, errs_less, held_out, with_own_runs
+from gaitdisc.discovery.grids import find_rhythm
 from gaitdisc.discovery.result import ENGINE, Discovery, FoundEffect
 from gaitdisc.discovery.spiked_samples import without_spikes
 from gaitdisc.engines.conventions import refuse_other_conventions, refuse_other_units
 from gaitdisc.engines.engine import Engine
-from gaitdisc.engines.expansion import expanded
+from gaitdisc.engines.expansion import expand
 from gaitdisc.engines.mapping import other_values, read_mapping
 from gaitdisc.engines.motion import Values
 from gaitdisc.engines.own_runs import OwnRuns, trial_called
-from gaitdisc.engines.written import WrittenModel, written_model
+from gaitdisc.engines.written import WrittenModel, write_model
 from gaitdisc.errors import ChannelError
 from gaitdisc.recording import Finding
-from gaitdisc.simulation.expression import names, parsed
+from gaitdisc.simulation.expression import names, parse
 from gaitdisc.simulation.measured import Measured
-from gaitdisc.simulation.measured_table import measured_of_recordings, read_measured
+from gaitdisc.simulation.measured_table import measure_recordings, read_measured
 from gaitdisc.simulation.simulation import Simulation
 from gaitdisc.simulation.writing import write_simulation
 from gaitdisc.whole_file import write_whole
@@ -67,29 +67,29 @@ def discover_engine(
     data = measured(mapping)
     refuse_unmeasured(mapping, engine, data)
     clean, rate_of = without_spikes(data), {one.name: one.speed for one in engine.coordinates}
-    window = (SMOOTH if engine.fibres else NARROW) * rhythm_of(clean.observed, clean.rate).period
+    window = (SMOOTH if engine.fibres else NARROW) * find_rhythm(clean.observed, clean.rate).period
     states = guess_states(replace(mapping, model=""), clean, window, rate_of).states  # coordinates, then speeds
     refuse_other_units(mapping, engine, data, states)
     refuse_other_conventions(mapping, engine, data, states)
-    met, read = _known(engine, states, data), {engine.path: "model", **(files or {})}
+    met, read = _report_limits(engine, states, data), {engine.path: "model", **(files or {})}
     fit = EngineFit(mapping, engine, data, states, progress=request.progress)
     request.progress(f"running {engine.path.name} by {engine.called} along every trial")
-    as_read = written_model(engine, mapping)  # what the mapping says otherwise than the model's file
+    as_read = write_model(engine, mapping)  # what the mapping says otherwise than the model's file
     answer = EngineAnswer(_NOTHING, mapping, as_read, base_runs(as_read.engine, fit), engine)
     if request.effects or not answer.runs.leave_mere_noise:
-        answer = searched(fit, answer, replace(request, refitted=fit.noted), read)
+        answer = search(fit, answer, replace(request, refitted=fit.noted), read)
     else:
         units = tuple(answer.runs.units.values())
         nothing = replace(_NOTHING, channels=data.channels, units=units, findings=data.findings)
-        found = sealed(with_own_runs(nothing, answer.runs, fit, mapping), mapping, data, read)
+        found = seal(with_own_runs(nothing, answer.runs, fit, mapping), mapping, data, read)
         answer = replace(answer, found=found)
     found = answer.found
     findings = (
         *found.findings,
         *other_values(mapping, engine),
         *(one for one in met if one.kind != "saturated"),
-        *(one for one in _known(answer.written.engine, states, data) if one.kind == "saturated"),
-        *_warned(engine, answer.written.engine),
+        *(one for one in _report_limits(answer.written.engine, states, data) if one.kind == "saturated"),
+        *_list_warnings(engine, answer.written.engine),
         *(Finding("note", "written back", "model", what, "") for what in answer.written.notes),
         Finding("note", "own runs", "model", answer.runs.said, ""),
     )
@@ -97,21 +97,21 @@ def discover_engine(
     return replace(answer, found=replace(found, findings=findings, provenance=made))
 
 
-def searched(fit: EngineFit, base: EngineAnswer, request: Request, read: dict[Path, str]) -> EngineAnswer:
+def search(fit: EngineFit, base: EngineAnswer, request: Request, read: dict[Path, str]) -> EngineAnswer:
     """Search the expansion along the record; of what it names, that stays which the engine's own runs bear out."""
     mapping, engine, data, states = fit.mapping, fit.engine, fit.measured, fit.states
     request.progress(f"computing the accelerations of {engine.path.name} along the record by {engine.called}")
-    linear, driven = expanded(mapping, engine, data, states)
+    linear, driven = expand(mapping, engine, data, states)
     request = replace(request, added=saturations(mapping))
     if not request.effects:  # a limit is the input's own, and of no force
         request = replace(request, possible=lambda one: (one.kind, one.name) != ("port", "input_saturation"))
-    found, answer = discovered(linear, driven, request, read)
+    found, answer = find_missing(linear, driven, request, read)
     now, own = answer.values(), {k: one for k, one in mapping.values().items() if engine.as_force(k) is None}
     moved = {name: now[name] for name, value in own.items() if abs(now[name] - value) > MOVED * abs(value)}
     if moved and (len(found.effects) > 1 or engine.fibres):  # one number alone rests on the engine's own runs
         request.progress(f"expanding again about the new value of {' and '.join(moved)}")
-        linear, driven = expanded(mapping, engine, data, states, moved)
-        found, answer = discovered(linear, driven, request, read)
+        linear, driven = expand(mapping, engine, data, states, moved)
+        found, answer = find_missing(linear, driven, request, read)
     request.progress(f"running it by {engine.called}")
     runs = base_runs(base.written.engine, fit) if fit.low_pass.margin else base.runs  # filtered as the record was
     runs = runs.among(np.isin(runs.at.trial, [trial_called(data, name) for name in found.runs.names]))
@@ -129,15 +129,15 @@ def searched(fit: EngineFit, base: EngineAnswer, request: Request, read: dict[Pa
         runs = replace(runs, after=fit.left(found, fit.parts, runs)).with_floor(hidden)
         both = list(zip(found.effects, fit.parts, strict=True))
         sure = tuple(part for one, part in both if request.effects or not one.small)
-        kept = sure if borne_out(runs, runs.before) else ()
+        kept = sure if errs_less(runs, runs.before) else ()
         for part in kept if len(kept) > 1 and not request.effects else ():
             others = tuple(one for one in fit.parts if one is not part)
-            if not borne_out(runs, fit.left(found, others, runs)):
+            if not errs_less(runs, fit.left(found, others, runs)):
                 kept = tuple(one for one in kept if one is not part)
         if not kept:
             runs = replace(runs, after=runs.before)
             if not runs.before_at_noise:
-                found = unconfirmed(with_own_runs(found, runs, fit, linear), runs)
+                found = withdraw_effects(with_own_runs(found, runs, fit, linear), runs)
                 return EngineAnswer(found, mapping, base.written, runs, engine)
             found, augmented, written = replace(found, effects=(), corrections=()), mapping, base.written
         elif len(kept) < len(fit.parts):
@@ -163,7 +163,7 @@ def without_beside(found: Discovery, effects: tuple[FoundEffect, ...], idle: tup
     return replace(found, effects=effects, rivals=(*idle, *rivals), explanations=(*found.explanations[:1], *others))
 
 
-def unconfirmed(found: Discovery, runs: OwnRuns) -> Discovery:
+def withdraw_effects(found: Discovery, runs: OwnRuns) -> Discovery:
     """Take back what the engine's own runs do not bear out: an expansion or an integrator's step can err as well."""
     named = " and ".join(f"the {named_at(one)}" for one in found.effects)
     sentence = (
@@ -179,10 +179,10 @@ def unconfirmed(found: Discovery, runs: OwnRuns) -> Discovery:
 def discover_model_file(model: Path, measured: Path, request: Request = ALL) -> EngineAnswer:
     """Find what a model lacks against a file of measured trials."""
     files = {measured: "measured table"}
-    return discover_engine(model, lambda mapping: measured_of_file(measured, mapping), request, files)
+    return discover_engine(model, lambda mapping: read_trials(measured, mapping), request, files)
 
 
-def measured_of_file(file: Path, mapping: Simulation) -> Measured:
+def read_trials(file: Path, mapping: Simulation) -> Measured:
     """Trials of a table, or the one trial of a storage file with angles and controls."""
     if file.suffix.lower() not in (".mot", ".sto"):
         return read_measured(file, mapping)
@@ -195,7 +195,7 @@ def measured_of_file(file: Path, mapping: Simulation) -> Measured:
         channels=tuple(channel for one in streams for channel in one.channels),
         suspect=np.hstack([np.asarray(one.suspect) for one in streams]),
     )
-    return measured_of_recordings([whole], mapping)
+    return measure_recordings([whole], mapping)
 
 
 def write_answer(answer: EngineAnswer, out: Path) -> list[str]:
@@ -203,17 +203,17 @@ def write_answer(answer: EngineAnswer, out: Path) -> list[str]:
     engine = answer.engine
     name = os.path.relpath(engine.path.resolve(), out.resolve())
     mapping = write_simulation(replace(answer.augmented, model=name, layout=""), out / "augmented.toml")
-    return [mapping.name, write_whole(out / augmented_name(engine.path), answer.written.text).name]
+    return [mapping.name, write_whole(out / name_augmented(engine.path), answer.written.text).name]
 
 
-def augmented_name(model: Path) -> str:
+def name_augmented(model: Path) -> str:
     """Name of a model's file with what was found in it."""
     return f"{model.stem}_augmented{model.suffix}"
 
 
 def refuse_unmeasured(mapping: Simulation, engine: Engine, data: Measured) -> None:
     """Refuse a record that does not show every free coordinate."""
-    seen = {name for channel, text in mapping.observations if channel in data.channels for name in names(parsed(text))}
+    seen = {name for channel, text in mapping.observations if channel in data.channels for name in names(parse(text))}
     for one in engine.coordinates:
         if one.name not in seen:
             raise ChannelError(
@@ -223,7 +223,7 @@ def refuse_unmeasured(mapping: Simulation, engine: Engine, data: Measured) -> No
             )
 
 
-def _known(engine: Engine, states: Values, data: Measured) -> tuple[Finding, ...]:
+def _report_limits(engine: Engine, states: Values, data: Measured) -> tuple[Finding, ...]:
     """Say in which samples a limit or a contact of the model acts: its own runs pass through these."""
     found, inside = [], np.arange(states.shape[1]) < data.samples[:, None]
     for one, q in zip(engine.coordinates, states[inside].T, strict=False):
@@ -245,7 +245,7 @@ def _known(engine: Engine, states: Values, data: Measured) -> tuple[Finding, ...
     return tuple(found)
 
 
-def _warned(*engines: Engine) -> tuple[Finding, ...]:
+def _list_warnings(*engines: Engine) -> tuple[Finding, ...]:
     """What MuJoCo warned of: it is said here, and in no file of the user's folder."""
     said = dict.fromkeys(what for one in engines for what in getattr(one, "warnings", ()))
     return tuple(

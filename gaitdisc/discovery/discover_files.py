@@ -20,7 +20,7 @@ from gaitdisc.ingest.public_words import PublicWords
 from gaitdisc.processing.kept_parts import hash_content
 from gaitdisc.recording import Finding
 from gaitdisc.regular_file import file_sha256
-from gaitdisc.saved.provenance import made_now
+from gaitdisc.saved.provenance import provenance_now
 from gaitdisc.simulation.even_time import MILLISECONDS
 from gaitdisc.simulation.measured import Measured
 from gaitdisc.simulation.measured_table import read_measured
@@ -40,7 +40,7 @@ def discover_files(simulation: Path, measured: Path, request: Request = ALL) -> 
     model = read_simulation(simulation)
     data = read_measured(measured, model)
     files = {simulation: "simulation", measured: "measured table"}
-    return discovered(model, data, request, files)
+    return find_missing(model, data, request, files)
 
 
 def discover_study(
@@ -91,12 +91,12 @@ def _discover_condition(
     Where a walk lacks EMG or moments, only the motion of both is compared, and the sentence says so.
     """
     from gaitdisc.discovery.device_study import NoMomentsError, against, beside, with_foot_mass
-    from gaitdisc.discovery.joint_and_trials import tracked_joint, tracked_trials
+    from gaitdisc.discovery.joint_and_trials import cut_walk_trials, joint_model
     from gaitdisc.discovery.nominal_model import nominal_and_trials
-    from gaitdisc.ingest.public_words import words_of
+    from gaitdisc.ingest.public_words import list_words
 
     study, person, progress = walks.study, walks.participant, request.progress
-    called = words_of(study, person).files
+    called = list_words(study, person).files
     others = {*study.conditions.words} - {study.conditions.nominal, condition}
     own = [file for trial in person.trials if trial.condition not in others for file in trial.files]
     files = {study.path_of(file): called[Path(file).name] for file in own}
@@ -105,15 +105,15 @@ def _discover_condition(
     except NoMomentsError as lacking:
         progress("comparing the motion alone")
         motion = nominal_and_trials(against(study, condition), person.id, joint)
-        found, augmented = discovered(*motion, request, files)
+        found, augmented = find_missing(*motion, request, files)
         why = f"{lacking.needed[:1].upper()}{lacking.needed[1:]}, but {lacking.found}"
         how = "only the motion of both walks was compared, which gives no moment of the device"
         return replace(found, sentence=f"{why}: {how}. {found.sentence}"), augmented
-    model = tracked_joint(both.device, both.both_walks_model)
-    data = tracked_trials(both.device, both.both_walks_model, model)
+    model = joint_model(both.device, both.both_walks_model)
+    data = cut_walk_trials(both.device, both.both_walks_model, model)
     if study.conditions.others:
         model = replace(model, title=f"{model.title}, {condition}")
-    found, augmented = discovered(model, data, replace(request, possible=both.weighed), files)
+    found, augmented = find_missing(model, data, replace(request, possible=both.weighed), files)
     found, augmented = both.with_model_error(found), model if both.agrees else augmented
     errors = beside(both, found)
     if joint == "ankle_angle" and not found.effects:
@@ -124,7 +124,7 @@ def _discover_condition(
     return replace(found, findings=(*both.findings, *found.findings), beside=errors), augmented
 
 
-def discovered(
+def find_missing(
     model: Simulation, data: Measured, request: Request, files: dict[Path, str]
 ) -> tuple[Discovery, Simulation]:
     """Find what a model lacks against measured trials, with what the answer rests on.
@@ -146,17 +146,17 @@ def discovered(
         ) from error
     files = {**files, **({request.catalogue: "catalogue"} if request.catalogue else {})}
     listed = unit_findings(model) if isinstance(model, Simulation) else ()  # a function has no units to check
-    return sealed(replace(found, findings=(*listed, *found.findings)), augmented, data, files), augmented
+    return seal(replace(found, findings=(*listed, *found.findings)), augmented, data, files), augmented
 
 
-def sealed(found: Discovery, model: Simulation, data: Measured, files: dict[Path, str]) -> Discovery:
+def seal(found: Discovery, model: Simulation, data: Measured, files: dict[Path, str]) -> Discovery:
     """Return an answer with what it rests on; it is written without a name of a person.
 
     model: with what was found
     """
     settings = {"title": model.title, "trials": len(data.trials), "rate_hz": data.rate, "channels": list(data.channels)}
     hashes = {called: file_sha256(path) for path, called in files.items()}
-    made = made_now(settings, 0, hashes, SIMULATION)
+    made = provenance_now(settings, 0, hashes, SIMULATION)
     written = model if isinstance(model, Simulation) else cast("PythonSimulation", model).parts
     words = frozenset(re.findall(r"\w+", simulation_text(written)))  # of the user's model, which names no person
     public = PublicWords(words, {path.name: called for path, called in files.items()})

@@ -8,12 +8,12 @@ from pathlib import Path
 
 import numpy as np
 
-from gaitdisc.discovery.candidate import Candidate, candidates_of
-from gaitdisc.discovery.catalogue import ALL, Request, Shape, known_shapes
+from gaitdisc.discovery.candidate import Candidate, list_candidates
+from gaitdisc.discovery.catalogue import ALL, Request, Shape, read_shapes
 from gaitdisc.discovery.criteria import CRITERIA
-from gaitdisc.discovery.discover_engine import augmented_name
-from gaitdisc.discovery.effect_words import amount, named_at, shown_unit
-from gaitdisc.discovery.estimates import named_estimates
+from gaitdisc.discovery.discover_engine import name_augmented
+from gaitdisc.discovery.effect_words import amount, display_unit, named_at
+from gaitdisc.discovery.estimates import name_estimates
 from gaitdisc.discovery.joint_and_trials import EFFECTS, STRENGTH
 from gaitdisc.discovery.places import Place
 from gaitdisc.discovery.prescribed import JointFinding, Named, ResidualMoment, Values, joint_finding
@@ -23,20 +23,20 @@ from gaitdisc.discovery.tracked_pass import (
     SEED,
     Pass,
     balance,
+    compute_pass,
     moments_of_angle_noise,
     only_residuals,
     refuse_other_motion,
-    tracked_pass,
 )
-from gaitdisc.discovery.wording import sentence_of
-from gaitdisc.engines.mapping import drafted
+from gaitdisc.discovery.wording import write_sentence
+from gaitdisc.engines.mapping import draft
 from gaitdisc.engines.opensim_tracked import OpensimTracked
 from gaitdisc.engines.tracked_mapping import Tracked, write_tracked_mapping
-from gaitdisc.engines.written import WrittenModel, written_model
+from gaitdisc.engines.written import WrittenModel, write_model
 from gaitdisc.errors import SamplingError, SchemaError
 from gaitdisc.recording import Finding
 from gaitdisc.regular_file import file_sha256
-from gaitdisc.saved.provenance import made_now
+from gaitdisc.saved.provenance import provenance_now
 from gaitdisc.simulation.evaluating import Points, evaluate
 from gaitdisc.simulation.parts import Input, Parameter, Sensor, Term
 from gaitdisc.simulation.simulation import Simulation
@@ -67,41 +67,41 @@ def discover_tracked(tracked: Tracked, kinematics: Path, request: Request = ALL)
         )
     progress = request.progress
     progress(f"reading {kinematics.name} and the forces")
-    walk = tracked_pass(tracked, kinematics, progress)
+    walk = compute_pass(tracked, kinematics, progress)
     findings, engine, motion = balance(walk), walk.engine, walk.motion
     refuse_other_motion(walk)
     progress("computing what noise of the angles makes of them")
     angle_noise = moments_of_angle_noise(walk, tracked.noise_deg)
-    base, joints = joints_of(walk, angle_noise, request)
-    found = discovery_of(base, joints)
+    base, joints = search_joints(walk, angle_noise, request)
+    found = make_discovery(base, joints)
     progress("writing it into the model")
-    augmented = drafted(engine)
+    augmented = draft(engine)
     for one in found.effects:
         if one.kind == "port":
             augmented = augmented.with_effect(Term(one.place, "port", one.name, one.term))
-    written = written_model(engine, augmented)
+    written = write_model(engine, augmented)
     notes = [note.replace("augmented.toml", "discovery.json") for note in written.notes]
     for one in found.effects:
         if one.kind == "parameter":  # what muscles do otherwise is no part of the model's file
             number = f"{one.place} = {one.estimates['value'].value:.4g}"
             notes.append(f"{number} belongs to the forces file: only discovery.json contains it")
     said = (stretch_used(walk, kinematics.name), *_gaps(walk, written, found))
-    shown = [shown_by(walk, number, one) for number, one in zip(walk.joints, joints, strict=True)]
+    shown = [summarise_joint(walk, number, one) for number, one in zip(walk.joints, joints, strict=True)]
     findings += [*shown, *doubts(shown)]
     findings += [Finding("note", "written back", "model", one, "") for one in notes]
     findings += [Finding("note", "own runs" if k else "stretch", "model", one, "") for k, one in enumerate(said)]
     hashes = {file.name: file_sha256(file) for file in (engine.path, kinematics, *tracked.files)}
     settings = {"title": base.title, "seconds": float(np.ptp(motion.time)), "rate_hz": motion.rate_hz}
-    made = made_now({**settings, "channels": list(found.channels)}, SEED, hashes, TRACKED)
+    made = provenance_now({**settings, "channels": list(found.channels)}, SEED, hashes, TRACKED)
     sentence = found.sentence if walk.joints else only_residuals(walk)
     found = replace(found, sentence=sentence, findings=tuple(findings), provenance=made)
     return TrackedAnswer(found, augmented, replace(written, notes=tuple(notes)), tracked, said)
 
 
-def discovery_of(base: Simulation, joints: list[JointFinding]) -> Discovery:
+def make_discovery(base: Simulation, joints: list[JointFinding]) -> Discovery:
     """Return what the joints show, as an answer: effects, rivals, the gap before and after."""
     if not joints:
-        return sentence_of(Discovery("no_gap", ""), base, ())
+        return write_sentence(Discovery("no_gap", ""), base, ())
     named = [(one, one.named) for one in joints if one.named is not None]
     effects, rivals = [], []
     for one, best in named:
@@ -127,7 +127,7 @@ def discovery_of(base: Simulation, joints: list[JointFinding]) -> Discovery:
     )
     sizes = found.held_out.channels.values()
     if named or not ordered or all(before < CRITERIA.agrees * floor for before, _, floor in sizes):
-        return sentence_of(found, base, tuple(best.part for _, best in named))
+        return write_sentence(found, base, tuple(best.part for _, best in named))
     first, (one,) = ordered[0], rivals
     before, after = (np.sqrt(np.mean((first.joint.left - each) ** 2)) for each in (0.0, first.rivals[0].explained))
     unit = units[joints.index(first)]
@@ -140,7 +140,7 @@ def discovery_of(base: Simulation, joints: list[JointFinding]) -> Discovery:
 
 
 def _effect(base: Simulation, one: Named, closed: float = float("nan")) -> FoundEffect:
-    candidate, numbers = one.part.candidate, named_estimates(one.part, one.covariance, base)
+    candidate, numbers = one.part.candidate, name_estimates(one.part, one.covariance, base)
     place = candidate.kind, candidate.place, candidate.name
     return FoundEffect(*place, one.part.term, numbers, closed, one.gained, bounds=candidate.bounds)
 
@@ -170,7 +170,7 @@ def stretch_used(walk: Pass, file: str) -> str:
     ranges = []
     for k in walk.joints:
         one, q = walk.engine.coordinates[k], walk.motion.q[:, k]
-        unit, factor = shown_unit(one.unit)
+        unit, factor = display_unit(one.unit)
         ranges.append(f"{one.called} {factor * q.min():.3g} to {factor * q.max():.3g} {unit}")
     used = f"searched from {time[0]:.2f} to {time[-1]:.2f} s of the {begin:.2f} to {end:.2f} s in {file}"
     return "; ".join([used, *ranges])
@@ -178,7 +178,7 @@ def stretch_used(walk: Pass, file: str) -> str:
 
 def write_tracked(answer: TrackedAnswer, out: Path) -> list[str]:
     """Write the model's own text with what has a form there, and its mapping, to go on from; their names."""
-    augmented = write_whole(out / augmented_name(answer.tracked.model), answer.written.text)
+    augmented = write_whole(out / name_augmented(answer.tracked.model), answer.written.text)
     mapping = augmented.with_suffix(".toml")
     write_tracked_mapping(replace(answer.tracked, model=augmented), mapping)
     return [augmented.name, mapping.name]
@@ -199,7 +199,7 @@ def _gaps(walk: Pass, written: WrittenModel, found: Discovery) -> tuple[str, ...
     return tuple(said)
 
 
-def joints_of(walk: Pass, angle_noise: Values, request: Request = ALL) -> tuple[Simulation, list[JointFinding]]:
+def search_joints(walk: Pass, angle_noise: Values, request: Request = ALL) -> tuple[Simulation, list[JointFinding]]:
     """Name what is left at each joint beside what noise makes of it; the simulation says what the numbers are."""
     if len(walk.times) < FEWEST:
         raise SamplingError(
@@ -220,7 +220,7 @@ def joints_of(walk: Pass, angle_noise: Values, request: Request = ALL) -> tuple[
 
 def _simulation(walk: Pass) -> Simulation:
     """The walk as a simulation: what its muscles' groups may do otherwise, and a port at each joint."""
-    plain, numbers = drafted(walk.engine), []
+    plain, numbers = draft(walk.engine), []
     for name in walk.groups:
         numbers.append(Parameter(f"{name}_strength", 1.0, "1", 1 - STRENGTH, 1 + STRENGTH, "against the file's forces"))
         numbers.append(Parameter(f"{name}_delay", 0.0, "s", meaning="by which they act later than in the file"))
@@ -245,7 +245,7 @@ def _candidates(base: Simulation, walk: Pass, more: tuple[Shape, ...]) -> dict[i
     """What may act at each joint: a device's shapes at its port, its muscles stronger or later, effects of the user."""
     joints = {k: walk.engine.coordinates[k] for k in walk.joints}
     places = [Place("port", one.port, ((one.name, one.speed),), (), (), one.unit == "rad") for one in joints.values()]
-    every = candidates_of(base, tuple(places), (*known_shapes(), *more))
+    every = list_candidates(base, tuple(places), (*read_shapes(), *more))
     effects = {*EFFECTS, *(shape.name for shape in more)}
     possible = [one for one in every if one.kind == "parameter" or (one.name in effects and not one.states)]
     found = {}
@@ -288,7 +288,7 @@ def _left(walk: Pass, base: Simulation, number: int, angle_noise: Values) -> Res
     )
 
 
-def shown_by(walk: Pass, number: int, found: JointFinding) -> Finding:
+def summarise_joint(walk: Pass, number: int, found: JointFinding) -> Finding:
     """Return what a joint can show, and what is left there."""
     one, joint = walk.engine.coordinates[number], found.joint
     unit = one.force_unit

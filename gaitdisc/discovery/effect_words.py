@@ -58,10 +58,10 @@ BETWEEN = (
 )
 
 
-def shown_unit(unit: str) -> tuple[str, float]:
+def display_unit(unit: str) -> tuple[str, float]:
     """Return the unit in which a person reads a number, and the factor to it: degrees for an angle or its rates.
 
-    >>> shown_unit("N m/rad"), shown_unit("rad/s")[0], round(shown_unit("rad")[1], 3)
+    >>> display_unit("N m/rad"), display_unit("rad/s")[0], round(display_unit("rad")[1], 3)
     (('N m/rad', 1.0), 'deg/s', 57.296)
     """
     if _RAD.match(unit):
@@ -69,9 +69,9 @@ def shown_unit(unit: str) -> tuple[str, float]:
     return ("" if unit == "1" else unit), 1.0
 
 
-def shown_channel(discovery: Discovery, channel: str) -> tuple[str, float]:
+def display_channel(discovery: Discovery, channel: str) -> tuple[str, float]:
     """Return the unit in which a person reads a channel, and the factor to it."""
-    return shown_unit(dict(zip(discovery.channels, discovery.units, strict=True))[channel])
+    return display_unit(dict(zip(discovery.channels, discovery.units, strict=True))[channel])
 
 
 def amount(value: float, step: float = math.nan) -> str:
@@ -108,7 +108,7 @@ def estimate_text(estimate: Estimate) -> str:
     >>> estimate_text(Estimate(-0.02, -0.03, -0.01, "rad"))
     '−1.1 deg (95 % −1.7 to −0.6)'
     """
-    unit, factor = shown_unit(estimate.unit)
+    unit, factor = display_unit(estimate.unit)
     value, low, high = (factor * one for one in (estimate.value, estimate.low, estimate.high))
     if not (math.isfinite(low) and math.isfinite(high)):
         return with_unit(amount(value), unit)
@@ -123,7 +123,7 @@ def brief_text(estimate: Estimate) -> str:
     >>> brief_text(Estimate(0.035, 0.033, 0.037, "rad"))
     '2.0 deg'
     """
-    unit, factor = shown_unit(estimate.unit)
+    unit, factor = display_unit(estimate.unit)
     return with_unit(amount(factor * estimate.value, factor * (estimate.high - estimate.low) / 2), unit)
 
 
@@ -161,7 +161,7 @@ def outside_text(effect: FoundEffect, found: Estimate) -> str:
     """
     if not effect.bounds or effect.bounds[0] <= found.value <= effect.bounds[1]:
         return ""
-    unit, factor = shown_unit(found.unit)
+    unit, factor = display_unit(found.unit)
     low, high = (f"{factor * one:.6g}" for one in effect.bounds)
     if not (math.isfinite(effect.bounds[0]) and math.isfinite(effect.bounds[1])):
         above = found.value > effect.bounds[1]

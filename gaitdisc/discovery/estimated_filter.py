@@ -19,7 +19,7 @@ from gaitdisc.discovery.segments import cut_segments
 from gaitdisc.discovery.shooting import Shooting
 from gaitdisc.recording import Finding
 from gaitdisc.recording.arrays import Values
-from gaitdisc.signals.recorded_filter import RecordedFilter, recorded_filter
+from gaitdisc.signals.recorded_filter import RecordedFilter, find_filter
 from gaitdisc.simulation.measured import Measured
 from gaitdisc.simulation.simulation import Simulation
 
@@ -32,7 +32,7 @@ FEWEST_SAMPLES = 16  # of a run
 ROUGH = 1.0  # times the noise's power at the cut-off, from which on a signal there makes the number a rough one
 
 
-def record_filter_of(
+def find_record_filter(
     simulation: Simulation, measured: Measured, period: float, guess: StateGuess
 ) -> tuple[RecordFilter, tuple[Finding, ...]]:
     """Return what the measured channels went through: as the file says, or as their spectra show.
@@ -42,7 +42,7 @@ def record_filter_of(
     """
     stated = tuple(simulation.sensor(name).lowpass for name in measured.channels)
     unknown = [number for number, cutoff in enumerate(stated) if cutoff is None]
-    seen = {number: found for number in unknown if (found := recorded_filter(_trials(measured, number), measured.rate))}
+    seen = {number: found for number in unknown if (found := find_filter(_trials(measured, number), measured.rate))}
     inputs = bool(seen) and _inputs_are_filtered(simulation, measured)
     if inputs or any(one.signal > FELT for one in seen.values()):
         length = min(max(int(period * measured.rate), FEWEST_SAMPLES), int(measured.samples.min()) // 2)
@@ -69,7 +69,7 @@ def _inputs_are_filtered(simulation: Simulation, measured: Measured) -> bool:
     drive = measured.drive
     trials = [each[:samples] for each, samples in zip(drive.inputs, drive.samples, strict=True)]
     numbers = [number for number, one in enumerate(simulation.inputs) if not one.computed]
-    found = [recorded_filter([each[:, number] for each in trials], drive.rate) for number in numbers]
+    found = [find_filter([each[:, number] for each in trials], drive.rate) for number in numbers]
     return any(one is not None and one.signal < SURE for one in found)
 
 
@@ -99,11 +99,11 @@ def _beside_the_simulation(
 
     Where inputs were filtered too, none are found if the simulation goes better with the record as it is.
     """
-    measured, like, found = now.shooting.measured, _stitched(now), dict(seen)
+    measured, like, found = now.shooting.measured, _stitch(now), dict(seen)
     for number, one in seen.items():
         if one.signal <= FELT:
             continue
-        again = recorded_filter(_trials(measured, number), measured.rate, [each[:, number] for each in like])
+        again = find_filter(_trials(measured, number), measured.rate, [each[:, number] for each in like])
         if one.signal > SURE:
             found.pop(number)
         if again and (one.signal > SURE or again.likelihood > one.likelihood + LIKELIER):
@@ -112,10 +112,10 @@ def _beside_the_simulation(
         return found
     cutoffs = tuple(found[number].cutoff_hz if number in found else None for number in range(len(measured.channels)))
     filtered = replace(now.shooting, record_filter=RecordFilter(cutoffs, measured.rate))
-    return found if now.model.refitted(filtered).fit.misfit < now.model.fit.misfit else {}
+    return found if now.model.refit(filtered).fit.misfit < now.model.fit.misfit else {}
 
 
-def _stitched(now: ScoredModel) -> Values:
+def _stitch(now: ScoredModel) -> Values:
     """Overlapping runs as whole trials (trial, sample, channel): one fades out while the next fades in."""
     segments, observed, fit = now.shooting.segments, now.shooting.measured.observed, now.model.fit
     runs = now.shooting.unfiltered(now.model.machine, fit.states[None], fit.values[None])[0]

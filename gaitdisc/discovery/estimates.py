@@ -13,7 +13,7 @@ from gaitdisc.discovery.result import Estimate
 from gaitdisc.discovery.scored_model import ScoredModel
 from gaitdisc.recording.arrays import Values
 from gaitdisc.simulation.simulation import Simulation
-from gaitdisc.simulation.unit_check import divided, places_unit, unit_of, unit_of_channel, unit_of_state
+from gaitdisc.simulation.unit_check import divide, find_unit, places_unit, unit_of_channel, unit_of_state
 
 NORMAL_95 = 1.959964
 RESISTING = ("stiffness", "damping", "drag", "friction")  # positive where they oppose what they see
@@ -23,7 +23,7 @@ _WANING = re.compile(r"max\(0, (-|_\w+ - )")  # max(0, x0 - x), max(0, -v)
 _WAVE = re.compile(r"(sin|cos)\((.*)\)")
 
 
-def estimates_of(model: CandidateModel, number: int, base: Simulation) -> dict[str, Estimate]:
+def list_estimates(model: CandidateModel, number: int, base: Simulation) -> dict[str, Estimate]:
     """Return the numbers of one explanation.
 
     returns: by name: `stiffness`, `engagement`, ... A stiffness, a damping, a drag and a friction are positive where
@@ -31,10 +31,10 @@ def estimates_of(model: CandidateModel, number: int, base: Simulation) -> dict[s
     """
     part, own = model.parts[number], model.names[number]
     rows = [model.fit.free.index(own[slot]) for slot in part.candidate.slots]
-    return named_estimates(part, np.asarray(model.fit.covariance)[np.ix_(rows, rows)], base)
+    return name_estimates(part, np.asarray(model.fit.covariance)[np.ix_(rows, rows)], base)
 
 
-def named_estimates(part: Part, covariance: Values, base: Simulation) -> dict[str, Estimate]:
+def name_estimates(part: Part, covariance: Values, base: Simulation) -> dict[str, Estimate]:
     """Return an explanation's numbers under their names.
 
     covariance (slot, slot): of its numbers, in the order of its slots; NaN where it is not known
@@ -88,11 +88,11 @@ def slot_units(candidate: Candidate, base: Simulation) -> dict[str, str]:
     own = {part.name: part.unit for part in (*base.states, *base.inputs, *base.parameters)} | {"t": "s"}
     if candidate.verdict == "missing_physics":
         place = places_unit(base, candidate.kind, candidate.place)
-        position = unit_of(candidate.role, own) if candidate.role else "1"
+        position = find_unit(candidate.role, own) if candidate.role else "1"
         constants = {slot: UNIT_OF_GRID.get(grid, position) for slot, grid in (candidate.constants or {}).items()}
         known = own | {f"_{slot}": unit for slot, unit in constants.items()}
         known |= {name: unit_of_state(base, rate) for name, rate in candidate.states.items()}
-        factors = [divided(place, "1" if piece == "1" else unit_of(piece, known)) for piece in candidate.pieces]
+        factors = [divide(place, "1" if piece == "1" else find_unit(piece, known)) for piece in candidate.pieces]
         return dict(zip(candidate.slots, [*factors, *constants.values()], strict=True))
     if candidate.constants:  # limits of an input
         return dict.fromkeys(candidate.slots, own[candidate.place])
@@ -102,7 +102,7 @@ def slot_units(candidate: Candidate, base: Simulation) -> dict[str, str]:
     if candidate.verdict == "wrong_parameter":
         return {slot: own[candidate.place]}
     channel = unit_of_channel(base, candidate.place)
-    return {slot: divided(channel, "s") if slot == "rate" else channel}
+    return {slot: divide(channel, "s") if slot == "rate" else channel}
 
 
 def _is_wave(candidate: Candidate, number: int) -> bool:

@@ -7,12 +7,12 @@ from typing import TYPE_CHECKING
 import numpy as np
 import pandas as pd
 
-from gaitdisc.discovery.effect_words import shown_channel, shown_unit
-from gaitdisc.discovery.method import method_of
+from gaitdisc.discovery.effect_words import display_channel, display_unit
+from gaitdisc.discovery.method import methods_used
 from gaitdisc.discovery.result import Discovery
 from gaitdisc.recording.arrays import Values
 from gaitdisc.report.figure import Figure
-from gaitdisc.report.panels import MEASURED, MODELS, Room, in_style, legend, lines_of, panels, panels_for
+from gaitdisc.report.panels import MEASURED, MODELS, Room, in_style, legend, legend_lines, panels, panels_for
 
 if TYPE_CHECKING:
     from matplotlib.artist import Artist
@@ -29,7 +29,7 @@ WORDS = ("measured", "simulated", "augmented")
 @in_style
 def discovery_figures(discovery: Discovery) -> list[Figure]:
     """Draw a typical stretch over time, the stride where there is a phase, and the gap against each channel."""
-    table = shown_runs(discovery)
+    table = display_runs(discovery)
     figures = [_over_time(discovery, table), _against_state(discovery, table)]
     if "phase" in table:
         figures.insert(1, _over_stride(discovery, table))
@@ -44,7 +44,7 @@ def explanations_figure(discovery: Discovery) -> list[Figure]:
         return []
     channel = discovery.held_out.ranked[0]
     unit, floor = noise_floor(discovery, channel)
-    factor = shown_channel(discovery, channel)[1]
+    factor = display_channel(discovery, channel)[1]
     drawn, (cells,) = panels(1, len(explanations), 1.1, Room(left=0.6, top=0.3, across=0.12))
     for number, (axes, one) in enumerate(zip(cells, explanations, strict=True), 1):
         axes.axhspan(-2 * floor, 2 * floor, color="#888888", alpha=0.22, linewidth=0)
@@ -63,18 +63,18 @@ def explanations_figure(discovery: Discovery) -> list[Figure]:
     return [Figure("explanations", caption, caption, table, drawn)]
 
 
-def shown_runs(discovery: Discovery) -> pd.DataFrame:
+def display_runs(discovery: Discovery) -> pd.DataFrame:
     """Held-out runs in the units that are drawn, degrees in place of radians."""
     table = pd.DataFrame(discovery.runs.table(discovery.channels)).dropna()
     for channel, unit in zip(discovery.channels, discovery.units, strict=True):
-        table[[f"{channel}_{word}" for word in WORDS]] *= shown_unit(unit)[1]
+        table[[f"{channel}_{word}" for word in WORDS]] *= display_unit(unit)[1]
     return table
 
 
-def stretch_of(table: pd.DataFrame, channel: str) -> pd.DataFrame:
+def pick_stretch(table: pd.DataFrame, channel: str) -> pd.DataFrame:
     """A typical stretch of the first trial.
 
-    table: of `shown_runs`
+    table: of `display_runs`
     """
     one = table[table["trial"] == table["trial"].iloc[0]].reset_index(drop=True)
     gap = (one[f"{channel}_measured"] - one[f"{channel}_simulated"]).to_numpy() ** 2
@@ -85,7 +85,7 @@ def stretch_of(table: pd.DataFrame, channel: str) -> pd.DataFrame:
 def draw_runs(axes: Axes, numbers: pd.DataFrame, channel: str) -> None:
     """Draw one channel over time: measured, simulated as read and with what was found; the gap is shaded.
 
-    numbers: of `stretch_of`
+    numbers: of `pick_stretch`
     """
     time = numbers["time"].to_numpy()
     seen, simulated, augmented = (numbers[f"{channel}_{word}"].to_numpy() for word in WORDS)
@@ -97,7 +97,7 @@ def draw_runs(axes: Axes, numbers: pd.DataFrame, channel: str) -> None:
 def draw_left(axes: Axes, numbers: pd.DataFrame, channel: str, floor: float) -> None:
     """Draw what is left of one channel over time: measured minus simulated, as read and with what was found.
 
-    numbers: of `stretch_of`
+    numbers: of `pick_stretch`
     floor: standard deviation of the sensor's noise [as drawn]; twice it is shaded grey
     """
     time = numbers["time"].to_numpy()
@@ -121,7 +121,7 @@ def typical_stretch(gap: Values, samples: int) -> tuple[int, int]:
     return begin, min(begin + samples, len(gap))
 
 
-def binned(along: Values, values: Values, edges: Values) -> pd.DataFrame:
+def bin_values(along: Values, values: Values, edges: Values) -> pd.DataFrame:
     """Return mean and standard deviation of values in bins, those with too few samples left out.
 
     along, values (sample,): where, and what
@@ -136,18 +136,18 @@ def binned(along: Values, values: Values, edges: Values) -> pd.DataFrame:
 
 def noise_floor(discovery: Discovery, channel: str) -> tuple[str, float]:
     """Unit in which a channel is drawn, and the standard deviation of its noise in it."""
-    text, factor = shown_channel(discovery, channel)
+    text, factor = display_channel(discovery, channel)
     return text or "1", factor * discovery.held_out.channels[channel][2]
 
 
-def _drawn_channels(discovery: Discovery) -> list[tuple[str, str, float]]:
+def _list_channels(discovery: Discovery) -> list[tuple[str, str, float]]:
     """Name, unit shown, noise floor in that unit."""
     return [(name, *noise_floor(discovery, name)) for name in discovery.held_out.ranked[:MOST_CHANNELS]]
 
 
 def _over_time(discovery: Discovery, table: pd.DataFrame) -> Figure:
-    channels = _drawn_channels(discovery)
-    trial, numbers = table["trial"].iloc[0], stretch_of(table, channels[0][0])
+    channels = _list_channels(discovery)
+    trial, numbers = table["trial"].iloc[0], pick_stretch(table, channels[0][0])
     drawn, grid = panels(len(channels), 2, 1.75, Room(left=0.6, across=0.62, down=0.52))
     for (left, right), (channel, unit, floor) in zip(grid, channels, strict=True):
         draw_runs(left, numbers, channel)
@@ -161,7 +161,7 @@ def _over_time(discovery: Discovery, table: pd.DataFrame) -> Figure:
     legend(drawn, discovery_key(measured=True))
     fitted = ", its parameters fitted within their bounds" if discovery.corrections else ""
     caption = (
-        f"Trial {trial}, {method_of(discovery).held_out}. Left: measured (black), initial model{fitted} (orange, "
+        f"Trial {trial}, {methods_used(discovery).held_out}. Left: measured (black), initial model{fitted} (orange, "
         "dashed), with the identified effect (green); the gap is shaded. Right: measured minus each; grey band: two "
         f"standard deviations of the noise. Typical section, {len(numbers)} samples."
     )
@@ -169,20 +169,20 @@ def _over_time(discovery: Discovery, table: pd.DataFrame) -> Figure:
 
 
 def _over_stride(discovery: Discovery, table: pd.DataFrame) -> Figure:
-    channels = _drawn_channels(discovery)
+    channels = _list_channels(discovery)
     edges = np.linspace(0, 100, STRIDE_BINS + 1)
     percent = 100 * table["phase"].to_numpy()
     drawn, grid = panels(len(channels), 2, 1.75, Room(left=0.6, across=0.62, down=0.52))
     kept = []
     for (left, right), (channel, unit, _) in zip(grid, channels, strict=True):
         seen = table[f"{channel}_measured"].to_numpy()
-        curves = {word: binned(percent, table[f"{channel}_{word}"].to_numpy(), edges) for word in WORDS}
+        curves = {word: bin_values(percent, table[f"{channel}_{word}"].to_numpy(), edges) for word in WORDS}
         at = curves["measured"]["at"].to_numpy()
         means = [curves[word]["mean"].to_numpy() for word in WORDS]
         left.fill_between(at, means[0], means[1], color=SHADE, alpha=0.55, linewidth=0, zorder=1)
         left.plot(at, means[0], color=MEASURED.colour, linewidth=1.3, zorder=2)
         _models(left, at, means[1], means[2])
-        gaps = [binned(percent, seen - table[f"{channel}_{word}"].to_numpy(), edges) for word in WORDS[1:]]
+        gaps = [bin_values(percent, seen - table[f"{channel}_{word}"].to_numpy(), edges) for word in WORDS[1:]]
         for gap, look in zip(gaps, (MODELS["nominal"], MODELS["augmented"]), strict=True):
             low, high = gap["mean"] - gap["sd"], gap["mean"] + gap["sd"]
             right.fill_between(gap["at"], low, high, color=look.colour, alpha=0.15, linewidth=0)
@@ -212,13 +212,13 @@ def _over_stride(discovery: Discovery, table: pd.DataFrame) -> Figure:
 
 
 def _against_state(discovery: Discovery, table: pd.DataFrame) -> Figure:
-    channels = _drawn_channels(discovery)
+    channels = _list_channels(discovery)
     drawn, cells = panels_for(len(channels), 3, 1.75, Room(left=0.6, across=0.62, down=0.62))
     kept = []
     for axes, (channel, unit, _) in zip(cells, channels, strict=True):
         seen = table[f"{channel}_measured"].to_numpy()
         edges = np.linspace(np.quantile(seen, 0.005), np.quantile(seen, 0.995), STATE_BINS + 1)
-        gaps = [binned(seen, seen - table[f"{channel}_{word}"].to_numpy(), edges) for word in WORDS[1:]]
+        gaps = [bin_values(seen, seen - table[f"{channel}_{word}"].to_numpy(), edges) for word in WORDS[1:]]
         for gap, look, shift in zip(gaps, (MODELS["nominal"], MODELS["augmented"]), (-0.1, 0.1), strict=True):
             at = gap["at"] + shift * (edges[1] - edges[0])
             error = gap["sd"].to_numpy()
@@ -253,8 +253,8 @@ def discovery_key(measured: bool) -> list[Artist]:
 
     looks = {"initial model": MODELS["nominal"], "with the effect": MODELS["augmented"]}
     if not measured:
-        return lines_of(looks)
-    return [*lines_of({"measured": MEASURED} | looks), Patch(color=SHADE, alpha=0.55, label="gap")]
+        return legend_lines(looks)
+    return [*legend_lines({"measured": MEASURED} | looks), Patch(color=SHADE, alpha=0.55, label="gap")]
 
 
 def _alt(discovery: Discovery) -> str:

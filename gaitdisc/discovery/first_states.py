@@ -74,7 +74,7 @@ def guess_states(simulation: Simulation, measured: Measured, period: float, rate
     for trial, record in enumerate(observed):
         length = int(measured.samples[trial])
         width = min(window, length // 2 * 2 - 1)
-        whole = [_bridged(channel, np.isfinite(channel)) for channel in record[:length].T]
+        whole = [_bridge(channel, np.isfinite(channel)) for channel in record[:length].T]
         smooth = np.column_stack([savgol_filter(one, width, 3) for one in whole]) / spread
         slope = np.column_stack([savgol_filter(one, width, 3, 1, 1 / rate) for one in whole]) / spread
         t = drive.time0[trial] + np.arange(length) / rate
@@ -88,7 +88,7 @@ def guess_states(simulation: Simulation, measured: Measured, period: float, rate
 
 def _following(simulation: Simulation, drive: Drive, states: Values, hidden: NDArray[np.bool_]) -> Values:
     """States (trial, sample, state), those that are hidden along their own equations, where they forget their start."""
-    machine = compile_simulation(driven_by_others(simulation, tuple(np.flatnonzero(hidden).tolist())))
+    machine = compile_simulation(isolate_equations(simulation, tuple(np.flatnonzero(hidden).tolist())))
     driving = np.concatenate([np.nan_to_num(states[..., ~hidden]), drive.inputs], axis=2)
     trials = np.arange(len(states))
     runs = run_twice(machine, replace(drive, inputs=driving), Rows(trials, 0 * trials, states[:, 0, hidden]))
@@ -118,16 +118,16 @@ def _states(
         beside = (slopes * ~free) @ (np.gradient(x, axis=0) * rate)[..., None]  # what the rates' own change shows
         moving = np.linalg.pinv(slopes * free, rcond=RANK) @ ((slope - seeing.drift(x, rate))[..., None] - beside)
         for position, other in open_ones.items():
-            x[:, other] = _bridged(moving[:, position, 0], known[:, position])
+            x[:, other] = _bridge(moving[:, position, 0], known[:, position])
         if not slopes[:, :, ~free].any():
             break
         x, known = seeing.solved(smooth, np.where(free, begin, x), free)
     for state in np.flatnonzero(often):
-        x[:, state] = _bridged(x[:, state], known[:, state])
+        x[:, state] = _bridge(x[:, state], known[:, state])
     return x, often | ~free
 
 
-def _bridged(values: Values, known: NDArray[np.bool_]) -> Values:
+def _bridge(values: Values, known: NDArray[np.bool_]) -> Values:
     return values if known.all() else np.interp(np.arange(len(values)), np.flatnonzero(known), values[known])
 
 
@@ -140,11 +140,11 @@ def with_own_states(shooting: Shooting, machine: Compiled, values: Values, start
     if shooting.past is None or len(machine.states) == shooting.past.shape[2]:
         return starts[:, : len(machine.states)]
     segments = shooting.segments
-    own = followed(shooting, machine.simulation, values[None])[0][segments.trial, segments.begin]
+    own = follow(shooting, machine.simulation, values[None])[0][segments.trial, segments.begin]
     return np.concatenate([starts[:, : shooting.past.shape[2]], own], axis=1)
 
 
-def followed(shooting: Shooting, simulation: Simulation, values: Values) -> Values:
+def follow(shooting: Shooting, simulation: Simulation, values: Values) -> Values:
     """Return the effects' own states along the states of the record (version, trial, sample, own state).
 
     values (version, parameter): its parameters, several versions of them
@@ -156,11 +156,11 @@ def followed(shooting: Shooting, simulation: Simulation, values: Values) -> Valu
         for state, seen in enumerate(shooting.past[trial, :length].T):
             known = np.isfinite(seen)
             if known.any():
-                past[trial, :length, state] = _bridged(seen, known)
+                past[trial, :length, state] = _bridge(seen, known)
     inputs = np.concatenate([past, drive.inputs], axis=2)
     along = Drive(drive.rate, drive.time0, inputs, drive.samples)
     machine = compile_simulation(
-        driven_by_others(simulation, tuple(range(shooting.past.shape[2], len(simulation.states))))
+        isolate_equations(simulation, tuple(range(shooting.past.shape[2], len(simulation.states))))
     )
     trials, versions = len(drive.samples), len(values)
     trial = np.tile(np.arange(trials), versions)
@@ -182,7 +182,7 @@ def run_twice(machine: Compiled, drive: Drive, rows: Rows, substeps: int = SUBST
     return first, machine.run(drive, again, steps, substeps=substeps)[0]
 
 
-def driven_by_others(simulation: Simulation, own: tuple[int, ...]) -> Simulation:
+def isolate_equations(simulation: Simulation, own: tuple[int, ...]) -> Simulation:
     """Return the equations of some of the states, the others being inputs before the rest; nothing acts at ports."""
     states, equations = [simulation.states[one] for one in own], dict(simulation.equations)
     others = [one for one in simulation.states if one not in states]
@@ -256,12 +256,12 @@ class ObservationMap:
             may be zero at 0
         returns determined (sample, state): whether the channels determine the state
         """
-        x = self._descended(seen, begin, free)
+        x = self._descend(seen, begin, free)
         left = self._left(seen, x)
         for shift in (1.0, -1.0):
             if (left < SOLVED**2).all():
                 break
-            other = self._descended(seen, begin + shift * free, free)
+            other = self._descend(seen, begin + shift * free, free)
             better = (left >= SOLVED**2) & (self._left(seen, other) < left / 2)
             x = np.where(better[:, None], other, x)
             left = self._left(seen, x)
@@ -270,7 +270,7 @@ class ObservationMap:
         whole = np.diagonal(space, axis1=1, axis2=2) > DETERMINED
         return x, whole & (left < LEFT**2)[:, None]
 
-    def _descended(self, seen: Values, x: Values, free: NDArray[np.bool_]) -> Values:
+    def _descend(self, seen: Values, x: Values, free: NDArray[np.bool_]) -> Values:
         """Gauss-Newton at all samples side by side, each step halved while it gains nothing."""
         left = self._left(seen, x)
         for _ in range(SOLVING_TURNS):

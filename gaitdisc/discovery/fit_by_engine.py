@@ -11,22 +11,22 @@ from numpy.typing import NDArray
 from gaitdisc.discovery.answer import left_out
 from gaitdisc.discovery.candidate_model import CandidateModel, Part
 from gaitdisc.discovery.criteria import CRITERIA
-from gaitdisc.discovery.estimates import named_estimates
-from gaitdisc.discovery.grids import rhythm_of
-from gaitdisc.discovery.joint_and_trials import lagged
+from gaitdisc.discovery.estimates import name_estimates
+from gaitdisc.discovery.grids import find_rhythm
+from gaitdisc.discovery.joint_and_trials import lag_signal
 from gaitdisc.discovery.kept_work import keep, recall
 from gaitdisc.discovery.noise import sensor_noise
-from gaitdisc.discovery.paired_test import paired_test, sum_error
+from gaitdisc.discovery.paired_test import compare_errors, sum_error
 from gaitdisc.discovery.record_filter import RecordFilter
 from gaitdisc.discovery.result import Discovery, Runs
 from gaitdisc.discovery.scored_model import ScoredModel
-from gaitdisc.discovery.wording import sentence_of
+from gaitdisc.discovery.wording import write_sentence
 from gaitdisc.engines.engine import Engine
-from gaitdisc.engines.mapping import replaced_inputs, with_input_changed, with_strength
+from gaitdisc.engines.mapping import replace_inputs, with_input_changed, with_strength
 from gaitdisc.engines.motion import Values
-from gaitdisc.engines.own_runs import Driven, OwnRuns, left_by, root_mean_square, stretches_of, trial_called
-from gaitdisc.engines.written import WrittenModel, written_model
-from gaitdisc.simulation.expression import names, parsed
+from gaitdisc.engines.own_runs import Driven, OwnRuns, residual_by, root_mean_square, spread_stretches, trial_called
+from gaitdisc.engines.written import WrittenModel, write_model
+from gaitdisc.simulation.expression import names, parse
 from gaitdisc.simulation.measured import Measured
 from gaitdisc.simulation.simulation import Simulation
 from gaitdisc.words import counted
@@ -74,20 +74,20 @@ class EngineFit:
     def written(self, found: Discovery, parts: tuple[Part, ...]) -> tuple[Simulation, WrittenModel, Driven]:
         """Return the mapping with what was found, the model with it, and that as the engine runs it."""
         whole, data = self.in_mapping(found, parts), self.measured
-        written = written_model(self.engine, whole, self.native)
+        written = write_model(self.engine, whole, self.native)
         own = {one.name for one in whole.states[len(self.mapping.states) :]}
-        kept = tuple(one for one in whole.effects if not own & set(names(parsed(one.term))))
+        kept = tuple(one for one in whole.effects if not own & set(names(parse(one.term))))
         augmented = replace(whole, states=self.mapping.states, equations=self.mapping.equations, effects=kept)
         controls, lags, called = data.drive.inputs.copy(), {}, [one.name for one in self.engine.controls]
         driving = replace(augmented, definitions=written.definitions)
         for trial, samples in enumerate(data.samples):
             time, u = data.time(trial)[:samples], data.drive.inputs[trial, :samples]
-            controls[trial, :samples] = replaced_inputs(driving, time, u, data.rate)
+            controls[trial, :samples] = replace_inputs(driving, time, u, data.rate)
         for part in parts:
             if part.candidate.name == "input_lag":
                 column = called.index(part.candidate.place)
                 lags[column] = seconds = max(part.values["seconds"], 0.1 / data.rate)
-                controls[:, :, column] = lagged(controls[:, :, column], seconds * data.rate)
+                controls[:, :, column] = lag_signal(controls[:, :, column], seconds * data.rate)
                 lag = f"{part.candidate.place}, behind a first-order lag of {seconds:.4g} s, has no form in a mapping: "
                 written = replace(written, notes=(*written.notes, f"{lag}only discovery.json contains it"))
         recorded = self.low_pass.filtered
@@ -99,7 +99,7 @@ class EngineFit:
         """Measured minus the engine's runs (run, sample, channel) with some of what was found."""
         known = recall(repr([one.values for one in parts]))
         if known is None:
-            left = left_by(self.written(found, parts)[2], self.measured, runs.at, self.states, near)
+            left = residual_by(self.written(found, parts)[2], self.measured, runs.at, self.states, near)
             keep((left.tolist(), {row: start.tolist() for row, start in (near or {}).items()}))
             return left
         if near is not None:
@@ -114,7 +114,7 @@ class EngineFit:
             return augmented, written
         held, near = held_out(found, runs, self.measured), dict[int, Values]()
         at = runs.among(held if held.any() else ~held).at
-        left = [left_by(driven, self.measured, at, self.states, near) for *_, driven in both]
+        left = [residual_by(driven, self.measured, at, self.states, near) for *_, driven in both]
         sizes = zip(runs.units.items(), root_mean_square(left[0] - left[1]), strict=True)
         said = ", ".join(f"{name} by {size:.1g} {unit}" for (name, unit), size in sizes)
         notes = (*written.notes[:-1], f"{written.notes[-1]}; its held-out runs deviate from the expression's in {said}")
@@ -161,24 +161,24 @@ class EngineFit:
         effects = []
         for number, (one, part) in enumerate(zip(found.effects, self.parts, strict=True)):
             own = [k for k, (other, _) in enumerate(slots) if other == number]
-            numbers, idle = named_estimates(part, covariance[np.ix_(own, own)], base), part.candidate.idle
+            numbers, idle = name_estimates(part, covariance[np.ix_(own, own)], base), part.candidate.idle
             away = [abs(values[k] - idle[slots[k][1]]) for k in own if slots[k][1] in idle]
             sure = [CRITERIA.certain * np.sqrt(covariance[k, k]) for k in own if slots[k][1] in idle]
             effects.append(replace(one, term=part.term, estimates=numbers, small=bool(np.less(away, sure).all())))
         return replace(found, effects=tuple(effects))
 
 
-def borne_out(runs: OwnRuns, without: Values) -> bool:
+def errs_less(runs: OwnRuns, without: Values) -> bool:
     """Whether the engine's runs without some of what was found (run, sample, channel) miss more, not by chance."""
-    test = paired_test(without, runs.after, runs.floor)
+    test = compare_errors(without, runs.after, runs.floor)
     return test.bears_out and test.fall > CRITERIA.margin
 
 
 def base_runs(engine: Engine, fit: EngineFit) -> OwnRuns:
     """Run a model as read along every trial."""
     mapping, data, recorded = fit.mapping, fit.measured, fit.low_pass.filtered
-    at = stretches_of(data, rhythm_of(data.observed, data.rate).samples, engine.fibres, fit.low_pass.margin)
-    left = left_by(Driven(engine, mapping, data.drive.inputs, {}, recorded, fit.progress), data, at, fit.states)
+    at = spread_stretches(data, find_rhythm(data.observed, data.rate).samples, engine.fibres, fit.low_pass.margin)
+    left = residual_by(Driven(engine, mapping, data.drive.inputs, {}, recorded, fit.progress), data, at, fit.states)
     sensors = {name: mapping.sensor(name) for name in data.channels}
     given = np.array([one.sd or np.nan for one in sensors.values()], float)
     floor = np.where(np.isnan(given), sensor_noise(data.observed), given)
@@ -221,5 +221,5 @@ def with_own_runs(found: Discovery, runs: OwnRuns, fit: EngineFit, base: Simulat
         explanations=(*named, *found.explanations[len(named) :]),
         runs=Runs(at.trial[shown], time, np.zeros((len(shown), 0)), seen, simulated, augmented, names=data.trials),
     )
-    said = sentence_of(found, base, fit.parts if effects else ())
+    said = write_sentence(found, base, fit.parts if effects else ())
     return replace(said, sentence=" ".join([said.sentence, *left_out(found.findings)]))

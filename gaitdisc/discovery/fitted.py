@@ -171,13 +171,13 @@ class Fitted:
         return np.linalg.pinv((flat / size).T @ (flat / size), rcond=1e-12) / np.outer(size, size)
 
 
-def prior_of(simulation: Simulation, exact: frozenset[str] = frozenset()) -> Prior:
+def read_prior(simulation: Simulation, exact: frozenset[str] = frozenset()) -> Prior:
     """Read the prior off a simulation's bounds.
 
     simulation: a parameter with `low` and `high` has a prior; one with a single bound or none is exact
 
     >>> from gaitdisc.simulation.simulation_file import bundled
-    >>> prior = prior_of(bundled("ankle"), frozenset(["b"]))
+    >>> prior = read_prior(bundled("ankle"), frozenset(["b"]))
     >>> prior.names, prior.sd.round(3).tolist()
     (('inertia', 'k'), [0.049, 19.5])
     """

@@ -9,13 +9,13 @@ from itertools import product
 
 import numpy as np
 
-from gaitdisc.discovery.candidate import Candidate, unnamed
+from gaitdisc.discovery.candidate import Candidate, no_shape
 from gaitdisc.discovery.candidate_model import CandidateModel, Part
 from gaitdisc.discovery.case import Case
 from gaitdisc.discovery.criteria import CRITERIA
 from gaitdisc.discovery.gap_share import CrossValidated, cross_validated
 from gaitdisc.discovery.places import Place
-from gaitdisc.discovery.scored_model import ScoredModel, scored
+from gaitdisc.discovery.scored_model import ScoredModel, score
 from gaitdisc.discovery.search import Search
 from gaitdisc.recording.arrays import Values
 
@@ -41,7 +41,7 @@ def shapes_at(place: Place, now: ScoredModel, search: Search) -> list[Candidate]
         centres = (np.arange(STRIDE_BUMPS) + 0.5) / STRIDE_BUMPS
         sharp = (STRIDE_BUMPS / (SHARPNESS * 2 * np.pi)) ** 2 * 2
         pieces = [f"exp({sharp:.4g}*(cos(6.283185307179586*(phase - {c:.4g})) - 1))" for c in centres]
-        shapes.append(unnamed(place, tuple(pieces), place.motions[0][0]))
+        shapes.append(no_shape(place, tuple(pieces), place.motions[0][0]))
     return shapes
 
 
@@ -51,16 +51,16 @@ def _shapes_over(place: Place, x: str, v: str, now: ScoredModel, search: Search)
     axes = [x, v] if v else [x, *place.others[:1]]
     ranges = {axis: np.quantile(search.along(now.model, axis), VISITED) for axis in axes}
     shapes = [_bumps(ranges, {one: count}) for one in axes for count in (FLAT_BUMPS, FINE_BUMPS)]
-    name, across = _bracketed(v or x), _bumps(ranges, {x: FLAT_BUMPS})
+    name, across = _bracket(v or x), _bumps(ranges, {x: FLAT_BUMPS})
     shapes.append([f"{piece}*tanh({name}/{SHARE_OF_SPEED * max(map(abs, ranges[v or x])):.4g})" for piece in across])
     if v:
         shapes.append([f"{piece}*{name}" for piece in across])
     if len(axes) > 1:
         shapes += [_bumps(ranges, dict.fromkeys(axes, BUMPS)), _powers(ranges)]
-    return [unnamed(place, tuple(pieces), x) for pieces in shapes]
+    return [no_shape(place, tuple(pieces), x) for pieces in shapes]
 
 
-def fitted_shape(case: Case, now: ScoredModel) -> ScoredModel | None:
+def fit_shape(case: Case, now: ScoredModel) -> ScoredModel | None:
     """Fit a shape at every place and return the one that closes most of the gap on runs left out of the fit.
 
     The slopes of the simulation as read say which shapes promise most; these are fitted, and the best ones thinned out
@@ -76,19 +76,19 @@ def fitted_shape(case: Case, now: ScoredModel) -> ScoredModel | None:
     tried = [cross_validated(scale, plain, (part,)) for part in _promising(now, search, plain)]
     best = _cheapest(tried, plain)[:2]
     tried = best + [
-        cross_validated(scale, plain, (part,)) for one in best for part in (*_thinned(one.model), *_local(one.model))
+        cross_validated(scale, plain, (part,)) for one in best for part in (*_thin_shape(one.model), *_local(one.model))
     ]
     kept = _cheapest([one for one in tried if search.sensible(one.model)], plain)
-    return scored(now.shooting, kept[0].model) if kept else None
+    return score(now.shooting, kept[0].model) if kept else None
 
 
-def cost_of(one: CrossValidated, plain: CrossValidated) -> float:
+def find_cost(one: CrossValidated, plain: CrossValidated) -> float:
     """Return what a model leaves of the gap on runs left out of the fit, and a little for each of its numbers."""
     return one.gap / plain.gap + CRITERIA.each_number * one.model.size if plain.gap > 0 else np.inf
 
 
 def _cheapest(tried: list[CrossValidated], plain: CrossValidated) -> list[CrossValidated]:
-    return sorted((one for one in tried if np.isfinite(one.gap)), key=lambda one: cost_of(one, plain))
+    return sorted((one for one in tried if np.isfinite(one.gap)), key=lambda one: find_cost(one, plain))
 
 
 def _promising(now: ScoredModel, search: Search, plain: CrossValidated) -> list[Part]:
@@ -101,7 +101,7 @@ def _promising(now: ScoredModel, search: Search, plain: CrossValidated) -> list[
     return [Part(one.candidate, one.values) for one in scores[:FITTED]]
 
 
-def _thinned(model: CandidateModel) -> Iterator[Part]:
+def _thin_shape(model: CandidateModel) -> Iterator[Part]:
     """Yield the shape without the bumps whose factor is lost in its error."""
     (part,) = model.parts
     error = np.sqrt(np.diag(model.fit.covariance))[: model.size]
@@ -116,14 +116,14 @@ def _thinned(model: CandidateModel) -> Iterator[Part]:
 def _local(model: CandidateModel) -> Iterator[Part]:
     """Yield one bump whose place and width are free, from each of the two strongest of a shape over one state."""
     (part,) = model.parts
-    strongest = sorted(part.candidate.pieces, key=lambda piece: -abs(part.values[_slot_of(part, piece)]))[:2]
+    strongest = sorted(part.candidate.pieces, key=lambda piece: -abs(part.values[_find_slot(part, piece)]))[:2]
     for piece in strongest:
         bump = _ONE_BUMP.fullmatch(piece)
         if not bump:
             continue
         name, centre, width, rest = bump.groups()
         constants = {"c": "quantiles of x", "w": "half widths of x"}
-        begin = {"factor": part.values[_slot_of(part, piece)], "c": float(centre.strip("()")), "w": float(width) / 2}
+        begin = {"factor": part.values[_find_slot(part, piece)], "c": float(centre.strip("()")), "w": float(width) / 2}
         rise = _RISE.fullmatch(rest)
         if rise:
             rest, begin["s"] = f"*tanh({rise[1]}/_s)", float(rise[2]) / 2
@@ -133,7 +133,7 @@ def _local(model: CandidateModel) -> Iterator[Part]:
         )
 
 
-def _slot_of(part: Part, piece: str) -> str:
+def _find_slot(part: Part, piece: str) -> str:
     return part.candidate.slots[part.candidate.pieces.index(piece)]
 
 
@@ -142,7 +142,7 @@ def _bumps(ranges: dict[str, Values], counts: dict[str, int]) -> list[str]:
     for axis, count in counts.items():
         low, high = ranges[axis]
         step = (high - low) / (count - 1) or 1.0
-        name = _bracketed(axis)
+        name = _bracket(axis)
         at: Values = np.linspace(low, high, count)
         centres.append([f"(({name} - {_number(centre)})/{SHARPNESS * step:.4g})**2" for centre in at])
     return [f"exp(-({' + '.join(parts)}))" for parts in product(*centres)]
@@ -152,13 +152,13 @@ def _powers(ranges: dict[str, Values]) -> list[str]:
     """Return the products of powers of two states, each between -1 and 1 where it mostly lies."""
     scaled = []
     for axis, (low, high) in ranges.items():
-        name = _bracketed(axis)
+        name = _bracket(axis)
         scaled.append(f"(({name} - {_number((low + high) / 2)})/{(high - low) / 2 or 1.0:.4g})")
     orders = [(i, j) for i in range(DEGREE + 1) for j in range(DEGREE + 1 - i)]
     return ["*".join(f"{one}**{n}" for one, n in zip(scaled, order, strict=True) if n) or "1" for order in orders]
 
 
-def _bracketed(axis: str) -> str:
+def _bracket(axis: str) -> str:
     return f"({axis})" if " " in axis else axis
 
 

@@ -22,9 +22,9 @@ from gaitdisc.discovery.result import (
 )
 from gaitdisc.saved.kind import Kind
 from gaitdisc.saved.provenance import Provenance
-from gaitdisc.saved.unit_folder import check_files, damaged, file_sha256, of_another_format, read_sealed, sealed_text
+from gaitdisc.saved.unit_folder import check_files, damage, file_sha256, of_another_format, read_sealed, seal_text
 from gaitdisc.spreadsheet import read_csv, write_csv
-from gaitdisc.whole_file import write_whole, written_so_far, written_together
+from gaitdisc.whole_file import find_written, write_together, write_whole
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -34,20 +34,20 @@ RUNS = "held_out.csv"
 FORMAT = 1
 
 
-@written_together()
+@write_together()
 def save_discovery(discovery: Discovery, folder: Path, models: Sequence[str] = ()) -> Path:
     """Save a discovery; models: files of the augmented model, which were written into the folder together with it."""
     import pandas as pd
 
     discovery = discovery.public
     write_csv(pd.DataFrame(discovery.runs.table(discovery.channels)).dropna(), folder / RUNS, "%.8g")
-    hashes = {name: file_sha256(written_so_far(folder / name)) for name in (RUNS, *models)}
-    return write_whole(folder / NAME, sealed_text({**discovery.to_json(), "format": FORMAT, "sha256": hashes}))
+    hashes = {name: file_sha256(find_written(folder / name)) for name in (RUNS, *models)}
+    return write_whole(folder / NAME, seal_text({**discovery.to_json(), "format": FORMAT, "sha256": hashes}))
 
 
 def load_discovery(folder: Path) -> Discovery:
     """Load a discovery; the runs have the eight digits of their table, and those samples that were measured."""
-    from gaitdisc.saved.unit_folder import stored_finding  # brings jsonschema, which saving does not need
+    from gaitdisc.saved.unit_folder import load_finding  # brings jsonschema, which saving does not need
 
     data = read_sealed(folder / NAME)
     if data.get("format", FORMAT) != FORMAT:  # before there was a number, the form was this one
@@ -68,36 +68,36 @@ def load_discovery(folder: Path) -> Discovery:
             channels=channels,
             units=tuple(data["channels"].values()),
             runs=_runs(table, channels),
-            findings=tuple(map(stored_finding, data["findings"])),
+            findings=tuple(map(load_finding, data["findings"])),
             provenance=Provenance(**made) if made else None,
             corrections=tuple(
                 Correction(row["parameter"], given, Estimate(value, low, high, row["unit"]))
                 for row in data["corrections"]
-                for given, value, low, high in [map(_known, (row[name] for name in ("from", "to", "low", "high")))]
+                for given, value, low, high in [map(_restore, (row[name] for name in ("from", "to", "low", "high")))]
             ),
             explanations=tuple(map(_explanation, data.get("explanations", ()))),
             given=data.get("given", ""),
-            beside=_known(data.get("beside", {})),
+            beside=_restore(data.get("beside", {})),
             conditions=tuple(map(_condition, data.get("conditions", ()))),
         )
     except (KeyError, TypeError, ValueError, AttributeError) as error:
         if hasattr(error, "needed"):  # a refusal of its own
             raise
-        raise damaged(folder / NAME, f"not in the expected form ({type(error).__name__}: {error})") from error
+        raise damage(folder / NAME, f"not in the expected form ({type(error).__name__}: {error})") from error
 
 
-def _known(value: Any) -> Any:
+def _restore(value: Any) -> Any:
     """Return what JSON held as results hold it: tuples, and NaN where a number was not finite."""
     if isinstance(value, Mapping):
-        return {key: _known(one) for key, one in value.items()}
+        return {key: _restore(one) for key, one in value.items()}
     if isinstance(value, list):
-        return tuple(_known(one) for one in value)
+        return tuple(_restore(one) for one in value)
     return float("nan") if value is None else value
 
 
 def _where(row: Mapping[str, Any]) -> Whereabouts:
     (kind, place), *others = row.items()
-    return Whereabouts(kind, place, **_known(dict(others)))
+    return Whereabouts(kind, place, **_restore(dict(others)))
 
 
 def _effect(row: Mapping[str, Any]) -> FoundEffect:
@@ -109,8 +109,8 @@ def _effect(row: Mapping[str, Any]) -> FoundEffect:
         place,
         row["name"],
         row["term"],
-        {name: Estimate(**_known(each)) for name, each in row["estimates"].items()},
-        **_known(row["evidence"]),
+        {name: Estimate(**_restore(each)) for name, each in row["estimates"].items()},
+        **_restore(row["evidence"]),
         bounds=tuple(edge if bound is None else bound for bound, edge in bounds),
         reads_as=reading["expression"],
         reads_as_effect=reading["effect"] or "",
@@ -119,17 +119,17 @@ def _effect(row: Mapping[str, Any]) -> FoundEffect:
 
 
 def _condition(row: Mapping[str, Any]) -> ConditionAnswer:
-    return ConditionAnswer(**{**row, "effects": tuple(map(_effect, row["effects"])), "beside": _known(row["beside"])})
+    return ConditionAnswer(**{**row, "effects": tuple(map(_effect, row["effects"])), "beside": _restore(row["beside"])})
 
 
 def _explanation(row: Mapping[str, Any]) -> Explanation:
-    time, left = (_known(row["left"][name]) for name in ("time", "measured_minus_run"))
+    time, left = (_restore(row["left"][name]) for name in ("time", "measured_minus_run"))
     held_out = _gap(row["held_out"]) if row["held_out"] else None
     return Explanation(tuple(map(_effect, row["effects"])), held_out, time, left)
 
 
 def _gap(row: Mapping[str, Any]) -> GapSize:
-    size = _known({key: one for key, one in row.items() if key != "unexplained"})
+    size = _restore({key: one for key, one in row.items() if key != "unexplained"})
     channels = {name: tuple(one[key] for key in SIZES) for name, one in size["channels"].items()}
     return GapSize(**(size | {"channels": channels}))
 

@@ -91,13 +91,13 @@ def settled(search: Search, now: ScoredModel, worth: float, explored: set[Explan
     """
     for _ in range(SETTLED):
         before = now
-        now = pruned(search, exchanged(search, now, explored), worth)
+        now = prune(search, exchange(search, now, explored), worth)
         if sorted(now.labels) == sorted(before.labels):
             break
     return now
 
 
-def exchanged(search: Search, now: ScoredModel, explored: set[Explanations]) -> ScoredModel:
+def exchange(search: Search, now: ScoredModel, explored: set[Explanations]) -> ScoredModel:
     """Return the model after each explanation was tried against all others in its place."""
     for number in range(len(now.model.parts)):
         rest = search.without(now, number)
@@ -113,7 +113,7 @@ def exchanged(search: Search, now: ScoredModel, explored: set[Explanations]) -> 
     return now
 
 
-def pruned(search: Search, now: ScoredModel, worth: float, fewest: int = 1) -> ScoredModel:
+def prune(search: Search, now: ScoredModel, worth: float, fewest: int = 1) -> ScoredModel:
     """Return the model without the explanations that are missed least, by less than a worth, while it has others."""
     while len(now.model.parts) > fewest:
         fewer = [search.without(now, number) for number in range(len(now.model.parts))]

@@ -72,7 +72,7 @@ class GapScale:
         """Return the root of a mean square above what the sensors' noise leaves."""
         return float(np.sqrt(max(mean_square - self.floor, 0.0)))
 
-    def error_of(self, fit: Fitted) -> Noise:
+    def white_error(self, fit: Fitted) -> Noise:
         """Return white noise as large as an autocorrelated residual weighs against a prior."""
         return white_noise(self.size * np.sqrt(CRITERIA.independent * max(self.mean_square(fit), 1e-12)))
 
@@ -93,16 +93,16 @@ def cross_validated(scale: GapScale, begun: ScoredModel, parts: tuple[Part, ...]
     """
     model, shooting = begun.model, begun.shooting
     enough = CONVERGED * shooting.seen.size / CRITERIA.independent
-    shooting = shooting.with_noise(scale.error_of(model.fit))
-    model = model.refitted(shooting, parts, turns=TURNS, enough=enough)
+    shooting = shooting.with_noise(scale.white_error(model.fit))
+    model = model.refit(shooting, parts, turns=TURNS, enough=enough)
     if not np.isfinite(model.fit.misfit):
         return CrossValidated(model, shooting)
-    shooting = shooting.with_noise(scale.error_of(model.fit)).with_past(model.fit.states)
-    model = model.refitted(shooting, turns=AGAIN, enough=enough)
+    shooting = shooting.with_noise(scale.white_error(model.fit)).with_past(model.fit.states)
+    model = model.refit(shooting, turns=AGAIN, enough=enough)
     if not np.isfinite(model.fit.misfit):
         return CrossValidated(model, shooting)
     square = float(np.mean((shooting.noise.size / scale.size) ** 2))
-    errors = left_out_errors(model.fit) * square / shooting.known.mean()
+    errors = leave_out_errors(model.fit) * square / shooting.known.mean()
     return CrossValidated(model, shooting, errors=errors, gap=scale.gap_above(float(errors.mean())))
 
 
@@ -113,7 +113,7 @@ def errs_more(one: CrossValidated, other: CrossValidated) -> float:
     return errors_rise_p(np.sqrt(other.errors), np.sqrt(one.errors))
 
 
-def left_out_errors(fit: Fitted) -> Values:
+def leave_out_errors(fit: Fitted) -> Values:
     """Return the mean squares of whitened residuals that the constants were estimated without (piece,).
 
     The fit is linear in its constants and start states around where it ended. Where whole runs are left out, their own
@@ -150,7 +150,7 @@ def _without_pieces(fit: Fitted) -> Values:
     for run in range(runs):
         for piece in np.array_split(np.arange(rows), pieces + 1)[1:]:
             kept = np.setdiff1d(np.arange(rows), piece)
-            start, moved = _estimated_without(fit, run, kept)
+            start, moved = _estimate_without(fit, run, kept)
             n = fit.starts.shape[1]
             slopes = fit.slopes[run, piece]
             error = fit.white[run, piece] - slopes[:, :n] @ start - slopes[:, n:] @ moved
@@ -158,7 +158,7 @@ def _without_pieces(fit: Fitted) -> Values:
     return np.array(errors)
 
 
-def _estimated_without(fit: Fitted, run: int, kept: NDArray[np.intp]) -> tuple[Values, Values]:
+def _estimate_without(fit: Fitted, run: int, kept: NDArray[np.intp]) -> tuple[Values, Values]:
     """Start states of one run (state,) and the constants (free,), from its kept rows and all other runs."""
     n = fit.starts.shape[1]
     normal, match = _prior(fit)

@@ -32,14 +32,14 @@ class Rhythm:
         return self.period * self.rate
 
 
-def rhythm_of(observed: Values, rate: float) -> Rhythm:
+def find_rhythm(observed: Values, rate: float) -> Rhythm:
     """Read the main period off the measured channels.
 
     observed (trial, sample, channel): measured, NaN where a trial has ended
     rate: samples a second [Hz]
 
     >>> t = np.arange(1000) / 100
-    >>> bool(abs(rhythm_of(np.sin(2 * np.pi * 0.5 * t)[None, :, None], 100).period - 2.0) < 0.1)
+    >>> bool(abs(find_rhythm(np.sin(2 * np.pi * 0.5 * t)[None, :, None], 100).period - 2.0) < 0.1)
     True
     """
     periods = []

@@ -12,7 +12,7 @@ from gaitdisc.discovery.first_states import with_own_states
 from gaitdisc.discovery.fitted import Fitted
 from gaitdisc.discovery.input_errors import wandering, with_drawn_errors
 from gaitdisc.discovery.noise import white_noise
-from gaitdisc.discovery.paired_test import PairedTest, paired_test
+from gaitdisc.discovery.paired_test import PairedTest, compare_errors
 from gaitdisc.discovery.result import GapSize, Runs
 from gaitdisc.discovery.scored_model import ScoredModel
 from gaitdisc.discovery.segments import Segments
@@ -38,13 +38,13 @@ class Trial:
         return self.fit.misfits
 
 
-def runs_of(case: Case, now: ScoredModel, trials: tuple[int, ...], like: ScoredModel) -> Trial:
+def run_trials(case: Case, now: ScoredModel, trials: tuple[int, ...], like: ScoredModel) -> Trial:
     """Run a model over trials, finding nothing but the start states."""
     guess, runs = case.guess, []
     for length in _lengths(like.shooting.segments.span / case.rhythm.samples):
         segments = case.segments(trials, length)
         shooting = replace(case.shooting(segments).with_noise(like.noise), past=guess.states)
-        runs.append(Trial(segments, _started(shooting, now, guess.starts(segments)), shooting.seen))
+        runs.append(Trial(segments, _start_runs(shooting, now, guess.starts(segments)), shooting.seen))
         guess = guess.with_run(segments, runs[-1].fit.states)
     return runs[-1]
 
@@ -71,7 +71,7 @@ def free_runs(case: Case, now: ScoredModel) -> tuple[float, float]:
         seen[trial, first:] = np.nan
         shooting = case.shooting(segments).with_noise(white_noise(scale.size))
         begun = replace(shooting, measured=replace(case.measured, observed=seen))
-        run = _started(begun, now, case.guess.starts(segments))
+        run = _start_runs(begun, now, case.guess.starts(segments))
         whole = shooting.at(now.model.machine, (), run.values, run.starts)
         error = np.where(np.isfinite(whole.residual), (whole.residual / scale.spread) ** 2, CRITERIA.lost)
         slopes = np.nan_to_num(whole.slopes.reshape(*whole.residual.shape, -1))
@@ -151,11 +151,11 @@ def _informative(case: Case, as_read: ScoredModel, now: ScoredModel) -> tuple[in
 
 def _apart(case: Case, as_read: ScoredModel, now: ScoredModel, trials: tuple[int, ...]) -> float:
     """Return by how much the misfit would fall on trials if what was found were true: how far the runs are apart."""
-    before, after = (runs_of(case, one, trials, now) for one in (as_read, now))
+    before, after = (run_trials(case, one, trials, now) for one in (as_read, now))
     return float(((before.fit.white - after.fit.white) ** 2).sum())
 
 
-def _started(shooting: Shooting, now: ScoredModel, starts: Values) -> Fitted:
+def _start_runs(shooting: Shooting, now: ScoredModel, starts: Values) -> Fitted:
     """Return a model run over segments from the start states that suit it best, its constants as they are."""
     machine, values = now.model.machine, now.model.fit.values
     return shooting.fitted(machine, (), values, with_own_states(shooting, machine, values, starts), TURNS)
@@ -201,15 +201,15 @@ class Proof:
         return float(1 - after / before)
 
 
-def proof_of(case: Case, before: ScoredModel, now: ScoredModel, like: ScoredModel) -> Proof:
+def prove(case: Case, before: ScoredModel, now: ScoredModel, like: ScoredModel) -> Proof:
     """Run two models over the held-out trials and test what they err by."""
-    first, second = (runs_of(case, one, case.held_out, like) for one in (before, now))
+    first, second = (run_trials(case, one, case.held_out, like) for one in (before, now))
     return Proof(first, second, compare_runs(case, first, second, like))
 
 
 def compare_runs(case: Case, before: Trial, after: Trial, like: ScoredModel) -> PairedTest:
     """Test whether the same runs of two models err less in the second."""
-    return replace(paired_test(before.fit.residual, after.fit.residual, like.noise.size), alpha=case.alpha)
+    return replace(compare_errors(before.fit.residual, after.fit.residual, like.noise.size), alpha=case.alpha)
 
 
 def gap_size(before: Trial, after: Trial, floor: Values, channels: tuple[str, ...], test: PairedTest) -> GapSize:
@@ -224,7 +224,7 @@ def gap_size(before: Trial, after: Trial, floor: Values, channels: tuple[str, ..
     return GapSize(whole[0], whole[1], whole[2], test.p, sizes, test.pieces, alpha=test.alpha)
 
 
-def drawn_runs(case: Case, before: Trial, after: Trial) -> Runs:
+def tabulate_runs(case: Case, before: Trial, after: Trial) -> Runs:
     """Return the runs as a report draws them."""
     segments, drive = before.segments, case.measured.drive
     names = [one.name for one in case.search.base.inputs]

@@ -36,17 +36,17 @@ class Idle:
             for severity, said, spoils in (
                 (
                     "warning",
-                    _said(kind, self.places),
+                    _say_names(kind, self.places),
                     "a search there: an effect that does not show cannot be identified",
                 ),
-                ("note", _said("parameter", self.parameters), "nothing; these data cannot determine its value"),
-                ("note", _said("state", self.states), "nothing; these data cannot determine its initial value"),
+                ("note", _say_names("parameter", self.parameters), "nothing; these data cannot determine its value"),
+                ("note", _say_names("state", self.states), "nothing; these data cannot determine its initial value"),
             )
             if said
         )
 
 
-def _said(kind: str, names: tuple[str, ...]) -> str:
+def _say_names(kind: str, names: tuple[str, ...]) -> str:
     words = " and ".join(repr(name) for name in names)
     return f"{kind} {words} has" if len(names) == 1 else f"{kind}s {words} have" if names else ""
 

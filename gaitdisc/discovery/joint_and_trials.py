@@ -11,10 +11,10 @@ from gaitdisc.discovery.candidate import Candidate
 from gaitdisc.discovery.changed_moment import Change, Walk
 from gaitdisc.errors import StrideError
 from gaitdisc.processing.joint_record import JointRecord
-from gaitdisc.processing.muscle_moment import JOINTS, Driven, MuscleMoment, driven_of, fitted_moment, sign_at
+from gaitdisc.processing.muscle_moment import JOINTS, Driven, MuscleMoment, drives, fit_moment, sign_at
 from gaitdisc.recording.arrays import Values
 from gaitdisc.simulation.even_time import TrialColumns
-from gaitdisc.simulation.measured import Measured, measured_of_trials
+from gaitdisc.simulation.measured import Measured, check_measured
 from gaitdisc.simulation.parts import Input, Parameter, Port, Sensor, State
 from gaitdisc.simulation.simulation import Simulation
 
@@ -45,16 +45,16 @@ def nominal_moment(record: JointRecord) -> MuscleMoment:
     count = int(record.stride.max()) + 1
     blocks = np.where(record.stride >= 0, record.stride * BLOCKS // max(count, 1), -1)
     moment = np.where(np.isfinite(record.rate), record.moment, np.nan)
-    return fitted_moment(driven_of(record), moment, blocks)
+    return fit_moment(drives(record), moment, blocks)
 
 
-def walk_of(record: JointRecord) -> Walk:
+def as_walk(record: JointRecord) -> Walk:
     """Return one walk for the fit of both together."""
     known = np.isfinite(record.moment) & np.isfinite(record.rate) & np.isfinite(record.phase)
-    return Walk(driven_of(record), np.where(known, record.moment, np.nan), record.stride)
+    return Walk(drives(record), np.where(known, record.moment, np.nan), record.stride)
 
 
-def changes_of(record: JointRecord) -> list[Change]:
+def changes(record: JointRecord) -> list[Change]:
     """List what a device, a muscle or a mass may change in a walk, by the names of the simulation and the catalogue."""
     word, once = f"{JOINTS[record.joint]}_moment", np.zeros(1)
     low, high = np.quantile(record.angle[record.stride >= 0], ENGAGED)
@@ -74,7 +74,7 @@ def changes_of(record: JointRecord) -> list[Change]:
     def stronger(driven: Driven, by: float, sign: int) -> Driven:
         return replace(driven, envelopes=driven.envelopes * np.where(driven.signs == sign, by, 1.0))
 
-    signs = driven_of(record).signs
+    signs = drives(record).signs
     for sign, group in zip((-1, 1), GROUPS[record.joint], strict=True):
         if (signs == sign).any():
             strength = f"{group}_strength", "value", STRENGTHS
@@ -91,7 +91,7 @@ def _later(driven: Driven, delay_s: float) -> Driven:
     return replace(driven, envelopes=late)
 
 
-def tracked_joint(record: JointRecord, model: MuscleMoment) -> Simulation:
+def joint_model(record: JointRecord, model: MuscleMoment) -> Simulation:
     """Return the simulation: the joint goes with the recorded motion, and the model says its net moment.
 
     record: of the device walk
@@ -143,9 +143,9 @@ def tracked_joint(record: JointRecord, model: MuscleMoment) -> Simulation:
     )
 
 
-def tracked_trials(record: JointRecord, model: MuscleMoment, simulation: Simulation) -> Measured:
+def cut_walk_trials(record: JointRecord, model: MuscleMoment, simulation: Simulation) -> Measured:
     """Cut the walk into trials of some strides in a row, with the model's moments as inputs."""
-    driven = driven_of(record)
+    driven = drives(record)
     step = max(round(driven.rate_hz / RATE_HZ), 1)
     names = [name.split("_")[1] for name in record.muscles if sign_at(record.joint, name)]
     columns = {
@@ -158,7 +158,7 @@ def tracked_trials(record: JointRecord, model: MuscleMoment, simulation: Simulat
     }
     inputs = np.column_stack([columns[one.name] for one in simulation.inputs])
     known, at = np.isfinite(record.moment), np.arange(len(record.moment))
-    late = lagged(np.interp(at, at[known], record.moment[known])[None], driven.rate_hz / RATE_HZ)[0]  # as its state
+    late = lag_signal(np.interp(at, at[known], record.moment[known])[None], driven.rate_hz / RATE_HZ)[0]  # as its state
     seen = np.column_stack([record.seen, np.where(known, late, np.nan)])
     usable = np.isfinite(inputs).all(axis=1) & np.isfinite(record.seen)
     trials: list[TrialColumns] = []
@@ -179,13 +179,13 @@ def tracked_trials(record: JointRecord, model: MuscleMoment, simulation: Simulat
             "Record longer, and keep each foot on its own plate.",
         )
     driving = [one.name for one in simulation.inputs]
-    return measured_of_trials(trials, driving, [name for name, _ in simulation.observations], record.subject)
+    return check_measured(trials, driving, [name for name, _ in simulation.observations], record.subject)
 
 
-def lagged(signal: Values, samples: float) -> Values:
+def lag_signal(signal: Values, samples: float) -> Values:
     """Signal (trial, sample) behind a first-order lag, linear between samples and at rest at first.
 
-    >>> bool(np.isclose(lagged(np.arange(200.0)[None], 5.0)[0, -1], 194.0))
+    >>> bool(np.isclose(lag_signal(np.arange(200.0)[None], 5.0)[0, -1], 194.0))
     True
     """
     from scipy.signal import lfilter

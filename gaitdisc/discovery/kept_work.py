@@ -19,7 +19,7 @@ from gaitdisc.discovery.candidate import Candidate
 from gaitdisc.discovery.effect_words import named_at
 from gaitdisc.errors import GaitdiscError
 from gaitdisc.processing.kept_parts import FOLDER, hash_content, keep_part, read_part
-from gaitdisc.saved.provenance import installed_versions
+from gaitdisc.saved.provenance import list_versions
 from gaitdisc.whole_file import remove_file
 from gaitdisc.words import counted
 
@@ -82,7 +82,7 @@ def kept_work(folder: Path, say: Callable[[str], None]) -> Iterator[Work]:
 
     say: gets a line about each step
     """
-    key = hash_content((), repr(installed_versions()))
+    key = hash_content((), repr(list_versions()))
     work = Work(folder, say, key, read_part(folder, NAME, key) or {})
     token = _WORK.set(work)
     try:

@@ -57,7 +57,7 @@ class Linearised:
 
     def among(self, some: NDArray[np.intp]) -> Linearised:
         """Return the maps of some of the segments."""
-        return Linearised(self.onward[some], self.pushed[some], self.landed[some])
+        return Linearised(self.onward[some], self.pushed[some], self.land[some])
 
     def of_push(self, place: int, push: Values) -> Values:
         """Return the change of state (segment, sample, state, candidate) that pushes at a place cause.
@@ -102,7 +102,7 @@ def linearise_along(
         states[1 + state, ..., state] += spans[state]
     for place in range(len(places)):
         many[1 + n + place, own + place] = PUSH
-    landed = shooting.landed(machine, states, many)
+    landed = shooting.land(machine, states, many)
     change = landed[1:] - landed[0]
     onward = np.moveaxis(change[:n] / spans[:, None, None, None], 0, -1)
     pushed = np.moveaxis(change[n:] / PUSH, 0, -1)
@@ -120,7 +120,7 @@ def pushable(simulation: Simulation, places: tuple[Place, ...]) -> Compiled:
     return compile_simulation(simulation)
 
 
-def seen_change(shooting: Shooting, machine: Compiled, fit: Fitted, change: Values) -> Values:
+def carry_change(shooting: Shooting, machine: Compiled, fit: Fitted, change: Values) -> Values:
     """Return what changes of state change in the measured channels (segment, sample, channel, candidate).
 
     change (segment, sample, state, candidate): to first order
@@ -142,7 +142,7 @@ def seen_change(shooting: Shooting, machine: Compiled, fit: Fitted, change: Valu
     return shooting.filtered(slopes @ change, 1)
 
 
-def seen_push(shooting: Shooting, simulation: Simulation, places: tuple[Place, ...], fit: Fitted) -> Values:
+def propagate_push(shooting: Shooting, simulation: Simulation, places: tuple[Place, ...], fit: Fitted) -> Values:
     """Return what a unit push changes at once in what the sensors see (segment, sample, channel, place).
 
     Before any filter, states as they are: an input may stand in what is measured.

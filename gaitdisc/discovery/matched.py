@@ -8,15 +8,15 @@ from numpy.typing import ArrayLike
 from gaitdisc.channel import nearest_word
 from gaitdisc.discovery.catalogue import SIGNALS, Shape
 from gaitdisc.errors import ChannelError, SamplingError, ShapeError, SimulationError
-from gaitdisc.simulation.delays import refuse_delays, refuse_delays_of
-from gaitdisc.simulation.expression import parsed
+from gaitdisc.simulation.delays import refuse_delays, refuse_own_delays
+from gaitdisc.simulation.expression import parse
 from gaitdisc.simulation.measured import Measured
 from gaitdisc.simulation.simulation import Simulation
 
 FEWEST = 16  # samples of a trial
 
 
-def matched(simulation: Simulation, measured: Measured, shapes: tuple[Shape, ...] = ()) -> Simulation:
+def match_channels(simulation: Simulation, measured: Measured, shapes: tuple[Shape, ...] = ()) -> Simulation:
     """Return the simulation with the observations that were measured, in their order."""
     where = measured.source or "the measured trials"
     observations = tuple(name for name, _ in simulation.observations)
@@ -41,7 +41,7 @@ def matched(simulation: Simulation, measured: Measured, shapes: tuple[Shape, ...
     for shape in shapes:
         for piece in shape.pieces:
             try:
-                refuse_delays_of(parsed(piece), {}, SIGNALS, lasts, measured.trials[shortest])
+                refuse_own_delays(parse(piece), {}, SIGNALS, lasts, measured.trials[shortest])
             except SimulationError as error:
                 raise error.at("shape", shape.name) from None
     return simulation if measured.channels == observations else simulation.observing(measured.channels)

@@ -113,7 +113,7 @@ METHODS = {
 OF_A_SIMULATION = Method(SHORT_RUNS, RUNS_HELD_OUT, "In augmented.toml, which runs like the simulation:")
 
 
-def method_of(discovery: Discovery) -> Method:
+def methods_used(discovery: Discovery) -> Method:
     """How an answer was made, by what its provenance says."""
     made = discovery.provenance
     return METHODS.get(made.section, OF_A_SIMULATION) if made else OF_A_SIMULATION

@@ -29,7 +29,7 @@ class Noise:
     """Stationary noise of each channel as an autoregression of its own past.
 
     >>> white = Noise(((np.zeros(0),),), (np.array([2.0]),))
-    >>> white.whitened(np.full((1, 3, 1), 4.0))[0, :, 0]
+    >>> white.whiten(np.full((1, 3, 1), 4.0))[0, :, 0]
     array([2., 2., 2.])
     """
 
@@ -62,7 +62,7 @@ class Noise:
             for all_of, by in zip(self.spread, filtered, strict=True)
         )
 
-    def whitened(self, residual: NDArray[np.float64], known: NDArray[np.bool_] | None = None) -> NDArray[np.float64]:
+    def whiten(self, residual: NDArray[np.float64], known: NDArray[np.bool_] | None = None) -> NDArray[np.float64]:
         """Return residuals as independent numbers of unit variance, if the noise is what it is taken for.
 
         residual (segment, sample, channel, ...): each segment begins afresh: its first samples are predicted from the
@@ -91,7 +91,7 @@ def white_noise(size: NDArray[np.float64]) -> Noise:
     return Noise(tuple((np.zeros(0),) for _ in size), tuple(np.array([one]) for one in size))
 
 
-def noise_of(
+def find_noise(
     residual: NDArray[np.float64],
     used: float = 0.0,
     white_share: float = WHITE_SHARE,
@@ -108,7 +108,7 @@ def noise_of(
     autocorrelation (lag, channel): of what the record's filter leaves of white noise
 
     >>> e = np.random.default_rng(0).normal(0, 3, (20, 200, 1))
-    >>> noise = noise_of(e)
+    >>> noise = find_noise(e)
     >>> noise.lags, bool(abs(noise.size[0] - 3) < 0.1)
     ((0,), True)
     """
@@ -125,18 +125,18 @@ def noise_of(
         covariance = np.array([(e[:, : samples - lag] * e[:, lag:]).sum() / count for lag in range(most + 1)]) * enlarge
         covariance[0] = max(covariance[0] + always[channel], np.finfo(float).tiny)
         covariance[1:] /= 1 + white_share
-        orders, left = _predicted(covariance)
+        orders, left = _predict(covariance)
         best = int(np.argmin(count * np.log(left) + np.arange(most + 1) * np.log(count)))
         predictors.append(tuple(orders[: best + 1]))
         spread.append(np.sqrt(left[: best + 1]))
         if autocorrelation is not None:
             own = autocorrelation[: best + 1, channel] * (1 - np.arange(best + 1) / each)
             own[1:] /= 1 + white_share
-            filtered.append(float(1 / np.sqrt(_predicted(own)[1][-1])))
+            filtered.append(float(1 / np.sqrt(_predict(own)[1][-1])))
     return Noise(tuple(predictors), tuple(spread), tuple(filtered))
 
 
-def _predicted(covariance: NDArray[np.float64]) -> tuple[list[NDArray[np.float64]], NDArray[np.float64]]:
+def _predict(covariance: NDArray[np.float64]) -> tuple[list[NDArray[np.float64]], NDArray[np.float64]]:
     """Predictors of each order from a covariance (lag,), and what each leaves (order,)."""
     orders = [np.zeros(0)]
     for order in range(1, len(covariance)):

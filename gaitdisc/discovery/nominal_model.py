@@ -7,10 +7,10 @@ import numpy as np
 from gaitdisc.errors import SchemaError, StrideError
 from gaitdisc.ingest.study import Study
 from gaitdisc.processing.process import Walk
-from gaitdisc.processing.processed_walks import processed_walks
+from gaitdisc.processing.processed_walks import process_walks
 from gaitdisc.recording.arrays import Values
 from gaitdisc.simulation.even_time import TrialColumns
-from gaitdisc.simulation.measured import Measured, measured_of_trials
+from gaitdisc.simulation.measured import Measured, check_measured
 from gaitdisc.simulation.parts import Input, Parameter, Port, State
 from gaitdisc.simulation.simulation import Simulation
 
@@ -33,7 +33,7 @@ def nominal_and_trials(
     joint: angle, without its side; the side is that of the study's strides
     returns simulation: states theta [rad] and omega [rad/s], input phase, port `acceleration` [rad/s^2]
     """
-    walks, refusals = processed_walks(study, study.participant(participant))
+    walks, refusals = process_walks(study, study.participant(participant))
     if refusals:
         raise SchemaError(
             f"both walks of {participant} are required",
@@ -88,7 +88,7 @@ def stride_trials(walk: Walk, name: str, strides: int = STRIDES) -> Measured:
             f"{walk.trial.name} has {len(own)}, in a row {len(trials)} times {strides}",
             "Record longer, or use fewer strides in a trial.",
         )
-    return measured_of_trials(trials, ("phase",), ("theta",), walk.trial.name)
+    return check_measured(trials, ("phase",), ("theta",), walk.trial.name)
 
 
 def _motion(walk: Walk, name: str) -> tuple[Values, ...]:

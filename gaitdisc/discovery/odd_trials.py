@@ -94,7 +94,7 @@ def odd_trials(case: Case) -> tuple[Odd, ...]:
     fit, segments = bench.fitted(case.measured)
     before = bench.errors(fit, segments)
     found: dict[int, list[Odd]] = {}
-    for change in (*_turned(case), *_shifted(bench, fit, segments)):
+    for change in (*_turn(case), *_shift(bench, fit, segments)):
         after = bench.errors(*bench.fitted(change.measured))
         for trial in range(count):
             then, now = (float(np.median(np.delete(each, trial))) for each in (before, after))
@@ -143,7 +143,7 @@ class _Bench:
         return np.sqrt([np.nanmean(square[segments.trial == trial]) for trial in np.unique(segments.trial)])
 
 
-def _turned(case: Case) -> Iterator[Change]:
+def _turn(case: Case) -> Iterator[Change]:
     """Yield the trials with the sign of a channel, of all channels, or of an input turned."""
     measured, inputs = case.measured, case.search.base.inputs
     for number, name in enumerate(measured.channels):
@@ -159,7 +159,7 @@ def _turned(case: Case) -> Iterator[Change]:
             yield Change(f"{SIGN}{part.name}", part.name, replace(measured, drive=drive))
 
 
-def _shifted(bench: _Bench, fit: Fitted, segments: Segments) -> Iterator[Change]:
+def _shift(bench: _Bench, fit: Fitted, segments: Segments) -> Iterator[Change]:
     """Yield the trials with all channels shifted against the inputs, by what serves one of the trials."""
     if not bench.simulation.driving:  # a system that is left to itself has no clock to be shifted against
         return
@@ -177,10 +177,10 @@ def _shifted(bench: _Bench, fit: Fitted, segments: Segments) -> Iterator[Change]
         likely |= {shifts[place] for place in promising[:SHIFTS_TRIED]}
     for shift in sorted(likely):
         words = f"its channels are {abs(shift) / measured.rate:.3g} s too {'late' if shift > 0 else 'early'}"
-        yield Change(f"{words} for its inputs", "", shifted(measured, shift))
+        yield Change(f"{words} for its inputs", "", shift_channels(measured, shift))
 
 
-def shifted(measured: Measured, shift: int) -> Measured:
+def shift_channels(measured: Measured, shift: int) -> Measured:
     """Return trials whose channels come a number of samples earlier against their inputs; each loses as many."""
     inputs, seen = max(-shift, 0), max(shift, 0)
     trials = [(each, int(samples) - abs(shift)) for each, samples in enumerate(measured.samples)]
@@ -229,14 +229,14 @@ def without_trial_apart(case: Case) -> Measured:
     spread = np.nanstd(measured.observed, axis=(0, 1))
     as_read = replace(case, learned=tuple(range(count))).as_read()
     search, model = case.search, as_read.model
-    promised = search.scorer(as_read.shooting, model).left_without_each(search.open_beside(model))  # to first order
+    promised = search.scorer(as_read.shooting, model).leave_out_each(search.open_beside(model))  # to first order
     trial, other = np.argsort(promised)[:2].tolist()
-    least = _left_without(case, trial, spread)
+    least = _leave_out_each(case, trial, spread)
     wanted = max(CRITERIA.apart * least, CRITERIA.model_error)
     others = as_read.shooting.segments.trial != other
     if np.sqrt(np.nanmean((model.fit.residual[others] / spread) ** 2)) < wanted:  # a search leaves no more of these
         return measured
-    next_least = _left_without(case, other, spread)
+    next_least = _leave_out_each(case, other, spread)
     if next_least < wanted:
         return measured
     what = (
@@ -250,7 +250,7 @@ def without_trial_apart(case: Case) -> Measured:
     return replace(kept, findings=(*kept.findings, Finding("warning", KIND, source, what, spoils)))
 
 
-def _left_without(case: Case, trial: int, spread: Values) -> float:
+def _leave_out_each(case: Case, trial: int, spread: Values) -> float:
     """Root mean square that the best single explanation of all other trials leaves [standard deviations]."""
     others = tuple(other for other in range(len(case.measured.trials)) if other != trial)
     part = replace(case, learned=others)

@@ -13,19 +13,19 @@ import pandas as pd
 from gaitdisc.discovery.effect_words import (
     amount,
     at_place,
+    display_unit,
     estimate_text,
     outside_text,
-    shown_unit,
     spoken,
     with_unit,
     would_distinguish,
 )
 from gaitdisc.discovery.figure import discovery_figures, explanations_figure
-from gaitdisc.discovery.method import method_of
+from gaitdisc.discovery.method import methods_used
 from gaitdisc.discovery.result import VERDICTS, Discovery, Estimate, Explanation, FoundEffect
 from gaitdisc.report.figure import save_figures
 from gaitdisc.report.page import write_page
-from gaitdisc.report.table import Table, provenance_tables, save_tables, seen_table
+from gaitdisc.report.table import Table, provenance_tables, save_tables, tabulate_findings
 from gaitdisc.words import NONE, counted, p_cell
 
 
@@ -35,7 +35,7 @@ def estimates_table(discovery: Discovery) -> Table:
     for effect in discovery.effects:
         for name, one in effect.estimates.items():
             number = name.replace("_", " ")
-            degrees = estimate_text(one) if shown_unit(one.unit)[1] != 1.0 else ""
+            degrees = estimate_text(one) if display_unit(one.unit)[1] != 1.0 else ""
             rows.append((spoken(effect.name), effect.place, number, *_amounts(one), degrees))
             records.append(
                 (effect.name, effect.kind, effect.place, name, one.value, one.low, one.high, one.unit, effect.term)
@@ -55,11 +55,11 @@ def gap_table(discovery: Discovery) -> Table:
         for channel, unit in zip(discovery.channels, discovery.units, strict=True):
             if channel not in size.channels:
                 continue
-            shown, factor = shown_unit(unit)
+            shown, factor = display_unit(unit)
             before, after, floor = size.channels[channel]
             amounts = [with_unit(amount(factor * one, factor * floor / 10), shown) for one in (before, after, floor)]
-            rows.append((data, channel, *amounts, _percent(closed_share(before, after, floor)), p_cell(size.p)))
-            records.append((data, channel, before, after, floor, unit, closed_share(before, after, floor), size.p))
+            rows.append((data, channel, *amounts, _percent(share_closed(before, after, floor)), p_cell(size.p)))
+            records.append((data, channel, before, after, floor, unit, share_closed(before, after, floor), size.p))
     moved = " (initial model, parameters with bounds fitted within these)" if discovery.corrections else ""
     held, fitted = (counted(size.pieces, "independent sample") for size in (discovery.held_out, discovery.train))
     caption = (
@@ -121,7 +121,7 @@ def trials_table(discovery: Discovery) -> Table:
     for number in np.unique(runs.trial):
         name = runs.names[number] if runs.names else str(number + 1)
         for place, (channel, unit) in enumerate(zip(discovery.channels, discovery.units, strict=True)):
-            shown, factor = shown_unit(unit)
+            shown, factor = display_unit(unit)
             of_trial = (one[runs.trial == number][:, :, place] for one in errors)
             before, after = (float(np.sqrt(np.nanmean(one))) for one in of_trial)
             amounts = (with_unit(amount(factor * one, factor * before / 20), shown) for one in (before, after))
@@ -177,7 +177,7 @@ def explanations_table(discovery: Discovery) -> Table:
         first, size = one.effects[0], one.held_out
         own = number == 1 and one.effects == discovery.effects
         apart = NONE if own or not named else would_distinguish(named[0].name, one.effects[-1].name)
-        closed = closed_share(size.before, size.after, size.noise_floor) if size else math.nan
+        closed = share_closed(size.before, size.after, size.noise_floor) if size else math.nan
         tied = "named" if own else "small" if first.small else "yes" if one.tied else "no"
         numbers = "; ".join(_numbers(each) for each in one.effects)
         bic = f"{first.bic:.0f}".replace("-", "−") if math.isfinite(first.bic) else NONE
@@ -197,13 +197,13 @@ def explanations_table(discovery: Discovery) -> Table:
 
 def data_findings(discovery: Discovery) -> Table:
     """What was seen in the files on the way."""
-    return seen_table(discovery.findings, f"Findings in the files, n = {len(discovery.findings)}.")
+    return tabulate_findings(discovery.findings, f"Findings in the files, n = {len(discovery.findings)}.")
 
 
-def closed_share(before: float, after: float, floor: float) -> float:
+def share_closed(before: float, after: float, floor: float) -> float:
     """Return which share of the squared gap above the noise is closed, at most all of it; NaN where there is none.
 
-    >>> closed_share(2.0, 0.9, 1.0), round(closed_share(3.0, 1.5, 1.0), 2)
+    >>> share_closed(2.0, 0.9, 1.0), round(share_closed(3.0, 1.5, 1.0), 2)
     (1.0, 0.84)
     """
     there = before**2 - floor**2
@@ -233,7 +233,7 @@ def _frame(records: Sequence[tuple[object, ...]], columns: Sequence[str]) -> pd.
 def write_discovery_report(discovery: Discovery, folder: Path) -> Path:
     """Write the report of a discovery: `report.html`, `figures/` and `tables/`."""
     discovery = discovery.public
-    made, how = discovery.provenance, method_of(discovery)
+    made, how = discovery.provenance, methods_used(discovery)
     tables = {
         "estimates": estimates_table(discovery),
         "gap": gap_table(discovery),

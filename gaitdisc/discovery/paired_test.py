@@ -29,7 +29,7 @@ class PairedTest:
         return self.fall > 0 and self.p < self.alpha
 
 
-def paired_test(before: NDArray[np.float64], after: NDArray[np.float64], floor: NDArray[np.float64]) -> PairedTest:
+def compare_errors(before: NDArray[np.float64], after: NDArray[np.float64], floor: NDArray[np.float64]) -> PairedTest:
     """Test whether what one model errs by goes along with what another changes, each sample by its size.
 
     If the first model lacks nothing, its errors are noise, and their product with a change that was found on other data
@@ -48,7 +48,7 @@ def paired_test(before: NDArray[np.float64], after: NDArray[np.float64], floor: 
     >>> rng = np.random.default_rng(0)
     >>> noise, change = rng.normal(size=(2, 200, 1)), np.sin(np.arange(200) / 9)[None, :, None]
     >>> one = np.ones(1)
-    >>> paired_test(noise + change, noise, one).bears_out, paired_test(noise, noise + change, one).bears_out
+    >>> compare_errors(noise + change, noise, one).bears_out, compare_errors(noise, noise + change, one).bears_out
     (True, False)
     """
     from scipy.stats import t as student
@@ -59,7 +59,7 @@ def paired_test(before: NDArray[np.float64], after: NDArray[np.float64], floor: 
     first, second = (np.nan_to_num(one / floor) for one in (before, after))
     fall, change = float((first**2 - second**2).sum()), first - second
     covariance = _autocovariance(second, known)
-    spread = np.sqrt(max(float((covariance * _lagged_products(change)).sum()), 0.0))
+    spread = np.sqrt(max(float((covariance * _lag_products(change)).sum()), 0.0))
     if not spread > 0:
         return PairedTest(1.0, 0, fall)
     independent = float((known / (covariance**2 / covariance[0] ** 2).sum(axis=0)).sum())
@@ -73,19 +73,19 @@ def sum_error(change: NDArray[np.float64], left: NDArray[np.float64]) -> float:
     change, left (run, sample, channel): what is multiplied with the noise, and what is left; NaN where not measured
     """
     covariance = _autocovariance(np.nan_to_num(left), np.isfinite(left).sum(axis=(0, 1)))
-    return float(np.sqrt(max(float((covariance * _lagged_products(change)).sum()), 0.0)))
+    return float(np.sqrt(max(float((covariance * _lag_products(change)).sum()), 0.0)))
 
 
 def _autocovariance(left: NDArray[np.float64], known: NDArray[np.intp]) -> NDArray[np.float64]:
     """Return the autocovariance of what is left (lag, channel), weighed down with the lag."""
-    covariance = _lagged_products(left / np.sqrt(np.maximum(known, 1)))
+    covariance = _lag_products(left / np.sqrt(np.maximum(known, 1)))
     lags = np.abs(np.fft.fftfreq(len(covariance), 1 / len(covariance)))
     memory = min(float(np.abs(covariance[1] / covariance[0]).max()), MOST_MEMORY)
     last = 1.1447 * (4 * memory**2 * int(known.max()) / (1 - memory**2) ** 2) ** (1 / 3)  # the longer the memory
     return covariance * np.maximum(1 - lags / (min(last, len(lags) / 2 - 1) + 1), 0.0)[:, None]
 
 
-def _lagged_products(record: NDArray[np.float64]) -> NDArray[np.float64]:
+def _lag_products(record: NDArray[np.float64]) -> NDArray[np.float64]:
     """Return products of samples a lag apart, summed over runs (lag, channel); lags below 0 come last."""
     samples = 2 * record.shape[1]
     power = np.abs(np.fft.rfft(record, samples, axis=1)) ** 2

@@ -53,7 +53,7 @@ def kinematic_rates(simulation: Simulation, machine: Compiled) -> dict[str, str]
     return pairs
 
 
-def places_of(simulation: Simulation, machine: Compiled) -> tuple[Place, ...]:
+def list_places(simulation: Simulation, machine: Compiled) -> tuple[Place, ...]:
     """List where a missing effect may enter: the ports, or else every equation that is not mere kinematics."""
     rate_of = kinematic_rates(simulation, machine)
     if not simulation.ports:
@@ -61,13 +61,13 @@ def places_of(simulation: Simulation, machine: Compiled) -> tuple[Place, ...]:
         return tuple(_place(simulation, "equation", name, name, rate_of) for name in named)
     found = []
     for port in (one.name for one in simulation.ports):
-        own = driven_state(simulation, machine, port)
+        own = find_driven_state(simulation, machine, port)
         moved = moved_by(simulation, machine, port)[:, machine.states.index(rate_of.get(own, own))]
         found.append(replace(_place(simulation, "port", port, own, rate_of), power=float(np.sign(moved.sum()))))
     return tuple(found)
 
 
-def driven_state(simulation: Simulation, machine: Compiled, port: str) -> str:
+def find_driven_state(simulation: Simulation, machine: Compiled, port: str) -> str:
     """Name the state that a port drives: the one it is named after, or else the one whose derivative it moves most.
 
     In a chain of bodies a moment at one joint may move another joint's angle more than its own.

@@ -18,8 +18,8 @@ from gaitdisc.discovery.candidate import Candidate
 from gaitdisc.discovery.candidate_model import Part
 from gaitdisc.discovery.criteria import CRITERIA
 from gaitdisc.discovery.grids import Rhythm, cells
-from gaitdisc.discovery.noise import Noise, noise_of
-from gaitdisc.discovery.paired_test import PairedTest, paired_test
+from gaitdisc.discovery.noise import Noise, find_noise
+from gaitdisc.discovery.paired_test import PairedTest, compare_errors
 from gaitdisc.recording.arrays import Values
 
 LATEST_S, DELAYS = 0.12, 25
@@ -131,7 +131,7 @@ class JointFinding:
             if values is not None:
                 predicted[held] = joint.explained(one.part.candidate, values)[held]
         after = joint.left - predicted
-        test = paired_test(joint.left[None, :, None], after[None, :, None], np.array([joint.floor or 1.0]))
+        test = compare_errors(joint.left[None, :, None], after[None, :, None], np.array([joint.floor or 1.0]))
         before, after = (float((self._white(each) ** 2).sum()) for each in (joint.left, after))
         return replace(one, predicted=predicted, held_out=_fall(before, after, len(predicted)), test=test)
 
@@ -189,13 +189,13 @@ class JointFinding:
     def _white(self, columns: Values, known: NDArray[np.bool_] | None = None) -> Values:
         """Whitened values (sample,) or columns (sample, column); 0 at samples that are not to be known, then afresh."""
         where = None if known is None else known[None, :, None]
-        return self.noise.whitened(columns.reshape(1, len(columns), 1, -1), where).reshape(columns.shape)
+        return self.noise.whiten(columns.reshape(1, len(columns), 1, -1), where).reshape(columns.shape)
 
 
 def joint_finding(joint: ResidualMoment, candidates: tuple[Candidate, ...], joints: int = 1) -> JointFinding:
     """Weigh every candidate at one of some joints; name the best where evidence and held-out time bear it out."""
     floor = CRITERIA.model_error * float(np.std(joint.demanded))
-    found = JointFinding(joint, noise_of(joint.angle_noise[:, :, None], least=floor), len(candidates) * joints)
+    found = JointFinding(joint, find_noise(joint.angle_noise[:, :, None], least=floor), len(candidates) * joints)
     ordered: list[Named] = []
     for _ in range(ROUNDS):
         coarse = found.weigh(candidates, refined=False)
@@ -204,18 +204,18 @@ def joint_finding(joint: ResidualMoment, candidates: tuple[Candidate, ...], join
         rest = min((joint.left - one.explained for one in ordered), key=np.linalg.norm, default=joint.left)
         if np.sqrt(np.mean(rest**2)) <= found.noise.size[0]:
             break
-        found = replace(found, noise=noise_of(rest[None, :, None], used=2, least=floor))
+        found = replace(found, noise=find_noise(rest[None, :, None], used=2, least=floor))
     near = [one for one in ordered if one.gained > max(ordered[0].gained - CRITERIA.margin, CRITERIA.margin)]
     proven = sorted(map(found.prove, near), key=lambda one: -one.held_out)
     alike = [one for one in proven if one.held_out > proven[0].held_out - CRITERIA.tie]  # of these the plainest
     order = [one.identity for one in candidates]  # of two with one penalty the first in the catalogue is the simpler
     alike.sort(key=lambda one: (one.part.candidate.penalty(one.part.values), order.index(one.part.candidate.identity)))
     ordered = [*alike, *proven[len(alike) :], *ordered[len(near) :]]
-    first = ordered[0] if proven and borne_out(joint, ordered[0]) else None
+    first = ordered[0] if proven and is_supported(joint, ordered[0]) else None
     return replace(found, named=first, rivals=tuple(ordered))
 
 
-def borne_out(joint: ResidualMoment, one: Named) -> bool:
+def is_supported(joint: ResidualMoment, one: Named) -> bool:
     """Whether an explanation is of a size that matters, and closes enough on held-out time."""
     left, candidate = float(np.sum((joint.left - one.predicted) ** 2)), one.part.candidate
     matters = not candidate.bounds or candidate.beyond_bounds(one.part.values["value"]) > 0

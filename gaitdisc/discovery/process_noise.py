@@ -15,8 +15,8 @@ from numpy.typing import NDArray
 
 from gaitdisc.discovery.candidate_model import CandidateModel
 from gaitdisc.discovery.fitted import Fitted
-from gaitdisc.discovery.linearised import linearise, seen_change
-from gaitdisc.discovery.noise import Noise, noise_of, sensor_noise, white_noise
+from gaitdisc.discovery.linearised import carry_change, linearise
+from gaitdisc.discovery.noise import Noise, find_noise, sensor_noise, white_noise
 from gaitdisc.discovery.places import Place
 from gaitdisc.discovery.shooting import Shooting
 from gaitdisc.recording.arrays import Values
@@ -66,14 +66,14 @@ def rank_process_noise(shooting: Shooting, model: CandidateModel, places: tuple[
     constant = scale + _volume(now.slopes) + float(np.log(count.sum()))
     # white noise by the same restricted likelihood; the filter correlates it in a known way
     unmoved = now.beside(np.zeros((*now.white.shape, 0))).likelihood(0.0, numbers)[0] + constant
-    noise = noise_of(fit.residual, now.starts.shape[1] / fit.residual.shape[2], white_share=0.0)
+    noise = find_noise(fit.residual, now.starts.shape[1] / fit.residual.shape[2], white_share=0.0)
     rival = min(_autoregressive(noise, plain, columns[..., 1:] * size[:, None], now, known), unmoved)
     line, found = linearise(few, model.simulation, places, now), []
     for number, place in enumerate(places):
         steps = fit.states.shape[1] - 1
         last = min((length - 1) * segments.every + 2 * segments.margin, steps)  # later pushes change nothing here
         change = line.pushed[:, :, :, number, None] * np.eye(steps)[None, :, None, :last]
-        seen = seen_change(few, model.machine, now, line.of_change(change))[:, :length]
+        seen = carry_change(few, model.machine, now, line.of_change(change))[:, :length]
         pushes = (seen / size[:, None] * known[..., None]).reshape(flat)
         unit = (pushes**2).sum() / count.sum()
         if unit == 0:  # pushes there change nothing of what is measured
@@ -112,7 +112,7 @@ def _volume(starts: Values) -> float:
 
 def _autoregressive(noise: Noise, plain: Values, slopes: Values, now: Fitted, known: NDArray[np.bool_]) -> float:
     """Return the criterion of the model with autoregressive noise of each sensor, over the same numbers."""
-    white, starts = noise.whitened(plain, known).reshape(now.white.shape), noise.whitened(slopes, known)
+    white, starts = noise.whiten(plain, known).reshape(now.white.shape), noise.whiten(slopes, known)
     now = replace(now, white=white, slopes=starts.reshape(*white.shape, -1))
     sample = np.arange(known.shape[1])[:, None]
     past = sample - 1 - np.maximum.accumulate(np.where(known, -1, sample), axis=1)  # samples without a gap before each

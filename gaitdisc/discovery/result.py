@@ -13,7 +13,7 @@ from gaitdisc.recording import Finding
 from gaitdisc.recording.arrays import Values
 from gaitdisc.saved.kind import Saved
 from gaitdisc.saved.provenance import Provenance
-from gaitdisc.words import html_of
+from gaitdisc.words import as_html
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -283,13 +283,13 @@ class Discovery(Saved, file="discovery.json"):
                 for name, each in one.estimates.items()
             )
             rows.append((f"{one.name} at {one.place}", "; ".join(amounts)))
-        return html_of(self.sentence, rows)
+        return as_html(self.sentence, rows)
 
     def to_json(self) -> dict[str, Any]:
         """Return the content of `discovery.json`; a number that is not finite is null."""
         found = {
             "verdict": self.verdict,
-            "where": [_placed(one) for one in self.where],
+            "where": [_place_fields(one) for one in self.where],
             "effects": [_effect(one) | ({"small": True} if one.small else {}) for one in self.effects],
             "corrections": [
                 {"parameter": one.parameter, "from": one.given, "to": one.found.value}
@@ -322,14 +322,14 @@ class Discovery(Saved, file="discovery.json"):
         }
 
 
-def _placed(one: Whereabouts | FoundEffect) -> dict[str, Any]:
+def _place_fields(one: Whereabouts | FoundEffect) -> dict[str, Any]:
     """Fields of what has a place; its kind is the first key."""
     values = asdict(one)
     return {values.pop("kind"): values.pop("place")} | values
 
 
 def _effect(one: FoundEffect) -> dict[str, Any]:
-    values = _placed(one)
+    values = _place_fields(one)
     place = {key: values[key] for key in (one.kind, "name", "term", "estimates")}
     evidence = {"evidence": {"held_out": one.held_out, "bic": one.bic}}
     some = {key: values[key] for key in ("bounds", "states") if values[key]}

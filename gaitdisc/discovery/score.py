@@ -13,11 +13,11 @@ from numpy.typing import NDArray
 
 from gaitdisc.discovery.candidate import Candidate
 from gaitdisc.discovery.candidate_model import CandidateModel
-from gaitdisc.discovery.first_states import followed
+from gaitdisc.discovery.first_states import follow
 from gaitdisc.discovery.fitted import start_basis, without
 from gaitdisc.discovery.grids import Rhythm, cells, delays
 from gaitdisc.discovery.kept_work import keep, recall
-from gaitdisc.discovery.linearised import Linearised, linearise, seen_change
+from gaitdisc.discovery.linearised import Linearised, carry_change, linearise
 from gaitdisc.discovery.places import Place
 from gaitdisc.discovery.shooting import Shooting
 from gaitdisc.recording.arrays import Values
@@ -77,7 +77,7 @@ class Scorer:
         return found
 
     def _scores(self, candidates: tuple[Candidate, ...]) -> list[Score]:
-        basis, known, left = self._explained()
+        basis, known, left = self._explain()
         best: dict[int, Score] = {}
         for some, columns in self._columns(candidates):
             own = without(basis, columns).reshape(-1, columns.shape[2])
@@ -88,7 +88,7 @@ class Scorer:
                     best[number] = score
         return sorted(best.values(), key=lambda score: -score.gain)
 
-    def left_without_each(self, candidates: tuple[Candidate, ...]) -> Values:
+    def leave_out_each(self, candidates: tuple[Candidate, ...]) -> Values:
         """Mean square that the best candidate leaves of all other trials, for each trial (trial,), to first order."""
         basis = start_basis(self.model.fit.slopes[..., : self.model.fit.starts.shape[1]])
         left, slopes = self.model.fit.projected
@@ -109,7 +109,7 @@ class Scorer:
         square = others.product(left[..., None], left[..., None])[:, 0, 0]
         return (square - gained) / (others.segments * left.shape[1])
 
-    def _explained(self) -> tuple[Values, Values, Values]:
+    def _explain(self) -> tuple[Values, Values, Values]:
         """Basis of the start states, basis of the constants already in (row, constant), what is left (row,).
 
         After the measured numbers come the rows of the prior, in which no candidate changes anything.
@@ -160,14 +160,14 @@ class Scorer:
     ) -> tuple[list[_Cell], Values]:
         """Cells of a term with states of its own, and its pieces along the run (segment, sample, cell times piece)."""
         some = [cell for cell, _ in self._cells(number, candidate, along)]
-        machine, values, states = self._extended(candidate, [candidate.idle | cell.constants for cell in some])
+        machine, values, states = self._extend(candidate, [candidate.idle | cell.constants for cell in some])
         pieces = candidate.pieces_at({slot: candidate.named(TRIED)[slot] for slot in candidate.constants or {}})
         seen = tuple((f"piece_{i}", piece) for i, piece in enumerate(pieces))
         observing = compile_simulation(replace(machine.simulation, observations=seen, sensors=()))
         push = np.moveaxis(self.shooting.unfiltered(observing, states, values), 0, -2)
         return some, push.reshape(*push.shape[:2], -1)
 
-    def _extended(self, candidate: Candidate, tried: list[dict[str, float]]) -> tuple[Compiled, Values, Values]:
+    def _extend(self, candidate: Candidate, tried: list[dict[str, float]]) -> tuple[Compiled, Values, Values]:
         """The simulation with a candidate in it, and for each try parameters and states along the run.
 
         Parameters are (version, parameter), states (version, segment, sample, state), the candidate's own last.
@@ -181,7 +181,7 @@ class Scorer:
                 values[version, machine.parameters.index(names[slot])] = value
         states = np.repeat(self.model.fit.states[None], len(tried), axis=0)
         if candidate.states:
-            own = followed(self.shooting, simulation, values)[..., -len(candidate.states) :]
+            own = follow(self.shooting, simulation, values)[..., -len(candidate.states) :]
             states = np.concatenate([states, np.stack([self.shooting.segments.of(one) for one in own])], axis=-1)
         return machine, values, states
 
@@ -200,7 +200,7 @@ class Scorer:
         return np.nan_to_num(out, nan=0.0, posinf=0.0, neginf=0.0)
 
     def _white(self, change: Values) -> Values:
-        return self.shooting.whitened(seen_change(self.shooting, self.model.machine, self.model.fit, change))
+        return self.shooting.whiten(carry_change(self.shooting, self.model.machine, self.model.fit, change))
 
     def _signal_columns(
         self, line: Linearised, number: int, candidate: Candidate, along: dict[str, Values]
@@ -217,14 +217,12 @@ class Scorer:
             tried = [{slot: float(one)} for one in delays(self.rhythm, either_way)]
         whole = limited or candidate.is_late
         over = np.ones(len(tried)) if whole else np.array([tried[0][slot] - none])
-        machine, values, states = self._extended(candidate, tried)
+        machine, values, states = self._extend(candidate, tried)
         seen = self.shooting.observed(machine, states, values)  # what changes though no state does
         seen -= self.shooting.observed(self.model.machine, self.model.fit.states[None], self.model.fit.values[None])
-        columns = self.shooting.whitened(np.moveaxis(seen / over[:, None, None, None], 0, -1))
+        columns = self.shooting.whiten(np.moveaxis(seen / over[:, None, None, None], 0, -1))
         if candidate.verdict != "sensor_error":
-            landed = (
-                self.shooting.landed(machine, states[:, :, :-1], values)[..., : line.landed.shape[-1]] - line.landed
-            )
+            landed = self.shooting.land(machine, states[:, :, :-1], values)[..., : line.land.shape[-1]] - line.land
             columns += self._white(line.of_change(np.moveaxis(landed / over[:, None, None, None], 0, -1)))
         return [_Cell(number, one if whole else {}, {slot: none}, whole) for one in tried], columns
 

@@ -14,9 +14,9 @@ import numpy as np
 
 from gaitdisc.discovery.candidate import UNNAMED, Candidate
 from gaitdisc.discovery.candidate_model import CandidateModel
-from gaitdisc.discovery.catalogue import known_shapes
+from gaitdisc.discovery.catalogue import read_shapes
 from gaitdisc.discovery.criteria import CRITERIA
-from gaitdisc.discovery.noise import Noise, noise_of
+from gaitdisc.discovery.noise import Noise, find_noise
 from gaitdisc.discovery.shooting import Shooting
 from gaitdisc.recording.arrays import Values
 
@@ -67,17 +67,17 @@ class ScoredModel:
         """Return the model fitted again under another's noise, so that the two can be compared."""
         if other.shooting is self.shooting:
             return self
-        return ScoredModel(self.model.refitted(other.shooting, turns=TURNS), other.shooting, self.gained)
+        return ScoredModel(self.model.refit(other.shooting, turns=TURNS), other.shooting, self.gained)
 
 
-def scored(shooting: Shooting, model: CandidateModel, rounds: int = 2) -> ScoredModel:
+def score(shooting: Shooting, model: CandidateModel, rounds: int = 2) -> ScoredModel:
     """Estimate a model's own noise, and its own past for what comes late, and fit it again under them."""
     least = max(INTEGRATED, model.base.inexact) * np.nanstd(shooting.measured.observed, axis=(0, 1))
     for _ in range(rounds):
         used = model.fit.starts.shape[1] / model.fit.residual.shape[2]
-        noise = noise_of(model.fit.residual, used, least=least, autocorrelation=shooting.filter_autocorrelation)
+        noise = find_noise(model.fit.residual, used, least=least, autocorrelation=shooting.filter_autocorrelation)
         shooting = shooting.with_noise(noise).with_past(model.fit.states)
-        model = model.refitted(shooting, turns=TURNS)
+        model = model.refit(shooting, turns=TURNS)
     return ScoredModel(model, shooting)
 
 
@@ -97,7 +97,7 @@ def compared(models: list[ScoredModel]) -> list[ScoredModel]:
     models = [one.under(models[0]) for one in models]
     for _ in range(len(models)):
         best = min(range(len(models)), key=lambda number: models[number].bic)
-        own = replace(scored(models[best].shooting, models[best].model), gained=models[best].gained)
+        own = replace(score(models[best].shooting, models[best].model), gained=models[best].gained)
         models = [own if number == best else one.under(own) for number, one in enumerate(models)]
         if min(range(len(models)), key=lambda number: models[number].bic) == best:
             break
@@ -124,7 +124,7 @@ def ranked(models: list[ScoredModel], candidates: tuple[Candidate, ...]) -> list
     fewer = [one for one in models if one.model.size < least.model.size]
     simple = [one for one in fewer if one.bic < least.bic + CRITERIA.margin]
     first = simple[0] if simple else models[0]
-    order = {shape.name: number for number, shape in reversed(list(enumerate(known_shapes())))}
+    order = {shape.name: number for number, shape in reversed(list(enumerate(read_shapes())))}
 
     def complexity(one: ScoredModel) -> tuple[list[int], float, list[int]]:
         names = [order.get(part.candidate.name, len(order)) for part in one.model.parts]

@@ -54,7 +54,7 @@ class Search:
         penalty = float(np.log(model.fit.white.size))
         scores = sorted(scorer.scores(open_ones), key=lambda one: penalty * len(one.candidate.slots) - one.gain)
         worth = [one for one in scores if one.gain > penalty * len(one.candidate.slots)][:REFITTED]
-        tried = [self.with_part(now, Part(one.candidate, one.values)) for one in self._reported(worth)]
+        tried = [self.with_part(now, Part(one.candidate, one.values)) for one in self._report(worth)]
         far = [] if model.parts else self.far_off(now)
         tried = [*(one for one in tried if self.sensible(one) and is_certain(one, -1)), *far]
         likeliest: dict[Explanations, CandidateModel] = {}
@@ -68,7 +68,7 @@ class Search:
 
     def with_part(self, now: ScoredModel, part: Part, turns: int = TURNS) -> CandidateModel:
         """Fit a model with one explanation more to the same runs."""
-        return now.model.refitted(now.shooting, (*now.model.parts, part), turns=turns, enough=NEARLY)
+        return now.model.refit(now.shooting, (*now.model.parts, part), turns=turns, enough=NEARLY)
 
     def far_off(self, now: ScoredModel) -> list[CandidateModel]:
         """Fit each number without bounds from other orders of magnitude: a slope at the file's does not reach these."""
@@ -79,10 +79,10 @@ class Search:
             begun = [self.with_part(now, Part(one, {"value": one.value * factor}), FEW_TURNS) for factor in DECADES]
             best = min(begun, key=lambda each: each.fit.misfit if np.isfinite(each.fit.misfit) else np.inf)
             if best.fit.misfit < now.model.fit.misfit:
-                found.append(now.model.refitted(now.shooting, best.parts, best.fit.starts, TURNS, NEARLY))
+                found.append(now.model.refit(now.shooting, best.parts, best.fit.starts, TURNS, NEARLY))
         return found
 
-    def _reported(self, worth: list[Score]) -> Iterator[Score]:
+    def _report(self, worth: list[Score]) -> Iterator[Score]:
         """Yield each in turn, and say now and then how many are fitted and how long the others will take."""
         began = last = time.perf_counter()
         for done, one in enumerate(worth):
@@ -167,7 +167,7 @@ class Search:
 
     def with_others(self, now: ScoredModel, parts: tuple[Part, ...]) -> ScoredModel:
         """Return the simulation with other explanations, fitted to the runs of a model under its noise."""
-        return ScoredModel(now.model.refitted(now.shooting, parts, turns=TURNS), now.shooting)
+        return ScoredModel(now.model.refit(now.shooting, parts, turns=TURNS), now.shooting)
 
 
 def is_certain(model: CandidateModel, first: int = 0, end: int | None = None) -> bool:

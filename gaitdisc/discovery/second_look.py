@@ -10,13 +10,13 @@ from gaitdisc.discovery.candidate import Candidate
 from gaitdisc.discovery.candidate_model import Part
 from gaitdisc.discovery.case import Case
 from gaitdisc.discovery.criteria import CRITERIA
-from gaitdisc.discovery.decision import MOST_NEAR, Verdict, held_out_proof
+from gaitdisc.discovery.decision import MOST_NEAR, Verdict, prove_held_out
 from gaitdisc.discovery.forward_selection import select_forward
 from gaitdisc.discovery.gap_share import cross_validated, errs_more
 from gaitdisc.discovery.grids import delays
-from gaitdisc.discovery.held_out import free_run_error, gap_size, grows_along_runs, proof_of, strays
+from gaitdisc.discovery.held_out import free_run_error, gap_size, grows_along_runs, prove, strays
 from gaitdisc.discovery.result import ALPHA
-from gaitdisc.discovery.scored_model import ScoredModel, compared, ranked, scored
+from gaitdisc.discovery.scored_model import ScoredModel, compared, ranked, score
 from gaitdisc.discovery.search import TURNS, is_certain, may_vanish
 
 AT_ONCE, LATE = "linear_stiffness", "delayed_feedback"
@@ -46,14 +46,14 @@ def prefer_relatives(case: Case, as_read: ScoredModel, verdict: Verdict) -> Verd
         return replace(verdict, rivals=tuple(one for one in verdict.rivals if shows(one.model)))
     for number in range(len(verdict.found.model.parts)):
         found = verdict.found
-        tried = [in_its_place(case, found, number, one) for one in relatives_of(case, found, number)]
+        tried = [in_its_place(case, found, number, one) for one in list_relatives(case, found, number)]
         for now in sorted((one for one in tried if one), key=lambda one: one.bic):
             idle = not shows(found.model) or may_vanish(found.model, number)
             if found.model.parts[number].candidate.kind == "input":  # what is added takes half of what a number leaves
                 idle = idle or free_run_error(case, found) > CRITERIA.half * free_run_error(case, now)
             if not idle and is_needed(case, now, found):
                 continue
-            proof = held_out_proof(case, as_read, now)
+            proof = prove_held_out(case, as_read, now)
             if proof.bears_out:
                 verdict = replace(verdict, word=now.word, found=now, rivals=(found, *verdict.rivals), proof=proof)
                 break
@@ -91,8 +91,8 @@ def prefer_delay(case: Case, as_read: ScoredModel, verdict: Verdict) -> Verdict:
         return verdict
     now = ScoredModel(min(tried, key=lambda one: one.bic), found.shooting, found.gained)
     _, now = compared([found, now])
-    proof = held_out_proof(case, as_read, now)
-    if not proof_of(case, found, now, now).bears_out or not proof.bears_out:
+    proof = prove_held_out(case, as_read, now)
+    if not prove(case, found, now, now).bears_out or not proof.bears_out:
         return verdict
     return replace(verdict, found=now, rivals=(found, *verdict.rivals), proof=proof)
 
@@ -114,7 +114,7 @@ def look_at_whole_runs(case: Case, as_read: ScoredModel, verdict: Verdict) -> tu
             continue
         if one is named:
             return base, complete_on_whole_runs(case, as_read, verdict)
-        proof = held_out_proof(case, as_read, one)
+        proof = prove_held_out(case, as_read, one)
         if proof.bears_out:
             return base, replace(verdict, word=one.word, found=one, rivals=(named, *verdict.rivals), proof=proof)
     return base, Verdict("no_gap", base, (named, *verdict.rivals), proof=verdict.proof)
@@ -125,8 +125,8 @@ def fit_whole_runs(case: Case, now: ScoredModel) -> ScoredModel:
 
     All errors weigh alike: the autocorrelation of what short runs leave takes a slow drift away for noise.
     """
-    shooting = case.learned_runs(case.longest).with_noise(case.scale.error_of(now.model.fit))
-    model = case.fitted_over(shooting, now)
+    shooting = case.cut_learned_runs(case.longest).with_noise(case.scale.white_error(now.model.fit))
+    model = case.fit_over(shooting, now)
     return ScoredModel(model, shooting.with_past(model.fit.states)) if case.search.sensible(model) else now
 
 
@@ -136,7 +136,7 @@ def complete_on_whole_runs(case: Case, as_read: ScoredModel, verdict: Verdict) -
     if verdict.word == "unnamed" or not grows_along_runs(case, found):
         return verdict
     whole = fit_whole_runs(case, found)
-    whole = scored(whole.shooting, whole.model)
+    whole = score(whole.shooting, whole.model)
     own_error = case.scale.excess(whole.model.fit) < CRITERIA.model_error
     if own_error or case.leaves_noise(whole):
         return verdict
@@ -150,7 +150,7 @@ def complete_on_whole_runs(case: Case, as_read: ScoredModel, verdict: Verdict) -
     if least > CRITERIA.half * before or closed < CRITERIA.matters:
         return verdict
     more = ranked([one for error, one in left if error <= (1 + CRITERIA.model_error) * least], search.candidates)[0]
-    beside, proof = held_out_proof(case, whole, more, as_read), held_out_proof(case, as_read, more)
+    beside, proof = prove_held_out(case, whole, more, as_read), prove_held_out(case, as_read, more)
     if not beside.bears_out or not proof.bears_out:
         return verdict
     return replace(verdict, word=more.word, found=more, rivals=(found, *tried, *verdict.rivals), proof=proof)
@@ -170,7 +170,7 @@ def without_small(case: Case, as_read: ScoredModel, verdict: Verdict) -> Verdict
     return Verdict("no_gap", as_read, (found, *verdict.rivals), proof=proof)
 
 
-def relatives_of(case: Case, now: ScoredModel, number: int) -> list[Candidate]:
+def list_relatives(case: Case, now: ScoredModel, number: int) -> list[Candidate]:
     """List the simpler relatives of one of a model's explanations: at its place, of the same motion."""
     own = now.model.parts[number].candidate
     names, present = RELATIVES.get(own.name, ()), now.model.explanations
@@ -193,7 +193,7 @@ def in_its_place(case: Case, now: ScoredModel, number: int, relative: Candidate)
         return None
     parts = [*fewer.model.parts]
     parts.insert(number, Part(scores[0].candidate, scores[0].values))
-    model = fewer.model.refitted(now.shooting, tuple(parts), now.model.fit.starts, TURNS)
+    model = fewer.model.refit(now.shooting, tuple(parts), now.model.fit.starts, TURNS)
     return ScoredModel(model, now.shooting, now.gained) if search.sensible(model) else None
 
 
@@ -202,7 +202,7 @@ def is_needed(case: Case, relative: ScoredModel, general: ScoredModel) -> bool:
     first, second = compared([relative, general])
     if case.leaves_noise(second):
         return first.bic - second.bic > CRITERIA.margin
-    proof = proof_of(case, first, second, second)
+    proof = prove(case, first, second, second)
     if proof.bears_out:
         return True
     left = [cross_validated(case.scale, one, one.model.parts) for one in (first, second)]

@@ -75,7 +75,7 @@ class Shooting:
         states = states.reshape(*starts.shape[:2], self.segments.length, -1)
         return states, self.observed(machine, states, values)
 
-    def landed(self, machine: Compiled, states: Values, values: Values) -> Values:
+    def land(self, machine: Compiled, states: Values, values: Values) -> Values:
         """Run every step of every segment by itself, and return where it lands (version, segment, step, state).
 
         states (version, segment, step, state): where each step starts
@@ -111,7 +111,7 @@ class Shooting:
         seen = machine.observe(self.measured.drive, rows, states.reshape(-1, *states.shape[2:]), past=self.past)
         return seen.reshape(*states.shape[:3], -1)
 
-    def whitened(self, residual: Values) -> Values:
+    def whiten(self, residual: Values) -> Values:
         """Return residuals whitened and flat (segment, sample times channel, ...).
 
         What is not finite counts as none, and so does what was not measured.
@@ -120,7 +120,7 @@ class Shooting:
         """
         if not np.isfinite(residual).all():
             residual = np.nan_to_num(residual, nan=0.0, posinf=0.0, neginf=0.0)
-        white = self.noise.whitened(residual, None if self.known.all() else self.known)
+        white = self.noise.whiten(residual, None if self.known.all() else self.known)
         return white.reshape(white.shape[0], -1, *white.shape[3:])
 
     def at(self, machine: Compiled, free: tuple[str, ...], values: Values, starts: Values) -> Fitted:
@@ -141,10 +141,10 @@ class Shooting:
         states, observed = self.run(machine, many_starts, many_values)
         residual = self.seen - observed[0]
         failed = ~np.isfinite(observed[0]).all(axis=(1, 2))
-        white = self.whitened(residual)
+        white = self.whiten(residual)
         white[failed] = np.inf
         change = np.moveaxis((observed[1:] - observed[0]) / nudges[:, None, None, None], 0, -1)
-        slopes, prior = self.whitened(change), self.prior.among(free)
+        slopes, prior = self.whiten(change), self.prior.among(free)
         return Fitted(free, values, starts, states[0], residual, white=white, slopes=slopes, prior=prior)
 
     def fitted(
@@ -165,16 +165,16 @@ class Shooting:
         known = recall(repr((free, turns, enough)), values.tobytes(), starts.tobytes())
         if known:
             return self.at(machine, free, *map(np.array, known))
-        now = self._descended(machine, self.at(machine, free, values, starts), turns, enough)
-        elsewhere = self._begun_elsewhere(machine, now, starts)
+        now = self._descend(machine, self.at(machine, free, values, starts), turns, enough)
+        elsewhere = self._begin_elsewhere(machine, now, starts)
         if elsewhere is not None:
-            again = self._descended(machine, self.at(machine, free, now.values, elsewhere), turns, enough)
+            again = self._descend(machine, self.at(machine, free, now.values, elsewhere), turns, enough)
             now = again if again.misfit < now.misfit else now
         if free:  # else each segment has stopped at a step of its own
             keep((now.values.tolist(), now.starts.tolist()))
         return now
 
-    def _descended(self, machine: Compiled, now: Fitted, turns: int, enough: float = ENOUGH) -> Fitted:
+    def _descend(self, machine: Compiled, now: Fitted, turns: int, enough: float = ENOUGH) -> Fitted:
         """Return the fit after damped steps, until these gain nothing more."""
         damping = np.full(len(self.segments), DAMPING)
         for _ in range(turns):
@@ -191,7 +191,7 @@ class Shooting:
                 break
         return now
 
-    def _begun_elsewhere(self, machine: Compiled, now: Fitted, starts: Values) -> Values | None:
+    def _begin_elsewhere(self, machine: Compiled, now: Fitted, starts: Values) -> Values | None:
         """Return better start states (segment, state) where a few segments fit far worse than most.
 
         A start on the wrong side of a threshold (a spike, a fall) is a minimum of its own. Tried are the start that the
@@ -204,7 +204,7 @@ class Shooting:
         best = replace(now, free=(), slopes=now.slopes[..., : starts.shape[1]], prior=Prior())
         for other in (starts, before):
             tried = np.where(stuck[:, None], other, now.starts)
-            fit = self._descended(machine, self.at(machine, (), now.values, tried), FEW_TURNS)
+            fit = self._descend(machine, self.at(machine, (), now.values, tried), FEW_TURNS)
             best = best.where(fit.misfits < best.misfits, fit)
         return best.starts if best.misfits[stuck].sum() < FREED * now.misfits[stuck].sum() else None
 

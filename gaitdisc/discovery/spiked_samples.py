@@ -41,7 +41,7 @@ def without_spikes(measured: Measured) -> Measured:
     marks = np.zeros(measured.observed.shape, bool)
     for trial, samples in enumerate(measured.samples):
         for channel in range(len(measured.channels)):
-            marks[trial, :samples, channel] = spiked(measured.observed[trial, :samples, channel])
+            marks[trial, :samples, channel] = mark_spikes(measured.observed[trial, :samples, channel])
     if not marks.any():
         return measured
     findings = tuple(_finding(measured, marks, channel) for channel in np.flatnonzero(marks.any(axis=(0, 1))).tolist())
@@ -49,7 +49,7 @@ def without_spikes(measured: Measured) -> Measured:
     return replace(measured, observed=observed, findings=(*measured.findings, *findings))
 
 
-def spiked(record: Values) -> NDArray[np.bool_]:
+def mark_spikes(record: Values) -> NDArray[np.bool_]:
     """Mark the samples of a channel that leap away from what lies before and after them, and back.
 
     Far is eight robust standard deviations of a sample from the middle of its neighbours, four median steps around it,
@@ -62,7 +62,7 @@ def spiked(record: Values) -> NDArray[np.bool_]:
 
     >>> x = np.sin(np.arange(300) / 15)
     >>> x[[100, 200, 201]] += [3.0, -2.0, -2.5]
-    >>> np.flatnonzero(spiked(x)).tolist()
+    >>> np.flatnonzero(mark_spikes(x)).tolist()
     [100, 200, 201]
     """
     marks = np.zeros(len(record), bool)

@@ -17,13 +17,13 @@ import numpy as np
 from gaitdisc.discovery.candidate import UNNAMED, Candidate
 from gaitdisc.discovery.candidate_model import Part
 from gaitdisc.discovery.case import Case
-from gaitdisc.discovery.catalogue import Shape, known_shapes
+from gaitdisc.discovery.catalogue import Shape, read_shapes
 from gaitdisc.discovery.criteria import CRITERIA
-from gaitdisc.discovery.decision import Verdict, held_out_proof
-from gaitdisc.discovery.fitted_shape import cost_of, fitted_shape
+from gaitdisc.discovery.decision import Verdict, prove_held_out
+from gaitdisc.discovery.fitted_shape import find_cost, fit_shape
 from gaitdisc.discovery.gap_share import cross_validated
 from gaitdisc.discovery.grids import cells
-from gaitdisc.discovery.scored_model import ScoredModel, scored
+from gaitdisc.discovery.scored_model import ScoredModel, score
 from gaitdisc.discovery.search import Search
 from gaitdisc.recording.arrays import Values
 from gaitdisc.simulation.evaluating import Points, evaluate_many
@@ -67,11 +67,11 @@ def read_shape(case: Case, as_read: ScoredModel, verdict: Verdict) -> Verdict:
     begun = ScoredModel(plain.model, shape.shooting)
     readings = [cross_validated(scale, begun, (part,)) for part in _readings(search, shape)]
     readings = [one for one in readings if search.sensible(one.model)]
-    for one in sorted(readings, key=lambda one: cost_of(one, plain)):
-        found = scored(shape.shooting, one.model)
-        proof = held_out_proof(case, as_read, found)
+    for one in sorted(readings, key=lambda one: find_cost(one, plain)):
+        found = score(shape.shooting, one.model)
+        proof = prove_held_out(case, as_read, found)
         if proof.bears_out and proof.closed >= CRITERIA.reading * verdict.proof.closed:
-            reads_as = effect_of(search, one.model.parts[0].candidate)
+            reads_as = find_effect(search, one.model.parts[0].candidate)
             return replace(verdict, found=found, proof=proof, read=True, reads_as=reads_as)
     return verdict
 
@@ -89,16 +89,16 @@ def read_instead(case: Case, as_read: ScoredModel, verdict: Verdict) -> Verdict:
     twice = len(set(named.labels)) < len(named.labels)
     if case.leaves_noise(named) and not twice:
         return verdict
-    shape = fitted_shape(case, as_read)
+    shape = fit_shape(case, as_read)
     if shape is None:
         return verdict
-    proof = held_out_proof(case, as_read, shape)
+    proof = prove_held_out(case, as_read, shape)
     instead = read_shape(case, as_read, Verdict(UNNAMED, shape, (named, *verdict.rivals), proof=proof))
     less = instead.read and instead.found.model.size < named.model.size
-    return instead if less and held_out_proof(case, named, instead.found, as_read).bears_out else verdict
+    return instead if less and prove_held_out(case, named, instead.found, as_read).bears_out else verdict
 
 
-def effect_of(search: Search, candidate: Candidate) -> str:
+def find_effect(search: Search, candidate: Candidate) -> str:
     """Return the name of the catalogue's effect that a reading is, or nothing."""
     alike = (one for one in search.candidates if (one.kind, one.place) == (candidate.kind, candidate.place))
     return next((one.name for one in alike if one.pieces == candidate.pieces), "")
@@ -199,7 +199,7 @@ class _Curve:
         rate = self.motion[1]
         angle = any(one.motions[0] == self.motion and one.angle for one in self.search.places)
         known = [
-            one for one in known_shapes() if len(one.pieces) == 1 and not one.states and "delay" not in one.pieces[0]
+            one for one in read_shapes() if len(one.pieces) == 1 and not one.states and "delay" not in one.pieces[0]
         ]
         known = [one for one in known if angle or one.needs != "angle"]
         still = [one for one in (*known, BUMP) if one.roles == ("x",) and self.motion[0] != rate]

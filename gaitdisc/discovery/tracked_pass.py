@@ -13,12 +13,12 @@ from scipy.signal import butter, sosfiltfilt
 from gaitdisc.discovery.effect_words import amount
 from gaitdisc.discovery.record_filter import DENSE
 from gaitdisc.engines.opensim_tracked import OpensimTracked
-from gaitdisc.engines.tracked_files import TrackedMotion, check_loads, tracked_motion
+from gaitdisc.engines.tracked_files import TrackedMotion, check_loads, read_tracked_motion
 from gaitdisc.engines.tracked_mapping import Tracked
 from gaitdisc.errors import SchemaError
 from gaitdisc.recording import Finding
 from gaitdisc.recording.arrays import Values
-from gaitdisc.signals.derivatives import differentiated
+from gaitdisc.signals.derivatives import derivative
 
 DRAWS, SEED, NOISE_DEG = 4, 0, 0.3
 MM = 1 / 300  # [m] of a translation, that go with a degree of an angle
@@ -92,11 +92,11 @@ class Pass:
         return np.asarray(butter(4, self.cutoff_hz, fs=self.motion.rate_hz, output="sos"))
 
 
-def tracked_pass(tracked: Tracked, kinematics: Path, progress: Callable[[str], None] = lambda _: None) -> Pass:
+def compute_pass(tracked: Tracked, kinematics: Path, progress: Callable[[str], None] = lambda _: None) -> Pass:
     """Compute the generalised forces that a recorded motion demands, and those that the files' actuators give."""
     check_loads(tracked)
     engine = OpensimTracked(tracked)
-    motion = tracked_motion(tracked, kinematics, engine.coordinates, engine.actuators)
+    motion = read_tracked_motion(tracked, kinematics, engine.coordinates, engine.actuators)
     progress("computing the moments that the motion demands, by OpenSim")
     demanded = engine.demanded(motion)
     arms = engine.arms(motion.time, motion.q, motion.actuators)
@@ -132,7 +132,7 @@ def with_angle_noise(walk: Pass, noise_deg: float, rng: np.random.Generator) -> 
     noise = sosfiltfilt(walk.sections, white, axis=0)
     noise *= sizes / noise.std(axis=0)
     inside = slice(spare, spare + len(motion.time))
-    first, second = (differentiated(noise, motion.rate_hz, order)[inside] for order in (1, 2))
+    first, second = (derivative(noise, motion.rate_hz, order)[inside] for order in (1, 2))
     moved = replace(motion, q=motion.q + noise[inside], v=motion.v + first, a=motion.a + second)
     return replace(walk, motion=moved, demanded=walk.engine.demanded(moved))
 

@@ -22,9 +22,9 @@ from gaitdisc.discovery.criteria import CRITERIA
 from gaitdisc.discovery.decision import Verdict
 from gaitdisc.discovery.effect_words import spoken
 from gaitdisc.discovery.fitted import Fitted, start_basis, without
-from gaitdisc.discovery.held_out import Proof, proof_of
+from gaitdisc.discovery.held_out import Proof, prove
 from gaitdisc.discovery.input_errors import wandering
-from gaitdisc.discovery.linearised import linearise, seen_change, seen_push
+from gaitdisc.discovery.linearised import carry_change, linearise, propagate_push
 from gaitdisc.discovery.noise import white_noise
 from gaitdisc.discovery.paired_test import PairedTest, errors_rise_p
 from gaitdisc.discovery.places import Place
@@ -34,7 +34,7 @@ from gaitdisc.discovery.search import is_certain
 from gaitdisc.discovery.shooting import Shooting
 from gaitdisc.recording import Finding
 from gaitdisc.recording.arrays import Values
-from gaitdisc.words import listed
+from gaitdisc.words import listing
 
 PIECES = 12  # of held-out runs: their squares are all but independent under the covariance
 RIVALS = 3
@@ -84,7 +84,7 @@ def weigh_input_errors(case: Case, verdict: Verdict) -> tuple[Case, Verdict]:
         return case, verdict
     now, proof = beyond_errors(case, best)
     verdict, dropped = without_names(replace(verdict, proof=proof or verdict.proof), best.now, now)
-    what = f"the stated errors of {listed(erring)} explain {dropped} as well"
+    what = f"the stated errors of {listing(erring)} explain {dropped} as well"
     finding = Finding("note", "stated errors", case.measured.source, what, "the name; it is among the rivals")
     return case.noting(finding) if dropped else case, verdict
 
@@ -97,7 +97,7 @@ def without_names(verdict: Verdict, named: ScoredModel, now: ScoredModel) -> tup
     same, word = now.labels == verdict.found.labels, now.word if now.model.parts else "no_gap"
     rivals, read = verdict.rivals if same else (verdict.found, *verdict.rivals), verdict.read and same
     verdict = replace(verdict, word=word, found=now, rivals=rivals, read=read, process_noise=None)
-    return verdict, listed(dropped) if dropped else ""
+    return verdict, listing(dropped) if dropped else ""
 
 
 def likeliest(case: Case, verdict: Verdict) -> Weighed:
@@ -123,8 +123,8 @@ def cut_short(case: Case, now: ScoredModel, samples: int) -> ScoredModel:
     """Return a model fitted to runs of no more samples."""
     if now.shooting.segments.span <= samples:
         return now
-    shooting = case.learned_runs(samples).with_noise(now.noise)
-    model = case.fitted_over(shooting, now)
+    shooting = case.cut_learned_runs(samples).with_noise(now.noise)
+    model = case.fit_over(shooting, now)
     return ScoredModel(model, shooting.with_past(model.fit.states), now.gained)
 
 
@@ -138,7 +138,7 @@ def beyond_errors(case: Case, now: Weighed) -> tuple[ScoredModel, Proof | None]:
         parts = range(len(now.now.model.parts))
         fewer = [weighed(case, case.search.without(now.now, one)) for one in parts] if len(parts) > 1 else [base]
         tests = [tested(case, one, now) for one in (*fewer, base)]
-        proof = replace(proof_of(case, base.now, now.now, now.now), test=tests[-1])
+        proof = replace(prove(case, base.now, now.now, now.now), test=tests[-1])
         excess = float((base.held_out**2).sum()) - (base.held_out != 0).sum()  # beyond the stated errors
         if tests[-1].fall >= CRITERIA.half * excess and all(one.bears_out for one in tests):
             break
@@ -195,7 +195,7 @@ def weighed(case: Case, now: ScoredModel) -> Weighed:
     level = max(float((here**2).sum()) / max(int((here != 0).sum()), 1), 1.0)
     model = now.model.with_estimates(values, np.asarray(level * np.linalg.pinv(slopes.T @ slopes), float))
     now = replace(now, model=model)
-    held = proof_of(case, now, now, now).after
+    held = prove(case, now, now, now).after
     shooting = replace(case.shooting(held.segments), past=now.shooting.past)
     unseen = whitener(case, now, shooting, held.fit.starts, size)(values)
     return Weighed(now, left(values), unseen, float(np.nanmean((held.fit.residual / size) ** 2)))
@@ -229,7 +229,7 @@ def covariance_by_inputs(case: Case, now: ScoredModel, shooting: Shooting, fit: 
     """Return the covariance that the stated errors of inputs make in what is seen (run, number, number)."""
     erring, segments = wandering(case.search.base), shooting.segments
     late = np.abs(np.subtract.outer(*2 * [np.arange(segments.length)])) / case.measured.rate
-    moved = moved_by_inputs(now, shooting, fit, [one.name for _, one in erring], np.eye(segments.length))
+    moved = propagate_inputs(now, shooting, fit, [one.name for _, one in erring], np.eye(segments.length))
     total = np.zeros((len(segments), *2 * [fit.residual[0].size]))
     for seen, (column, one) in zip(moved, erring, strict=True):
         flat = seen.reshape(len(segments), -1, segments.length)
@@ -242,17 +242,17 @@ def covariance_by_inputs(case: Case, now: ScoredModel, shooting: Shooting, fit: 
     return total
 
 
-def moved_by_inputs(now: ScoredModel, shooting: Shooting, fit: Fitted, names: list[str], hats: Values) -> list[Values]:
+def propagate_inputs(now: ScoredModel, shooting: Shooting, fit: Fitted, names: list[str], hats: Values) -> list[Values]:
     """Return what errors of each of some inputs change in what is seen (run, sample, channel, knot), to first order.
 
     hats (sample, knot): the error that each knot stands for
     """
     places = tuple(Place("input", one, (), (), (), False) for one in names)
     line = linearise(shooting, now.model.simulation, places, fit)
-    direct = seen_push(shooting, now.model.simulation, places, fit)
+    direct = propagate_push(shooting, now.model.simulation, places, fit)
     push, moved = np.broadcast_to(hats, (len(fit.starts), *hats.shape)), []
     for number in range(len(places)):
-        seen = seen_change(shooting, now.model.machine, fit, line.of_push(number, push))
+        seen = carry_change(shooting, now.model.machine, fit, line.of_push(number, push))
         moved.append(seen + shooting.filtered(direct[:, :, :, number, None] * hats[:, None, :], 1))
     return moved
 
@@ -274,15 +274,15 @@ def weigh_unstated_errors(case: Case, verdict: Verdict) -> tuple[Case, Verdict]:
         best, now, kept = min(least, best), gained, less
     if len(kept.model.parts) == len(found.model.parts):
         return case, verdict
-    now = case.lengthened(now)
+    now = case.lengthen(now)
     bare = search.with_others(now, ())
-    proof = proof_of(case, bare, now, now)
+    proof = prove(case, bare, now, now)
     now = now if proof.bears_out else bare
     # errors that wander are others on unseen data: what takes half of these, and no gain takes as well, is none of them
     if not now.model.parts and verdict.proof and verdict.proof.closed > CRITERIA.half:
         return case, verdict
     verdict, dropped = without_names(replace(verdict, proof=proof), found, now)
-    what = f"unstated errors of {listed([repr(one) for one in erring])} explain {dropped} as well"
+    what = f"unstated errors of {listing([repr(one) for one in erring])} explain {dropped} as well"
     finding = Finding("note", "unstated errors", case.measured.source, what, "the name; it is among the rivals")
     return case.noting(finding), verdict
 
@@ -313,7 +313,7 @@ def criterion_with_errors(case: Case, now: ScoredModel, erring: list[str]) -> fl
     at = np.linspace(0, segments.length - 1, int(np.clip(KNOTS_EACH * segments.length / period, *KNOTS)))
     hats = np.array([np.interp(np.arange(segments.length), at, one) for one in np.eye(len(at))]).T
     driven = segments.of(case.measured.drive.inputs)[:, at.round().astype(int)]
-    moved = [shooting.whitened(one) for one in moved_by_inputs(now, shooting, fit, erring, hats)]
+    moved = [shooting.whiten(one) for one in propagate_inputs(now, shooting, fit, erring, hats)]
     pairs = [(one, driven[..., names.index(name)]) for one, name in zip(moved, erring, strict=True)]
     numbers, best = int(shooting.known.sum()) - fit.starts.size, np.inf
     for periods in PERIODS:

@@ -12,11 +12,11 @@ from gaitdisc.discovery.effect_words import (
     amount,
     at_place,
     brief_text,
+    display_channel,
+    display_unit,
     estimate_text,
     named_at,
     outside_text,
-    shown_channel,
-    shown_unit,
     spoken,
     with_unit,
     would_distinguish,
@@ -41,16 +41,22 @@ DIRECTIONS = re.compile(
 )
 
 
-def sentence_of(discovery: Discovery, base: Simulation, parts: tuple[Part, ...]) -> Discovery:
+def write_sentence(discovery: Discovery, base: Simulation, parts: tuple[Part, ...]) -> Discovery:
     """Return the discovery with its sentence.
 
     parts: the explanations behind the effects, in their order; none for verdicts without a term, number or signal
     """
-    said = [_said(discovery, base, parts), _given(discovery), _tied(discovery), _shown(discovery), _moved(discovery)]
+    said = [
+        _say(discovery, base, parts),
+        _say_given(discovery),
+        _say_tied(discovery),
+        _say_gap(discovery),
+        _say_moved(discovery),
+    ]
     return replace(discovery, sentence=" ".join(one for one in said if one))
 
 
-def _said(discovery: Discovery, base: Simulation, parts: tuple[Part, ...]) -> str:
+def _say(discovery: Discovery, base: Simulation, parts: tuple[Part, ...]) -> str:
     if discovery.verdict in ("no_gap", "unexplained"):
         return _nothing(discovery)
     effects = discovery.effects
@@ -68,7 +74,7 @@ def _said(discovery: Discovery, base: Simulation, parts: tuple[Part, ...]) -> st
         starts = " and ".join(f"{one.place} at {estimate_text(one.estimates['initial'])}" for one in effects)
         return f"Only the initial condition is wrong: trials begin with {starts}; the dynamics agree within noise."
     if discovery.verdict == "unnamed":
-        return f"{_unnamed(effects[0], base, discovery.where)}."
+        return f"{_say_unnamed(effects[0], base, discovery.where)}."
     said = [_one(effect, part, base, discovery.where) for effect, part in zip(effects, parts, strict=True)]
     missing = [one for one, part in zip(said, parts, strict=True) if part.candidate.verdict == "missing_physics"]
     others = [one for one, part in zip(said, parts, strict=True) if part.candidate.verdict != "missing_physics"]
@@ -77,7 +83,7 @@ def _said(discovery: Discovery, base: Simulation, parts: tuple[Part, ...]) -> st
     return f"{whole[:1].upper()}{whole[1:]}."
 
 
-def _given(discovery: Discovery) -> str:
+def _say_given(discovery: Discovery) -> str:
     """Say that nothing was searched, and whether held-out data bear out what was given."""
     if not discovery.given:
         return ""
@@ -140,7 +146,7 @@ def _one(effect: FoundEffect, part: Part, base: Simulation, where: tuple[Whereab
         return _missing(effect, part, base, where)
     if kind == "wrong_parameter":
         estimate = effect.estimates["value"]
-        unit, factor = shown_unit(estimate.unit)
+        unit, factor = display_unit(estimate.unit)
         given = with_unit(f"{factor * base.values()[effect.place]:.6g}", unit)
         outside = outside_text(effect, estimate)
         said = f"the parameter {effect.place} is {estimate_text(estimate)}, but {given} in the file"
@@ -209,7 +215,7 @@ def _stride(effect: FoundEffect, where: tuple[Whereabouts, ...]) -> str:
     return f"seen between {100 * phase[0]:.0f} and {100 * phase[1]:.0f} % of the stride" if phase else ""
 
 
-def _unnamed(effect: FoundEffect, base: Simulation, where: tuple[Whereabouts, ...]) -> str:
+def _say_unnamed(effect: FoundEffect, base: Simulation, where: tuple[Whereabouts, ...]) -> str:
     seen = [one for one in base.signals if re.search(rf"\b{re.escape(one)}\b", effect.term)]
     over = f", a function of {' and '.join(seen)}," if seen else ""
     stride = _stride(effect, where)
@@ -225,7 +231,7 @@ def _unnamed(effect: FoundEffect, base: Simulation, where: tuple[Whereabouts, ..
     return f"{missing}{acts}; a fitted shape{over} replaces it"
 
 
-def _tied(discovery: Discovery) -> str:
+def _say_tied(discovery: Discovery) -> str:
     tied = [one for one in discovery.rivals if one.tied]
     if not tied or not discovery.effects:
         return ""
@@ -234,13 +240,13 @@ def _tied(discovery: Discovery) -> str:
     return f"These data cannot distinguish it from {names}. To distinguish them, record {apart}."
 
 
-def _shown(discovery: Discovery) -> str:
+def _say_gap(discovery: Discovery) -> str:
     """Say how large the held-out error is, and what becomes of it: as the numbers have it."""
     sizes = discovery.held_out.channels
     if not sizes:
         return ""
     channel = discovery.held_out.ranked[0]
-    unit, factor = shown_channel(discovery, channel)
+    unit, factor = display_channel(discovery, channel)
     floor = factor * sizes[channel][2]
     of = f" of {channel}" if len(sizes) > 1 else ""
     noise = f"noise floor {amount(floor, floor / 10)}"
@@ -261,21 +267,21 @@ def _shown(discovery: Discovery) -> str:
     return f"{said} {100 * left:.0f} % of the squared error above the noise stays unexplained."
 
 
-def _moved(discovery: Discovery) -> str:
+def _say_moved(discovery: Discovery) -> str:
     """Name the numbers that clearly moved within their bounds."""
     clear = [one for one in discovery.corrections if not one.found.low <= one.given <= one.found.high]
     if not clear:
         return ""
     said = []
     for one in clear:
-        unit, factor = shown_unit(one.found.unit)
+        unit, factor = display_unit(one.found.unit)
         said.append(f"{one.parameter} from {with_unit(f'{factor * one.given:.6g}', unit)} to {brief_text(one.found)}")
     return f"Changed within their bounds: {', '.join(said)}."
 
 
 def _goes(discovery: Discovery, channel: str) -> str:
     """Say whether an error falls, rises or does not change, to the digits that the noise leaves worth writing."""
-    size, (unit, factor) = discovery.held_out.channels[channel], shown_channel(discovery, channel)
+    size, (unit, factor) = discovery.held_out.channels[channel], display_channel(discovery, channel)
     step = factor * size[2] / 10
     before, after = (amount(factor * one, step) for one in size[:2])
     if before == after:

@@ -32,7 +32,7 @@ INEXACT = 0.02  # of a channel's spread, as white noise: a half percent in which
 STILL = 1e-9  # of a column's size, below which it is one number
 
 
-def expanded(
+def expand(
     simulation: Simulation,
     engine: Engine,
     measured: Measured,
@@ -47,7 +47,7 @@ def expanded(
     values: parameters around which to expand; the simulation's own where absent
     """
     own, drive = simulation.values() | dict(values or {}), measured.drive
-    motions = recorded_motion(engine, measured, states)
+    motions = compute_motion(engine, measured, states)
     at = Motion.joined(motions)
     paths = [np.gradient(one.v, 1 / drive.rate, axis=0) for one in motions]
     stride = 1 if at.z is None else max(round(drive.rate / SLOPES_HZ), 1)
@@ -73,7 +73,7 @@ def expanded(
     return linear, replace(measured, drive=Drive.of(trials, drive.rate, drive.time0))
 
 
-def recorded_motion(engine: Engine, measured: Measured, states: Values) -> list[Motion]:
+def compute_motion(engine: Engine, measured: Measured, states: Values) -> list[Motion]:
     """Motion of each trial with what the engine computes along it.
 
     states (trial, sample, state): smoothed
@@ -153,7 +153,7 @@ def _expand(columns: _Columns, simulation: Simulation, along: _Along, values: Ma
     slopes = _slopes(engine, along, values)
     damping = -np.stack([slopes[one.speed] for one in engine.coordinates], axis=2)
     if np.linalg.norm(damping, axis=(1, 2)).max() > FASTEST:
-        columns.slowed, heavier = _slowed(damping)
+        columns.slowed, heavier = _slow_speeds(damping)
         rest += np.einsum("pij,pj->pi", heavier, along.accelerations)
     for (name, slope), own in zip(slopes.items(), np.hstack([at.q, at.v, at.u]).T, strict=True):
         columns.add(f"by_{name}", slope, name)
@@ -181,7 +181,7 @@ def _slopes(engine: Engine, along: _Along, values: Mapping[str, float]) -> dict[
     """
     few, count = along.few, len(engine.coordinates)
     found: dict[str, Values] = {}
-    for name, _, ahead, behind, size in _nudged(engine, few, "qvuz"):
+    for name, _, ahead, behind, size in _nudge(engine, few, "qvuz"):
         found[name] = along.without_jumps((engine.rates(ahead, values) - engine.rates(behind, values)) / (2 * size))
     fibres = [found.pop(name) for name in _fibres(few)]
     moves = _following(engine, {name: slope[:, count:] for name, slope in found.items()}, fibres)
@@ -210,7 +210,7 @@ def _following(engine: Engine, speeds: Mapping[str, Values], fibres: list[Values
     return found | {one.name: -speeds[one.name] / settling for one in engine.controls}
 
 
-def _slowed(damping: Values) -> tuple[Values, Values]:
+def _slow_speeds(damping: Values) -> tuple[Values, Values]:
     """Factor of accelerations by which no speed settles faster than a run can follow, and its inverse less one.
 
     A light body that muscles hold (a foot), or a damped joint, would settle within a millisecond; it is made as heavy
@@ -232,7 +232,7 @@ def _expand_parameters(
     """
     engine, at = columns.engine, along.few
     names = [name for name in simulation.values() if engine.as_force(name) is None]
-    beside = list(_nudged(engine, at, "q")) if names and at.z is None else []
+    beside = list(_nudge(engine, at, "q")) if names and at.z is None else []
     own = [engine.accelerations(ahead, values) for _, _, ahead, _, _ in beside]
     for name in names:
         size = NUDGE * max(abs(values[name]), 1e-2)
@@ -246,7 +246,7 @@ def _expand_parameters(
         columns.add(f"by_{name}", along.spread(rest), away)
 
 
-def _nudged(engine: Engine, at: Motion, fields: str) -> Iterator[tuple[str, Values, Motion, Motion, float]]:
+def _nudge(engine: Engine, at: Motion, fields: str) -> Iterator[tuple[str, Values, Motion, Motion, float]]:
     """Yield each coordinate, speed, control and fibre with the motion a little to either side."""
     names = {
         "q": [one.name for one in engine.coordinates],

@@ -15,7 +15,7 @@ from gaitdisc.engines.tracked_mapping import read_tracked
 from gaitdisc.errors import SchemaError
 from gaitdisc.recording import Finding
 from gaitdisc.simulation.evaluating import Points, evaluate
-from gaitdisc.simulation.expression import parsed, substituted, written
+from gaitdisc.simulation.expression import parse, substitute, written
 from gaitdisc.simulation.parts import Port, Sensor, State
 from gaitdisc.simulation.python_simulation import any_equations
 from gaitdisc.simulation.simulation import Simulation
@@ -27,7 +27,7 @@ MOST = 60  # coordinates and controls: with a port and some numbers each, what a
 SAME = 1e-5  # by which a number of the mapping may differ from the model's, as a share: numbers in files are rounded
 
 
-def drafted(engine: Engine, degrees: bool = False) -> Simulation:
+def draft(engine: Engine, degrees: bool = False) -> Simulation:
     """Mapping of a model: every free coordinate measured in a column of its name, every control another.
 
     degrees: whether the columns of angles are in degrees
@@ -62,7 +62,7 @@ def drafted(engine: Engine, degrees: bool = False) -> Simulation:
 def write_mapping(engine: Engine, file: Path, degrees: bool = False) -> Simulation:
     """Write the mapping of a model, for a person to correct."""
     model = os.path.relpath(engine.path.resolve(), file.resolve().parent)
-    mapping = replace(drafted(engine, degrees), model=Path(model).as_posix())
+    mapping = replace(draft(engine, degrees), model=Path(model).as_posix())
     write_simulation(mapping, file)
     return mapping
 
@@ -78,7 +78,7 @@ def read_mapping(path: Path | str) -> tuple[Simulation, Engine]:
         beside = path.with_suffix(".toml")
         if not beside.is_file():
             engine = read_model(path)
-            return drafted(engine), engine
+            return draft(engine), engine
         path = beside
     if read_tracked(path) is not None:
         raise SchemaError(
@@ -138,7 +138,7 @@ def other_values(mapping: Simulation, engine: Engine) -> tuple[Finding, ...]:
 def with_input_changed(mapping: Simulation, name: str, expression: str) -> Simulation:
     """Mapping in which a control is replaced by an expression of the recorded one, inside what replaces it already."""
     known, own = dict(mapping.definitions), f"{REPLACED}{name}"
-    changed = substituted(parsed(known.get(own, name)), {name: parsed(expression)}, mapping.signals)
+    changed = substitute(parse(known.get(own, name)), {name: parse(expression)}, mapping.signals)
     return replace(mapping, definitions=tuple((known | {own: written(changed)}).items()))
 
 
@@ -155,7 +155,7 @@ def with_strength(mapping: Simulation, engine: Engine, name: str, gain: float) -
     return with_input_changed(mapping, name, f"{gain!r}*{name}")
 
 
-def replaced_inputs(mapping: Simulation, time: Values, u: Values, rate: float) -> Values:
+def replace_inputs(mapping: Simulation, time: Values, u: Values, rate: float) -> Values:
     """Controls of one trial (sample, control) with those that the mapping replaces by an expression of the recorded."""
     plain = replace(mapping, model="", effects=(), definitions=())
     points = Points(time, np.zeros((len(time), len(plain.states))), u, rate=rate)

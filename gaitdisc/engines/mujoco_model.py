@@ -118,7 +118,7 @@ class MujocoModel:
     def accelerations(self, at: Motion, values: Mapping[str, float], forces: Values | None = None) -> Values:
         """Accelerations (point, coordinate), with other values of some parameters and forces besides."""
         model, data, forward = self._model, self._data, self._mujoco.mj_forward
-        kept = self._changed(values)
+        kept = self._change_values(values)
         found = np.empty_like(at.q)
         own = self._stateful
         acts = model.actuator_actadr[own]
@@ -294,7 +294,7 @@ class MujocoModel:
                 places[f"{one.name}_gear"] = _Place(model.actuator_gear, (number, 0), "1", ("actuator", number))
         return places
 
-    def _changed(self, values: Mapping[str, float]) -> list[tuple[Any, Any, Any]]:
+    def _change_values(self, values: Mapping[str, float]) -> list[tuple[Any, Any, Any]]:
         """Put other values in, and give what stood there before."""
         model, changes = self._model, []
         for name, value in values.items():

@@ -19,7 +19,7 @@ import numpy as np
 
 from gaitdisc.engines.motion import ByHand, Coordinate, Motion, Pushes, Values, new_name, refuse_absent
 from gaitdisc.errors import ReadError, SchemaError
-from gaitdisc.simulation.expression import Name, Number, Tree, parsed
+from gaitdisc.simulation.expression import Name, Number, Tree, parse
 from gaitdisc.simulation.parts import Input, Parameter
 
 ALLOWED = ("sin", "cos", "tan", "tanh", "exp", "sqrt", "min", "max")
@@ -190,7 +190,7 @@ def with_effect(text: str, effect: ByHand, coordinate: Coordinate) -> str | None
         numbers |= {f"{side}_stiffness": stiffness / degree for side in ("upper", "lower")}  # it divides by either
     else:
         kind = "ExpressionBasedCoordinateForce"
-        numbers = {"expression": _translated(parsed(term.term), {coordinate.name: "q", coordinate.speed: "qdot"})}
+        numbers = {"expression": _translate(parse(term.term), {coordinate.name: "q", coordinate.speed: "qdot"})}
     if None in numbers.values() or found is None:
         return None
     words = {"coordinate": coordinate.called} | {word: str(value) for word, value in numbers.items()}
@@ -231,13 +231,13 @@ def _words(vector: np.ndarray) -> str:
     return " ".join(repr(float(each)) for each in vector)
 
 
-def _translated(tree: Tree, names: dict[str, str]) -> str | None:
+def _translate(tree: Tree, names: dict[str, str]) -> str | None:
     """Expression as OpenSim writes it; None where it has a name or a function that OpenSim does not know there."""
     if isinstance(tree, Number):
         return repr(tree.value)
     if isinstance(tree, Name):
         return names.get(tree.name)
-    parts = [_translated(one, names) for one in tree.arguments]
+    parts = [_translate(one, names) for one in tree.arguments]
     if None in parts:
         return None
     symbol, given = tree.symbol, [f"({part})" for part in parts]

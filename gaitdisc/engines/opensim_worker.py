@@ -102,7 +102,7 @@ class Ready:
             slopes[name] = dict(zip(others, own, strict=True))
         return slopes
 
-    def tensed(self, u: Any, z: Any = None) -> None:
+    def tense(self, u: Any, z: Any = None) -> None:
         """Put activations in, and lengths of fibres: without them those of the equilibrium."""
         states = self.state.updZ()
         for number, place in self.activations.items():
@@ -216,7 +216,7 @@ class _Answers:
             one = self.with_values(values)
             one.placed([each.getDefaultValue() + 0.1 for each in one.free], [0.5] * len(one.free))
             controls = [0.1] * len(one.actuators)
-            one.tensed(controls)
+            one.tense(controls)
             found.append(one.rates([*controls, *[0.0] * len(one.free)])[: len(one.free)])
         return not np.allclose(*found, rtol=1e-9, atol=0.0)
 
@@ -225,7 +225,7 @@ class _Answers:
         found = np.empty((len(q), q.shape[1] + len(one.fibres)))
         for point in range(len(q)):
             one.placed(q[point], v[point])
-            one.tensed(u[point], None if z is None else z[point])
+            one.tense(u[point], None if z is None else z[point])
             found[point] = one.rates([*u[point], *forces[point]])
         return found
 
@@ -235,7 +235,7 @@ class _Answers:
         found = np.empty((len(q), len(one.fibres)))
         for point in range(len(q)):
             one.placed(q[point], np.zeros_like(q[point]))
-            one.tensed(u[point])
+            one.tense(u[point])
             found[point] = one.state.getZ().to_numpy()[one.fibres]
         return found
 
@@ -248,7 +248,7 @@ class _Answers:
         one = self.fresh({}, (time, controls), motion)
         one.state.setTime(-BEFORE)
         one.placed(whole[0], np.zeros_like(whole[0]))
-        one.tensed(controls[0])
+        one.tense(controls[0])
         manager = self.osim.Manager(one.model)
         manager.setIntegratorAccuracy(ACCURACY_ALONG)
         manager.initialize(one.state)
@@ -267,7 +267,7 @@ class _Answers:
             ready[driven.tobytes()] = one
             one.state.setTime(0.0)
             one.placed(q[run], v[run])
-            one.tensed(u[run], None if z is None else z[run])
+            one.tense(u[run], None if z is None else z[run])
             manager = self.osim.Manager(one.model)
             manager.setIntegratorAccuracy(ACCURACY[bool(one.activations)])
             manager.initialize(one.state)

@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from gaitdisc.engines.engine import Engine
-from gaitdisc.engines.expansion import recorded_motion
+from gaitdisc.engines.expansion import compute_motion
 from gaitdisc.engines.motion import Values
 from gaitdisc.simulation.evaluating import Points, evaluate_many
 from gaitdisc.simulation.measured import Measured
@@ -111,7 +111,7 @@ def root_mean_square(left: Values) -> Values:
     return np.sqrt(np.nanmean(left**2, axis=(0, 1)))
 
 
-def stretches_of(measured: Measured, period: float, fewer: bool = False, margin: int = 0) -> Stretches:
+def spread_stretches(measured: Measured, period: float, fewer: bool = False, margin: int = 0) -> Stretches:
     """Runs of two periods at most, spread over every trial: side by side, so that noise counts once."""
     margin = min(margin, int(measured.samples.min()) // SHORT)
     inner = measured.samples - 2 * margin
@@ -132,7 +132,7 @@ def trial_called(measured: Measured, name: str) -> int:
     return measured.trials.index(name) if name in measured.trials else int(name.rsplit(maxsplit=1)[-1]) - 1
 
 
-def left_by(
+def residual_by(
     model: Driven, measured: Measured, at: Stretches, states: Values, near: dict[int, Values] | None = None
 ) -> Values:
     """Measured minus run (run, sample, channel), starts and hidden states found by Gauss-Newton.
@@ -141,7 +141,7 @@ def left_by(
     near: run -> the start (state,) of a model that is hardly another, where it begins then; these are put in
     """
     engine, n, lags = model.engine, len(model.engine.coordinates), model.lags
-    recorded = recorded_motion(engine, replace(measured, drive=replace(measured.drive, inputs=model.controls)), states)
+    recorded = compute_motion(engine, replace(measured, drive=replace(measured.drive, inputs=model.controls)), states)
     size = np.nanstd(measured.observed, axis=(0, 1))
     found = np.full((len(at.trial), at.length, len(size)), np.nan)
     said = time.monotonic()
@@ -172,14 +172,14 @@ def left_by(
         start = np.append(states[trial, first], np.zeros(len(lags) + own)) if known is None else known
         for share in SHARES if known is None else SHARES[-1:]:
             samples = max(int(share * at.length), min(16, at.length))
-            start, left = _started(lambda starts, samples=samples: left_from(starts, samples), start)
+            start, left = _find_start(lambda starts, samples=samples: left_from(starts, samples), start)
         found[row] = left * size
         if near is not None:
             near[row] = start
     return found
 
 
-def _started(left_from: Callable[[Values], Values], start: Values) -> tuple[Values, Values]:
+def _find_start(left_from: Callable[[Values], Values], start: Values) -> tuple[Values, Values]:
     """Start that suits a run best, and what it leaves."""
     left = left_from(start[None])[0]
     there = np.isfinite(left)

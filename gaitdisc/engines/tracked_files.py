@@ -11,14 +11,14 @@ from numpy.typing import NDArray
 from gaitdisc.channel import Channel, nearest_word
 from gaitdisc.engines.motion import Coordinate, Values
 from gaitdisc.engines.opensim_tracked import OpensimTracked
-from gaitdisc.engines.tracked_mapping import Tracked, loads_of, xml_of
+from gaitdisc.engines.tracked_mapping import Tracked, find_loads, read_xml
 from gaitdisc.errors import ChannelError, ReadError, SamplingError, SchemaError, UnitError
-from gaitdisc.ingest.cells import Form, parsed_cells
+from gaitdisc.ingest.cells import Form, parse_cells
 from gaitdisc.ingest.raw_file import read_raw
-from gaitdisc.ingest.storage import parsed_header, read_storage
+from gaitdisc.ingest.storage import parse_header, read_storage
 from gaitdisc.recording import Recording
-from gaitdisc.signals.butterworth import lowpassed
-from gaitdisc.signals.derivatives import differentiated
+from gaitdisc.signals.butterworth import low_pass
+from gaitdisc.signals.derivatives import derivative
 
 SHORTEST_S = 0.5
 EDGE_PERIODS = 1.0  # of the low-pass, left out at both ends of the angles where rates come from them
@@ -45,7 +45,7 @@ class TrackedMotion:
         return float((len(self.time) - 1) / (self.time[-1] - self.time[0]))
 
 
-def drafted_tracked(
+def draft_tracked(
     model: Path, loads: Path | None, forces: Path | None = None, actuators: Path | None = None
 ) -> tuple[Tracked, OpensimTracked]:
     """What a model's walk is tracked with, once model and files have been found to belong together."""
@@ -64,7 +64,7 @@ def drafted_tracked(
     for path in (model, loads, forces, actuators):
         if path is not None and not path.is_file():
             raise SchemaError("files of a tracked walk must exist", f"there is none at {path}", "Check the path.")
-    tracked = Tracked(model, loads_of(loads), forces, actuators)
+    tracked = Tracked(model, find_loads(loads), forces, actuators)
     check_loads(tracked)
     engine = OpensimTracked(tracked)
     actuator_forces(tracked, engine.actuators)
@@ -74,9 +74,9 @@ def drafted_tracked(
 def check_loads(tracked: Tracked) -> None:
     """Refuse forces on a body that the model lacks, and columns that their file lacks."""
     loads, data = tracked.loads
-    bodies = [one.get("name", "") for one in xml_of(tracked.model).iter("Body")]
-    labels = parsed_header(read_raw(data).lines(), data.name).labels
-    for force in xml_of(loads).iter("ExternalForce"):
+    bodies = [one.get("name", "") for one in read_xml(tracked.model).iter("Body")]
+    labels = parse_header(read_raw(data).lines(), data.name).labels
+    for force in read_xml(loads).iter("ExternalForce"):
         body = (force.findtext("applied_to_body") or "").strip()
         if body.rpartition("/")[2] not in bodies:
             near = nearest_word(body, tuple(bodies))
@@ -100,12 +100,12 @@ def _table(path: Path) -> tuple[list[str], Values]:
     """Labels and numbers of a storage file, as they stand there."""
     raw = read_raw(path)
     lines = raw.lines()
-    header = parsed_header(lines, raw.name)
+    header = parse_header(lines, raw.name)
     body, form = lines[header.body_line - 1 :], Form(raw.name, header.separator)
-    return list(header.labels), parsed_cells(body, header.labels, header.body_line, form).values
+    return list(header.labels), parse_cells(body, header.labels, header.body_line, form).values
 
 
-def tracked_motion(
+def read_tracked_motion(
     tracked: Tracked, kinematics: Path, coordinates: tuple[Coordinate, ...], known: tuple[str, ...]
 ) -> TrackedMotion:
     """Read the motion and the forces of actuators where all files have both.
@@ -144,7 +144,7 @@ def tracked_motion(
     spans[tracked.loads[1]] = _table(tracked.loads[1])[1][:, 0]
     if tracked.forces is not None:
         spans[tracked.forces] = forces[:, 0]
-    inside = _shared(spans, time, tracked)
+    inside = _select_shared(spans, time, tracked)
 
     def on_time(own: Values, values: Values) -> Values:
         return np.column_stack([np.interp(time, own, column) for column in values.T])
@@ -152,7 +152,7 @@ def tracked_motion(
     if rates:
         v, a = [on_time(*one) for one in rates]
     else:
-        q, v, a = _smoothed(coordinates, tracked.lowpass_hz, time, q)
+        q, v, a = _smooth(coordinates, tracked.lowpass_hz, time, q)
     pulls = on_time(forces[:, 0], forces[:, 1:]) if names else np.zeros((len(time), 0))
     inside &= np.isfinite(q).all(axis=1) & np.isfinite(v).all(axis=1) & np.isfinite(a).all(axis=1)
     kept = np.flatnonzero(inside)
@@ -172,7 +172,7 @@ def _coordinates(path: Path, coordinates: tuple[Coordinate, ...], word: str) -> 
         for k, channel in enumerate(stream.channels):
             name, unit = channel.name.removesuffix(word), channel.unit
             if name in turning and not unit.startswith("deg"):  # a name that only this model has
-                degrees = parsed_header(read_raw(path).lines(), path.name).degrees
+                degrees = parse_header(read_raw(path).lines(), path.name).degrees
                 if degrees is None:
                     raise UnitError(
                         f"{path.name} must state whether its angles are in degrees",
@@ -203,11 +203,11 @@ def actuator_forces(tracked: Tracked, known: tuple[str, ...]) -> tuple[tuple[str
     names = [label.rpartition("/")[2] for label in labels]
     recorded = [
         f"{(one.findtext('applied_to_body') or '').strip().rpartition('/')[2]}_{one.get('name')}_"
-        for one in xml_of(tracked.loads[0]).iter("ExternalForce")
+        for one in read_xml(tracked.loads[0]).iter("ExternalForce")
     ]
     passive = [
         one.get("name", "")
-        for forces in xml_of(tracked.model).iter("ForceSet")
+        for forces in read_xml(tracked.model).iter("ForceSet")
         for one in forces.findall("objects/*")
         if one.tag.endswith(PASSIVE)
     ]
@@ -238,7 +238,7 @@ def actuator_forces(tracked: Tracked, known: tuple[str, ...]) -> tuple[tuple[str
     return tuple(names[k] for k in kept[1:]), values
 
 
-def _shared(spans: dict[Path, Values], time: Values, tracked: Tracked) -> NDArray[np.bool_]:
+def _select_shared(spans: dict[Path, Values], time: Values, tracked: Tracked) -> NDArray[np.bool_]:
     """Samples of a time base that all files cover and that are to be tracked."""
     first = max(spans, key=lambda one: spans[one][0])
     last = min(spans, key=lambda one: spans[one][-1])
@@ -260,13 +260,13 @@ def _shared(spans: dict[Path, Values], time: Values, tracked: Tracked) -> NDArra
     return inside
 
 
-def _smoothed(
+def _smooth(
     coordinates: tuple[Coordinate, ...], cutoff_hz: float, time: Values, q: Values
 ) -> tuple[Values, Values, Values]:
     """Coordinates after a low-pass, and their two derivatives."""
     channels = tuple(Channel(one.called, "signal", one.unit) for one in coordinates)
-    smooth = lowpassed(Recording(time, q, channels), cutoff_hz)
+    smooth = low_pass(Recording(time, q, channels), cutoff_hz)
     values, rate = np.array(smooth.values), smooth.rate_hz
     edge = int(EDGE_PERIODS * rate / cutoff_hz)
     values[:edge], values[len(values) - edge :] = np.nan, np.nan
-    return values, differentiated(values, rate, 1), differentiated(values, rate, 2)
+    return values, derivative(values, rate, 1), derivative(values, rate, 2)

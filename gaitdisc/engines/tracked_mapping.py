@@ -12,7 +12,7 @@ import numpy as np
 
 from gaitdisc.channel import nearest_word
 from gaitdisc.errors import ReadError, SchemaError
-from gaitdisc.toml_text import parsed_toml, quoted
+from gaitdisc.toml_text import parse_toml, quote
 from gaitdisc.whole_file import write_whole
 
 FILES = ("external_loads", "forces", "actuators", "speeds", "accelerations")
@@ -56,7 +56,7 @@ def read_tracked(path: Path | str) -> Tracked | None:
         text = file.read_text(encoding="utf-8")
         if re.search(r"^\s*\[tracked\]", text, re.MULTILINE) is None:
             return None
-        table = parsed_toml(text)
+        table = parse_toml(text)
     except (OSError, ValueError) as error:
         raise ReadError("a mapping must be a TOML file", f"{file.name}: {error}", "Correct it there.") from None
     given = table["tracked"]
@@ -84,7 +84,7 @@ def read_tracked(path: Path | str) -> Tracked | None:
     loads, noise = paths["external_loads"], given.get("noise_deg")
     return Tracked(
         _there(file, "model", table.get("model", f"{file.stem}.osim")),
-        loads_of(loads),
+        find_loads(loads),
         *(paths.get(name) for name in FILES[1:]),
         lowpass_hz=float(given.get("lowpass_hz", LOWPASS_HZ)),
         noise_deg=None if noise is None else float(noise),
@@ -104,7 +104,7 @@ def _there(file: Path, what: str, name: object) -> Path:
     return path
 
 
-def loads_of(loads: Path) -> tuple[Path, Path]:
+def find_loads(loads: Path) -> tuple[Path, Path]:
     """Return an ExternalLoads file, and the storage file that it names."""
     if loads.suffix.lower() in (".mot", ".sto"):
         raise ReadError(
@@ -112,7 +112,7 @@ def loads_of(loads: Path) -> tuple[Path, Path]:
             f"{loads.name} holds the forces themselves",
             f"Give the .xml of OpenSim's inverse dynamics, which names {loads.name} in <datafile>.",
         )
-    named = (xml_of(loads).findtext(".//datafile") or "").strip()
+    named = (read_xml(loads).findtext(".//datafile") or "").strip()
     path = loads.parent / named
     if not named or not path.is_file():
         raise ReadError(
@@ -123,7 +123,7 @@ def loads_of(loads: Path) -> tuple[Path, Path]:
     return loads, path
 
 
-def xml_of(path: Path) -> ElementTree.Element:
+def read_xml(path: Path) -> ElementTree.Element:
     """Return the root of a file of OpenSim."""
     try:
         return ElementTree.parse(path).getroot()
@@ -135,7 +135,7 @@ def write_tracked_mapping(tracked: Tracked, file: Path) -> None:
     """Write the mapping, with paths that count from its own folder."""
 
     def beside(path: Path) -> str:
-        return quoted(Path(os.path.relpath(path.resolve(), file.resolve().parent)).as_posix())
+        return quote(Path(os.path.relpath(path.resolve(), file.resolve().parent)).as_posix())
 
     lines = [f"model = {beside(tracked.model)}", "", "[tracked]"]
     lines += [f"{name} = {beside(path)}" for name, path in tracked.named.items()]

@@ -13,11 +13,11 @@ from pathlib import Path
 import numpy as np
 
 from gaitdisc.engines.engine import Engine, read_model
-from gaitdisc.engines.mapping import REPLACED, read_mapping, replaced_inputs
+from gaitdisc.engines.mapping import REPLACED, read_mapping, replace_inputs
 from gaitdisc.engines.motion import FAR, ByHand, Motion, Pushes, Values
 from gaitdisc.errors import GaitdiscError, SchemaError
 from gaitdisc.simulation.evaluating import Points, evaluate
-from gaitdisc.simulation.expression import names, parsed
+from gaitdisc.simulation.expression import names, parse
 from gaitdisc.simulation.parts import Term
 from gaitdisc.simulation.running import compile_simulation
 from gaitdisc.simulation.simulation import Simulation
@@ -39,7 +39,7 @@ class WrittenModel:
     definitions: tuple[tuple[str, str], ...]  # of controls in the mapping, without those that the text says
 
 
-def written_model(engine: Engine, augmented: Simulation, native: bool = True) -> WrittenModel:
+def write_model(engine: Engine, augmented: Simulation, native: bool = True) -> WrittenModel:
     """Write effects, changed parameters and limits of controls into a model's text, as far as they have a form there.
 
     What has none acts as a force at each step of the engine's runs.
@@ -62,14 +62,14 @@ def written_model(engine: Engine, augmented: Simulation, native: bool = True) ->
     for what, change, more_forces, more_values in changes:
         tried = change(text) if native or not more_forces else None
         wanted = (augmented, (*forces, *more_forces), values | more_values)
-        deviation, read = _compared(engine, tried, *wanted)
+        deviation, read = _deviation(engine, tried, *wanted)
         if tried is None or read is None or deviation > SAME:
             said = "has no form in the model's own file"
             if tried is not None:
                 said = "is refused by the engine in the model's own form"
             if read is not None:
                 said = f"would differ by {deviation:.1g} of the accelerations in the model's own form"
-            used = {name for one in more_forces for name in names(parsed(one.term))}
+            used = {name for one in more_forces for name in names(parse(one.term))}
             notes.append(f"{what} {said}: only {'discovery.json' if used & own else 'augmented.toml'} contains it")
             at_once = [one for one in more_forces if one.kind == "port" and "delay(" not in one.term]
             if at_once and not engine.fibres:
@@ -106,7 +106,7 @@ def written_model(engine: Engine, augmented: Simulation, native: bool = True) ->
 def whole_model(path: Path | str) -> tuple[Simulation, Engine]:
     """Mapping of a model, and the engine of the model with all that the mapping says: other numbers, and effects."""
     mapping, engine = read_mapping(path)
-    written = written_model(engine, mapping)
+    written = write_model(engine, mapping)
     others = (f"{name} = {text}" for name, text in mapping.definitions if not name.startswith(REPLACED))
     absent = (*written.absent, *others)
     if absent:
@@ -136,13 +136,13 @@ def _ranged(engine: Engine, augmented: Simulation, text: str, name: str) -> Engi
     control, controls = name.removeprefix(REPLACED), [one.name for one in engine.controls]
     number, probes = controls.index(control), FAR * np.linspace(-1, 1, PROBED) ** 3  # densest where limits are
     u, still = np.tile(probes[:, None], len(controls)), np.zeros((PROBED, len(engine.coordinates)))
-    clipped = replaced_inputs(augmented, probes, u, PROBED_HZ)
+    clipped = replace_inputs(augmented, probes, u, PROBED_HZ)
     low, high = clipped[[0, -1], number].tolist()
-    alone = low < high and set(names(parsed(dict(augmented.definitions)[name]))) == {control}
+    alone = low < high and set(names(parse(dict(augmented.definitions)[name]))) == {control}
     tried = engine.text_with_range(text, number, low, high) if alone else None
     if tried is None:
         return None
-    read = loaded_beside(engine.path, tried)
+    read = load_beside(engine.path, tried)
     acting, wanted = (one.along(still, still, each, PROBED_HZ).u for one, each in ((read, u), (engine, clipped)))
     return read if np.array_equal(acting[:, number], wanted[:, number]) else None
 
@@ -150,13 +150,13 @@ def _ranged(engine: Engine, augmented: Simulation, text: str, name: str) -> Engi
 def _by_hand(augmented: Simulation, term: Term, x: Values) -> Values:
     """Force of a term at states (point,); infinite where it depends on more than states."""
     plain = replace(augmented, model="", effects=(), definitions=())
-    if "delay(" in term.term or "t" in names(parsed(term.term)):
+    if "delay(" in term.term or "t" in names(parse(term.term)):
         return np.full(len(x), np.inf)
     u = np.zeros((len(x), len(augmented.inputs)))
     return np.broadcast_to(evaluate(plain, term.term, Points(np.zeros(len(x)), x, u)), len(x))
 
 
-def _compared(
+def _deviation(
     engine: Engine, text: str | None, augmented: Simulation, forces: tuple[Term, ...], values: dict[str, float]
 ) -> tuple[float, Engine | None]:
     """Largest deviation of a written model's accelerations from those by hand, over the largest; and that model."""
@@ -175,7 +175,7 @@ def _compared(
     if not np.isfinite(push).all():
         return np.inf, None
     try:
-        read = loaded_beside(engine.path, text, getattr(engine, "other", read_model))
+        read = load_beside(engine.path, text, getattr(engine, "other", read_model))
     except GaitdiscError:
         return np.inf, None
     wanted = engine.accelerations(at, values, push)
@@ -183,7 +183,7 @@ def _compared(
     return float(np.abs(found - wanted).max() / np.abs(wanted).max()), read
 
 
-def loaded_beside(path: Path, text: str, read: Callable[[Path], Engine] = read_model) -> Engine:
+def load_beside(path: Path, text: str, read: Callable[[Path], Engine] = read_model) -> Engine:
     """Model of another text, with the files that lie beside the first."""
     folder = tempfile.TemporaryDirectory()
     for other in path.resolve().parent.iterdir():

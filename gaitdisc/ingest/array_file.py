@@ -21,15 +21,15 @@ from gaitdisc.ingest.cells import even_time
 from gaitdisc.ingest.columns import (
     Column,
     column_in_unit,
-    column_of,
-    named_channel,
-    said_clock,
+    find_clock,
+    find_column,
+    name_channel,
     split_unit,
 )
 from gaitdisc.ingest.hdf5 import SIGNATURE, attributes, data_set, hdf5_file
 from gaitdisc.ingest.raw_file import RawFile, read_raw
 from gaitdisc.ingest.reader_process import MEBIBYTE, Arrays, ReaderProcess, ReadRequest
-from gaitdisc.ingest.table import checked_trial
+from gaitdisc.ingest.table import check_trial
 from gaitdisc.recording import Finding, Recording, Trial
 from gaitdisc.recording.arrays import Values
 from gaitdisc.regular_file import LARGEST_BYTES, size_in_words
@@ -74,25 +74,25 @@ class ArrayFile:
         if not top:
             hint = hint_nearest(re.split(r"[.({]", steps)[0], self.names)
             found = f"it has {list_names(self.names, _SHOWN)}{hint}"
-            raise self._refused(whole, found, "Correct the path in [channels].")
+            raise self._refuse(whole, found, "Correct the path in [channels].")
         rest = steps[len(top) :]
         if "".join(found[0] for found in _STEP.finditer(rest)) != rest:
-            raise self._refused(whole, f"{rest!r} is not a path", _REMEDY)
+            raise self._refuse(whole, f"{rest!r} is not a path", _REMEDY)
         node = self.opened(top)
         for field, cell, place in _STEP.findall(rest):
             node = self._field(node, field, whole, part) if field else self._element(node, int(cell or place), whole)
         return self._column(self._chosen(node, whole, part), columns, whole)
 
-    def _refused(self, path: str, found: str, remedy: str) -> ReadError:
+    def _refuse(self, path: str, found: str, remedy: str) -> ReadError:
         return ReadError(f"{self.raw.name}: {path!r} must name a variable of numbers", found, remedy)
 
     def _field(self, node: Any, field: str, path: str, part: str) -> Any:
         node = self._chosen(node, path, part)
         if not isinstance(node, Mapping):
-            raise self._refused(path, f"{field!r} follows {_what(node)}, which is not a struct", _REMEDY)
+            raise self._refuse(path, f"{field!r} follows {_what(node)}, which is not a struct", _REMEDY)
         if field not in node:
             found = f"the struct has {list_names(tuple(node), _SHOWN)}{hint_nearest(field, node)}"
-            raise self._refused(path, found, "Correct the path in [channels].")
+            raise self._refuse(path, found, "Correct the path in [channels].")
         held = node[field]
         return held() if callable(held) else held
 
@@ -100,10 +100,10 @@ class ArrayFile:
         if isinstance(node, Mapping) and number == 1:
             return node
         if not isinstance(node, Cells):
-            raise self._refused(path, f"element {number} follows {_what(node)}", _REMEDY)
+            raise self._refuse(path, f"element {number} follows {_what(node)}", _REMEDY)
         if not 1 <= number <= len(node.held):
             found = f"it has {len(node.held)} elements and no element {number}"
-            raise self._refused(path, found, "Elements are counted from 1.")
+            raise self._refuse(path, found, "Elements are counted from 1.")
         return node.held[number - 1]
 
     def _chosen(self, node: Any, path: str, part: str) -> Any:
@@ -115,15 +115,15 @@ class ArrayFile:
         if len(node.held) == 1:
             return node.held[0]
         remedy = f'Write part = "1" to "{len(node.held)}" next to the trial\'s files, or path{{1}}.'
-        raise self._refused(path, f"it holds {len(node.held)} elements", remedy)
+        raise self._refuse(path, f"it holds {len(node.held)} elements", remedy)
 
     def _column(self, node: Any, columns: re.Match[str] | None, path: str) -> Values:
         if not isinstance(node, np.ndarray):
-            raise self._refused(path, f"it is {_what(node)}", "Name another variable, or save it as a numeric array.")
+            raise self._refuse(path, f"it is {_what(node)}", "Name another variable, or save it as a numeric array.")
         values = np.array(node, float)
         if not values.size or np.isinf(values).any():
             found = "it is empty" if not values.size else f"it contains {int(np.isinf(values).sum())} infinite numbers"
-            raise self._refused(path, found, "Save it again, with NaN for missing values.")
+            raise self._refuse(path, found, "Save it again, with NaN for missing values.")
         if columns is None:
             return values
         wanted = [one.strip() for one in columns[1].split(",")]
@@ -131,7 +131,7 @@ class ArrayFile:
         fits = fits and all(w == ":" or 1 <= int(w) <= n for w, n in zip(wanted, values.shape, strict=True))
         if not fits:
             remedy = "Columns are counted from 1, and one ':' stands for time: (:,2)."
-            raise self._refused(path, f"it is {_shape(values)}", remedy)
+            raise self._refuse(path, f"it is {_shape(values)}", remedy)
         return values[tuple(slice(None) if one == ":" else int(one) - 1 for one in wanted)]
 
     def overview(self) -> str:
@@ -270,7 +270,7 @@ def read_arrays(
     returns: streams as far as the study names their channels, each on its own clock
     """
     file = open_arrays(path, process)
-    wanted = {label: said for label, said in (channels or {}).items() if said_clock(said)}
+    wanted = {label: said for label, said in (channels or {}).items() if find_clock(said)}
     if not wanted:
         raise ReadError(
             f"the study's [channels] must state the channel, unit and rate of each variable of {file.raw.name}",
@@ -280,7 +280,7 @@ def read_arrays(
     bases: list[tuple[Values, list[Values], list[Column]]] = []
     for label, said in wanted.items():
         columns, values = _columns(file, label, said, part)
-        time = _time(file, label, said_clock(said), len(values), part)
+        time = _time(file, label, find_clock(said), len(values), part)
         base = next((b for b in bases if len(b[0]) == len(time) and np.allclose(b[0], time, rtol=0, atol=1e-9)), None)
         if base is None:
             base = (time, [], [])
@@ -288,7 +288,7 @@ def read_arrays(
         base[1].append(values)
         base[2].extend(columns)
     source = file.raw.source(file.raw.name.rpartition(".")[2].lower())
-    trials = [checked_trial(source, time, np.hstack(parts), columns) for time, parts, columns in bases]
+    trials = [check_trial(source, time, np.hstack(parts), columns) for time, parts, columns in bases]
     streams: dict[str, Recording] = {}
     findings: list[Finding] = []
     for trial in trials:
@@ -311,13 +311,13 @@ def _columns(file: ArrayFile, label: str, said: str, part: str) -> tuple[list[Co
     values = file.numbers(label, part)
     flat = values.squeeze()
     if flat.ndim <= 1:
-        return [column_of(label, file.raw.name, {label: said})], flat.reshape(-1, 1)
+        return [find_column(label, file.raw.name, {label: said})], flat.reshape(-1, 1)
     name, unit = split_unit(said)
-    if flat.ndim == 2 and flat.shape[1] in (3, 4) and named_channel(name).quantity == "signal":  # 4: with a residual
+    if flat.ndim == 2 and flat.shape[1] in (3, 4) and name_channel(name).quantity == "signal":  # 4: with a residual
         if unit is None:
             needed = f"{file.raw.name}: the marker {name!r} of {label!r} must have a unit"
             raise UnitError(needed, "the study states none", f'Write "{label}" = "{name} [mm] @ 100 Hz".')
-        columns = [column_in_unit(label, named_channel(f"{name}.{axis}"), unit, file.raw.name) for axis in "xyz"]
+        columns = [column_in_unit(label, name_channel(f"{name}.{axis}"), unit, file.raw.name) for axis in "xyz"]
         return columns, flat[:, :3]
     raise ReadError(
         f"{file.raw.name}: {label!r} must have one column for {name!r}, or three for a marker",

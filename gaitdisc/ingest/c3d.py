@@ -98,7 +98,7 @@ class C3DReader:
         if not header.points and not header.analog_values and parameters.count("ROTATION", "USED"):
             segments = file_segments(path, header, parameters, Source(header.file, file_sha256(path)))
             return Trial(path.stem, {"segments": segments} if segments is not None else {})
-        layout, findings = expected_layout(header, parameters)
+        layout, findings = find_layout(header, parameters)
         rate_hz, doubts = _rate(header, parameters, layout)
         with ThreadPoolExecutor(1) as beside:  # the hash is done while the other process reads
             sha256 = beside.submit(file_sha256, path)
@@ -157,10 +157,10 @@ def read_c3d(path: str | Path, channels: Mapping[str, str] | None = None) -> Tri
 def _streams(
     points: Values, raw: Values, layout: C3DLayout, parameters: C3DParameters, labels: LabelMap
 ) -> tuple[Streams, tuple[Surface, ...], list[Finding]]:
-    unscaled, seen = unscaled_channels(parameters, layout.channels)
+    unscaled, seen = list_unscaled(parameters, layout.channels)
     raw[:, sorted(unscaled)] = np.nan
     file = parameters.file
-    findings = [*seen, *_made_finite(points, "coordinates of points", file), *_made_finite(raw, "analog values", file)]
+    findings = [*seen, *_make_finite(points, "coordinates of points", file), *_make_finite(raw, "analog values", file)]
     streams, unit, doubts = point_streams(points, parameters, labels)
     plates, described = force_plates(parameters, layout.channels, unit, unscaled)
     forces, columns, of_plates = plate_streams(raw, plates, parameters, unit)
@@ -202,7 +202,7 @@ def _rate(header: C3DHeader, parameters: C3DParameters, layout: C3DLayout) -> tu
     return rate, findings
 
 
-def _made_finite(values: Values, what: str, file: str) -> list[Finding]:
+def _make_finite(values: Values, what: str, file: str) -> list[Finding]:
     infinite = np.isinf(values)
     if not infinite.any():
         return []
@@ -244,7 +244,7 @@ class C3DLayout:
         return self.end <= size < self.end + BLOCK
 
 
-def expected_layout(header: C3DHeader, parameters: C3DParameters) -> tuple[C3DLayout, list[Finding]]:
+def find_layout(header: C3DHeader, parameters: C3DParameters) -> tuple[C3DLayout, list[Finding]]:
     """Layout that the file's own counts and its length agree on.
 
     Header and parameters usually say the same; a file that is shorter than that is truncated. Where they contradict
@@ -385,7 +385,7 @@ def check_common_scales(header: C3DHeader, parameters: C3DParameters) -> None:
             raise ReadError("the scales of a C3D file must be finite and not 0", found, _REMEDY)
 
 
-def unscaled_channels(parameters: C3DParameters, channels: int) -> tuple[frozenset[int], list[Finding]]:
+def list_unscaled(parameters: C3DParameters, channels: int) -> tuple[frozenset[int], list[Finding]]:
     """Analog channels whose own scale or offset cannot be used: their numbers are missing, the others stand."""
     labels = [*parameters.texts("ANALOG", "LABELS"), *[""] * channels]
     bad: dict[int, str] = {}

@@ -7,13 +7,13 @@ from dataclasses import dataclass, replace
 
 from gaitdisc.channel import Channel, vocabulary
 from gaitdisc.errors import UnitError
-from gaitdisc.ingest.c3d_labels import LabelMap, made_unique, named_people, without_people
+from gaitdisc.ingest.c3d_labels import LabelMap, list_people_names, make_unique, without_people
 from gaitdisc.ingest.c3d_parameters import C3DParameters
 from gaitdisc.ingest.c3d_points import Streams
-from gaitdisc.ingest.columns import named_channel, split_unit, stream_of
+from gaitdisc.ingest.columns import find_stream, name_channel, split_unit
 from gaitdisc.recording import Finding
 from gaitdisc.recording.arrays import Values
-from gaitdisc.units import convert, inner_unit, parsed_unit
+from gaitdisc.units import convert, inner_unit, parse_unit
 
 # What devices put before the name that the laboratory typed: `Voltage.L Rect`, `EMG: R TA`.
 _NO_NAME = ("voltage", "analog", "raw", "signal", "emg")
@@ -46,7 +46,7 @@ class AnalogLabel:
     @property
     def is_emg(self) -> bool:
         """Whether the channel is EMG: by its muscle or the word, where its unit is a voltage or none that is known."""
-        unit = parsed_unit(self.unit)
+        unit = parse_unit(self.unit)
         if unit is not None and inner_unit(unit) != "V":
             return False
         return self.muscle is not None or "emg" in f"{self.label} {self.description}".lower()
@@ -54,7 +54,7 @@ class AnalogLabel:
 
 def analog_labels(parameters: C3DParameters, count: int) -> list[AnalogLabel]:
     """What the file calls its analog channels; it may list more labels than there are channels, or fewer."""
-    people = named_people(parameters)
+    people = list_people_names(parameters)
     texts = [[*parameters.texts("ANALOG", name)[:count], *[""] * count] for name in ("LABELS", "DESCRIPTIONS", "UNITS")]
     return [
         AnalogLabel(place + 1, without_people(label, people), without_people(description, people), unit.strip())
@@ -83,7 +83,7 @@ def emg_names(channels: list[AnalogLabel]) -> list[str]:
             names.append(f"emg_{bracket}")
         else:
             names.append(f"emg_{channel.number}")
-    return made_unique(names, "emg")
+    return make_unique(names, "emg")
 
 
 def analog_streams(
@@ -99,15 +99,15 @@ def analog_streams(
     for one in analog:
         name = mapped[one.number]
         if name is not None:
-            channel, unit = _mapped_channel(name, one, parameters.file)
-            stream = stream_of(channel)
+            channel, unit = _map_channel(name, one, parameters.file)
+            stream = find_stream(channel)
             chosen.append((stream if stream in ("emg", "forces") else "signals", one, channel, unit))
     for one, name in zip(emg, emg_names(emg), strict=True):
-        unit = parsed_unit(one.unit) or "1"
+        unit = parse_unit(one.unit) or "1"
         side = one.muscle.side if one.muscle is not None else ""
         chosen.append(("emg", one, Channel(name, "emg", inner_unit(unit), side), unit))
-    for one, name in zip(others, made_unique([one.label for one in others], "analog"), strict=True):
-        unit = parsed_unit(one.unit) or "1"
+    for one, name in zip(others, make_unique([one.label for one in others], "analog"), strict=True):
+        unit = parse_unit(one.unit) or "1"
         chosen.append(("signals", one, Channel(name, "signal", inner_unit(unit)), unit))
     streams: Streams = {}
     for stream in ("emg", "signals", "forces"):
@@ -123,11 +123,11 @@ def analog_streams(
     return streams, _doubts(emg, others, parameters.file)
 
 
-def _mapped_channel(text: str, one: AnalogLabel, file: str) -> tuple[Channel, str]:
+def _map_channel(text: str, one: AnalogLabel, file: str) -> tuple[Channel, str]:
     name, stated = split_unit(text)
     known = vocabulary().named(name)
-    channel = known if known is not None else named_channel(name)
-    unit = parsed_unit(stated if stated is not None else one.unit)
+    channel = known if known is not None else name_channel(name)
+    unit = parse_unit(stated if stated is not None else one.unit)
     if unit is None and channel.quantity == "signal":
         return channel, channel.unit
     if unit is None:
@@ -149,9 +149,11 @@ def _mapped_channel(text: str, one: AnalogLabel, file: str) -> tuple[Channel, st
 
 def _doubts(emg: list[AnalogLabel], others: list[AnalogLabel], file: str) -> list[Finding]:
     findings = []
-    unknown = [one for one in (*emg, *others) if parsed_unit(one.unit) is None]
+    unknown = [one for one in (*emg, *others) if parse_unit(one.unit) is None]
     if unknown:
-        what = f"{len(unknown)} analog channels have no known unit ({_listed(unknown)}); their numbers are unchanged"
+        what = (
+            f"{len(unknown)} analog channels have no known unit ({_list_labels(unknown)}); their numbers are unchanged"
+        )
         findings.append(Finding("note", "unit", file, what, "amplitudes of these channels; correct ANALOG:UNITS"))
     muscles = [one.muscle.name for one in emg if one.muscle is not None]
     doubled = sorted({name for name in muscles if muscles.count(name) > 1})
@@ -160,15 +162,15 @@ def _doubts(emg: list[AnalogLabel], others: list[AnalogLabel], file: str) -> lis
         findings.append(Finding("warning", "equal muscles", file, what, "this muscle; name it in [channels]"))
     nameless = [one for one in emg if one.muscle is None]
     if nameless:
-        what = f"{len(nameless)} EMG channels do not name a known muscle ({_listed(nameless)})"
+        what = f"{len(nameless)} EMG channels do not name a known muscle ({_list_labels(nameless)})"
         findings.append(Finding("note", "nameless EMG", file, what, "nothing; name them in [channels] as '#<n>'"))
-    voltages = [one for one in others if (parsed_unit(one.unit) or "") in ("V", "mV", "uV")]
+    voltages = [one for one in others if (parse_unit(one.unit) or "") in ("V", "mV", "uV")]
     if voltages:
-        what = f"{len(voltages)} voltages are not recognised as EMG and remain signals ({_listed(voltages)})"
+        what = f"{len(voltages)} voltages are not recognised as EMG and remain signals ({_list_labels(voltages)})"
         findings.append(Finding("note", "voltages", file, what, "nothing unless they are EMG; map them in [channels]"))
     return findings
 
 
-def _listed(channels: list[AnalogLabel]) -> str:
+def _list_labels(channels: list[AnalogLabel]) -> str:
     shown = ", ".join(f"#{one.number} {one.label}".strip() for one in channels[:4])
     return shown + (", ..." if len(channels) > 4 else "")

@@ -180,7 +180,7 @@ def _push_off(values: Values, channels: tuple[Channel, ...]) -> tuple[int, str]:
 
 def read_body_measures(path: Path | str) -> BodyMeasures:
     """Measures of the person in PROCESSING, SUBJECTS or SUBJECT; none where absent, zero, or not in mm, m or cm."""
-    return body_measures_of(read_c3d_parameters(path, read_c3d_header(path)))
+    return find_body_measures(read_c3d_parameters(path, read_c3d_header(path)))
 
 
 def body_measures_in(path: Path) -> BodyMeasures:
@@ -188,7 +188,7 @@ def body_measures_in(path: Path) -> BodyMeasures:
     return read_body_measures(path) if path.suffix.lower() == ".c3d" else BodyMeasures()
 
 
-def body_measures_of(parameters: C3DParameters) -> BodyMeasures:
+def find_body_measures(parameters: C3DParameters) -> BodyMeasures:
     """Measures of the person that stand in parameters."""
     whole = {name: _length(parameters, name, keys) for name, keys in OF_THE_BODY.items()}
     sided = {}

@@ -8,7 +8,7 @@ from collections.abc import Iterable, Mapping, Sequence
 
 import numpy as np
 
-from gaitdisc.channel import folded_label, hint_nearest
+from gaitdisc.channel import fold_label, hint_nearest
 from gaitdisc.errors import ChannelError
 from gaitdisc.ingest.c3d_parameters import C3DParameters
 from gaitdisc.recording import Finding
@@ -32,7 +32,7 @@ def without_prefix(label: str) -> str:
     return label.rpartition(":")[2].strip()
 
 
-def named_people(parameters: C3DParameters) -> tuple[str, ...]:
+def list_people_names(parameters: C3DParameters) -> tuple[str, ...]:
     """Names that the file gives its subjects, so that they can be removed wherever they stand."""
     places = (("SUBJECTS", "NAMES"), ("SUBJECTS", "LABEL_PREFIXES"), ("SUBJECT", "NAME"), ("EVENT", "SUBJECTS"))
     found = [text.strip(" :") for place in places for text in parameters.texts(*place)]
@@ -40,10 +40,10 @@ def named_people(parameters: C3DParameters) -> tuple[str, ...]:
     return tuple(sorted((name for name in dict.fromkeys(found) if len(name) > 1), key=len, reverse=True))
 
 
-def made_unique(labels: Sequence[str], word: str) -> list[str]:
+def make_unique(labels: Sequence[str], word: str) -> list[str]:
     """Labels of which no two are equal: those that are get their number, those that are empty a word and theirs.
 
-    >>> made_unique(["a", "", "b", "a"], "point")
+    >>> make_unique(["a", "", "b", "a"], "point")
     ['a_1', 'point_2', 'b', 'a_4']
     """
     counts = Counter(labels)
@@ -81,7 +81,7 @@ class LabelMap:
                 same = (
                     key == label
                     if "#" in (key[:1], label[:1])
-                    else bool(label) and folded_label(key) == folded_label(label)
+                    else bool(label) and fold_label(key) == fold_label(label)
                 )
                 if same:
                     self._used[key] += 1
@@ -152,7 +152,7 @@ def file_events(
         what = f"{int(np.sum(~inside))} of {count} events lie outside the {frames} frames of the file and are ignored"
         findings.append(Finding("note", "events outside", file, what, ""))
     contexts = (*parameters.texts("EVENT", "CONTEXTS"), *[""] * count)
-    people = named_people(parameters)
+    people = list_people_names(parameters)
     events = [
         Event(*event_kind(without_people(labels[place], people), contexts[place]), float(on_file[place]))
         for place in range(count)

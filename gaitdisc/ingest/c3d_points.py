@@ -13,13 +13,13 @@ from numpy.typing import NDArray
 
 from gaitdisc.channel import Channel, vocabulary
 from gaitdisc.errors import ReadError, UnitError
-from gaitdisc.ingest.c3d_labels import LabelMap, made_unique, without_prefix
+from gaitdisc.ingest.c3d_labels import LabelMap, make_unique, without_prefix
 from gaitdisc.ingest.c3d_parameters import BLOCK, C3DHeader, C3DParameters, decoded
-from gaitdisc.ingest.columns import named_channel
+from gaitdisc.ingest.columns import name_channel
 from gaitdisc.ingest.stated_units import METRES_AT_MOST, MILLIMETRES_AT_LEAST, distance_from_origin, refuse_other_unit
 from gaitdisc.recording import Finding, Recording, Source
 from gaitdisc.recording.arrays import Values
-from gaitdisc.units import convert, inner_unit, parsed_unit
+from gaitdisc.units import convert, inner_unit, parse_unit
 
 Part = tuple[Values, tuple[Channel, ...]]
 Streams = dict[str, Part]
@@ -51,7 +51,7 @@ MODEL_OUTPUTS = (
 def point_names(parameters: C3DParameters, count: int) -> list[str]:
     """Names of a frame's points, all different, without people's names; a file may list more labels or fewer."""
     labels = [without_prefix(label) for label in parameters.texts("POINT", "LABELS")[:count]]
-    return made_unique([*labels, *[""] * (count - len(labels))], "point")
+    return make_unique([*labels, *[""] * (count - len(labels))], "point")
 
 
 def length_unit(parameters: C3DParameters, places: Values) -> tuple[str, list[Finding]]:
@@ -59,7 +59,7 @@ def length_unit(parameters: C3DParameters, places: Values) -> tuple[str, list[Fi
     far, file = distance_from_origin(places), parameters.file
     text = parameters.text("POINT", "UNITS")
     if text:
-        unit = parsed_unit(text)
+        unit = parse_unit(text)
         if unit is None or inner_unit(unit) != "m":
             raise UnitError("POINT:UNITS must be a unit of length", f"{file} says {text!r}", "Write mm or m.")
         refuse_other_unit(unit, far, file, "POINT:UNITS")
@@ -158,7 +158,7 @@ def _model_part(
     rows: Values, named: Mapping[str, str], kind: ModelOutput, parameters: C3DParameters, labels: LabelMap
 ) -> tuple[Part, list[Finding]]:
     text, file = parameters.text("POINT", kind.units), parameters.file
-    unit = parsed_unit(text) if text else kind.usual
+    unit = parse_unit(text) if text else kind.usual
     findings = []
     inner = inner_unit(unit) if unit else "1"
     if unit is None or (kind.quantity != "signal" and inner.removesuffix("/kg") != inner_unit(kind.usual)):
@@ -173,7 +173,7 @@ def _model_part(
         for axis in AXES:
             label = f"{plain}.{axis}"
             mapped = labels.name(f"{name_in_file}.{axis}")
-            known = named_channel(mapped) if mapped else vocabulary().named(label)
+            known = name_channel(mapped) if mapped else vocabulary().named(label)
             name = known.name if known is not None else label
             own = re.match(r"([LR])[A-Z]", plain)
             side = known.side if known is not None else own[1].lower() if own else ""

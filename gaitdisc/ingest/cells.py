@@ -46,7 +46,7 @@ class Form:
         return line.split(None if self.separator == " " else self.separator, most)
 
 
-def parsed_cells(lines: Sequence[str], labels: Sequence[str], first_line: int, form: Form) -> Cells:
+def parse_cells(lines: Sequence[str], labels: Sequence[str], first_line: int, form: Form) -> Cells:
     """Numbers of a table's body, which starts in line `first_line` of the file, counted from 1."""
     numbers = np.array([first_line + i for i, line in enumerate(lines) if line.strip()], dtype=np.intp)
     rows = [line for line in lines if line.strip()]

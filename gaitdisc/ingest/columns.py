@@ -8,11 +8,11 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from gaitdisc.channel import Channel, folded_label, hint_nearest, side_of, vocabulary
+from gaitdisc.channel import Channel, find_side, fold_label, hint_nearest, vocabulary
 from gaitdisc.errors import ChannelError, ReadError, SamplingError, UnitError
 from gaitdisc.recording import Finding, Recording, Source, Trial
 from gaitdisc.recording.arrays import Values
-from gaitdisc.units import convert, inner_unit, known_units, offset_words, parsed_unit
+from gaitdisc.units import convert, inner_unit, list_units, offset_words, parse_unit
 
 # quantity -> units it may have inside; the first one is usual, the others are normalised by mass or by a maximum
 _UNITS_OF = {
@@ -48,7 +48,7 @@ _STREAM = {
 class Column:
     """A column of a file: what it measures and the unit in which the file gives it.
 
-    >>> Column("knee [rad]", Channel("knee_angle_r", "angle", "deg", "r"), "rad").converted(np.array([1.0])).round(2)
+    >>> Column("knee [rad]", Channel("knee_angle_r", "angle", "deg", "r"), "rad").convert(np.array([1.0])).round(2)
     array([57.3])
     """
 
@@ -57,7 +57,7 @@ class Column:
     unit: str  # unit of the numbers in the file
     guessed: str = ""  # what had to be guessed, in words; empty where nothing was
 
-    def converted(self, values: Values) -> Values:
+    def convert(self, values: Values) -> Values:
         """Numbers (time,) as read, in the unit used inside."""
         base, rate = (self.unit.partition("/s")[0], True) if "/s" in self.unit else (self.unit, False)
         inside = self.channel.unit.partition("/s")[0] if rate else self.channel.unit
@@ -75,56 +75,56 @@ def split_unit(text: str) -> tuple[str, str | None]:
     return (found[1], found[2].strip()) if found else (bare.strip(), None)
 
 
-def said_clock(said: str) -> str:
+def find_clock(said: str) -> str:
     """What follows `@` in `name [unit] @ clock`: a rate, or a variable of times; empty without one.
 
-    >>> said_clock("knee_angle_r [deg] @ 100 Hz"), said_clock("knee_angle_r [deg]")
+    >>> find_clock("knee_angle_r [deg] @ 100 Hz"), find_clock("knee_angle_r [deg]")
     ('100 Hz', '')
     """
     return said.partition(_CLOCK)[2].strip()
 
 
-def mapped_label(label: str, channels: Mapping[str, str] | None) -> str | None:
+def map_label(label: str, channels: Mapping[str, str] | None) -> str | None:
     """What the study's `[channels]` says of a label, or None; case, blanks, punctuation count only where they must.
 
-    >>> mapped_label("Sensor 1.EMG", {"sensor 1 emg": "emg_sol_r [mV]"})
+    >>> map_label("Sensor 1.EMG", {"sensor 1 emg": "emg_sol_r [mV]"})
     'emg_sol_r [mV]'
     """
     if not channels:
         return None
     if label in channels:
         return channels[label]
-    alike = [name for key, name in channels.items() if folded_label(key) == folded_label(label)]
-    return alike[0] if len(alike) == 1 and folded_label(label) else None
+    alike = [name for key, name in channels.items() if fold_label(key) == fold_label(label)]
+    return alike[0] if len(alike) == 1 and fold_label(label) else None
 
 
 def read_label(label: str, channels: Mapping[str, str] | None) -> tuple[str, str | None, bool]:
     """Name and unit of a column, by the study's `[channels]` or else by its label; whether the study names it."""
     plain, unit = split_unit(label)
-    said = mapped_label(label, channels) or mapped_label(plain, channels)
+    said = map_label(label, channels) or map_label(plain, channels)
     if not said:
         return plain, unit, False
     name, said_unit = split_unit(said)
     return name, said_unit or unit, True
 
 
-def named_channel(name: str) -> Channel:
+def name_channel(name: str) -> Channel:
     """Channel of a name: that of the vocabulary, or one whose quantity the name shows.
 
-    >>> named_channel("emg_gracilis_r").quantity, named_channel("RHEE.x").quantity, named_channel("trigger").quantity
+    >>> name_channel("emg_gracilis_r").quantity, name_channel("RHEE.x").quantity, name_channel("trigger").quantity
     ('emg', 'marker', 'signal')
     """
     if name in vocabulary().by_name:
         return vocabulary().by_name[name]
     if name.startswith("emg_"):
-        return Channel(name, "emg", "V", side_of(name))
+        return Channel(name, "emg", "V", find_side(name))
     if re.fullmatch(r".+\.[xyz]", name):
         return Channel(name, "marker", "m")
     if name.endswith(("_moment", "_beta_force")):  # OpenSim calls the moment about a copied rotation a force
-        return Channel(name, "moment", "N m", side_of(name))
+        return Channel(name, "moment", "N m", find_side(name))
     if name.endswith("_force"):
-        return Channel(name, "force", "N", side_of(name))
-    return Channel(name, "signal", "1", side_of(name))
+        return Channel(name, "force", "N", find_side(name))
+    return Channel(name, "signal", "1", find_side(name))
 
 
 def check_written_names(names: Sequence[str], file: str) -> None:
@@ -140,16 +140,16 @@ def check_written_names(names: Sequence[str], file: str) -> None:
 
 def column_in_unit(label: str, channel: Channel, unit_text: str, file: str) -> Column:
     """Column whose unit the file or the study states."""
-    unit = parsed_unit(unit_text)
+    unit = parse_unit(unit_text)
     base, rate = unit_text, ""
     if unit is None and re.search(r"/s2?$", unit_text):
         base, rate = re.split(r"(?=/s2?$)", unit_text, maxsplit=1)
-        unit = parsed_unit(base)
+        unit = parse_unit(base)
     if unit is None:
         raise UnitError(
             f"{file}: the unit of column {label!r} must be in the list of units",
-            f"found {unit_text!r}" + (offset_words(base) or hint_nearest(base, known_units())),
-            f"Use one of: {', '.join(known_units())}.",
+            f"found {unit_text!r}" + (offset_words(base) or hint_nearest(base, list_units())),
+            f"Use one of: {', '.join(list_units())}.",
         )
     inner = inner_unit(unit)
     allowed = _UNITS_OF.get(channel.quantity)
@@ -168,12 +168,12 @@ def column_in_unit(label: str, channel: Channel, unit_text: str, file: str) -> C
     return Column(label, replace(channel, unit=inner + rate, quantity=quantity), unit + rate)
 
 
-def column_of(label: str, file: str, channels: Mapping[str, str] | None) -> Column:
+def find_column(label: str, file: str, channels: Mapping[str, str] | None) -> Column:
     """Column of a label, by the study's `[channels]` or the vocabulary."""
     plain = split_unit(label)[0]
     name, unit, said = read_label(label, channels)
     alias = None if said else vocabulary().named(plain)
-    channel = alias or named_channel(name)
+    channel = alias or name_channel(name)
     if unit is None and name not in vocabulary().by_name:
         seems = f"; it seems to be {alias.name}" if alias else ""
         raise UnitError(
@@ -185,12 +185,12 @@ def column_of(label: str, file: str, channels: Mapping[str, str] | None) -> Colu
     return column_in_unit(label, channel, unit or channel.unit, file)
 
 
-def stream_of(channel: Channel) -> str:
+def find_stream(channel: Channel) -> str:
     """Stream of a channel: a free moment goes with ground forces, a translation's generalised force with moments.
 
-    >>> stream_of(Channel("ground_torque_r_y", "moment", "N m", "r"))
+    >>> find_stream(Channel("ground_torque_r_y", "moment", "N m", "r"))
     'forces'
-    >>> stream_of(Channel("pelvis_tx_force", "force", "N"))
+    >>> find_stream(Channel("pelvis_tx_force", "force", "N"))
     'moments'
     """
     if channel.quantity == "moment" and "ground" in channel.name:
@@ -200,7 +200,7 @@ def stream_of(channel: Channel) -> str:
     return _STREAM[channel.quantity]
 
 
-def sorted_trial(
+def sort_trial(
     source: Source, time: Values, values: Values, columns: Sequence[Column], findings: Sequence[Finding] = ()
 ) -> Trial:
     """Trial of one file whose columns (time, channel), in the file's units, share one even time base [s]."""
@@ -224,10 +224,10 @@ def sorted_trial(
             f"its times are {step_s:g} s apart, so {len(time)} samples would last {len(time) * step_s / 3600:.3g} h",
             "If the times are in ms, name the column 'time [ms]'.",
         )
-    inside = np.column_stack([column.converted(values[:, i]) for i, column in enumerate(columns)])
+    inside = np.column_stack([column.convert(values[:, i]) for i, column in enumerate(columns)])
     places: dict[str, list[int]] = {}
     for i, channel in enumerate(channels):
-        places.setdefault(stream_of(channel), []).append(i)
+        places.setdefault(find_stream(channel), []).append(i)
     streams = {
         key: Recording(time, inside[:, chosen], tuple(channels[i] for i in chosen), source=source)
         for key, chosen in places.items()

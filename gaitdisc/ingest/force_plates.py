@@ -14,7 +14,7 @@ from gaitdisc.ingest.c3d_parameters import C3DParameters
 from gaitdisc.ingest.c3d_points import AXES, Streams
 from gaitdisc.recording import Finding, Surface
 from gaitdisc.recording.arrays import Values
-from gaitdisc.units import convert, inner_unit, parsed_unit
+from gaitdisc.units import convert, inner_unit, parse_unit
 
 LEAST_LOAD_N = 20.0  # below it a centre of pressure is noise divided by noise
 CLEAR_LOAD_N = 100.0  # what a drifting plate does not show, and a foot does
@@ -149,10 +149,10 @@ def force_plates(
         if why:
             what = f"force plate {place + 1} {why}; its channels remain signals"
             findings.append(Finding("warning", "force plate", file, what, "its ground forces; correct FORCE_PLATFORM"))
-    return plates, findings or _undescribed(parameters, used, max(len(kinds), len(columns), len(corners)))
+    return plates, findings or _report_undescribed(parameters, used, max(len(kinds), len(columns), len(corners)))
 
 
-def _undescribed(parameters: C3DParameters, used: int, described: int) -> list[Finding]:
+def _report_undescribed(parameters: C3DParameters, used: int, described: int) -> list[Finding]:
     """Say where a file holds more plates than FORCE_PLATFORM:USED counts: one wrong bit drops all of their forces."""
     named = zip(parameters.texts("ANALOG", "LABELS"), parameters.texts("ANALOG", "UNITS"), strict=False)
     forces = [label for label, unit in named if unit.strip() == "N" and re.search(r"(?i)f[-_. ]?[xyz]", label)]
@@ -186,13 +186,13 @@ def plate_streams(
         findings += doubts
         if not units:
             continue
-        values, doubts = _zeroed(rows[:, list(plate.columns)], units, plate, parameters)
+        values, doubts = _zero(rows[:, list(plate.columns)], units, plate, parameters)
         findings += doubts
         placed, doubts = _with_origin(plate, values, units, file)
         findings += doubts
         measured.append((placed, values, units))
         wrenches.append((placed, *placed.wrench(values, units)))
-    findings += _exchanged(measured, file)
+    findings += _report_exchanged(measured, file)
     up = []  # +1 where a loaded plate pushes up along the laboratory's vertical, -1 where it would pull, 0 unloaded
     for plate, force, _ in wrenches:
         vertical = force @ plate.axes[plate.vertical]
@@ -250,7 +250,7 @@ def _units(plate: ForcePlate, parameters: C3DParameters, length_unit: str) -> tu
     found, file = [], parameters.file
     for column, expected in zip(plate.columns, usual, strict=True):
         text = texts[column].strip()
-        unit = parsed_unit(text) if text else expected
+        unit = parse_unit(text) if text else expected
         if unit is None or inner_unit(unit) != inner_unit(expected):
             what = f"force plate {plate.number} has channel #{column + 1} in {text!r} instead of {expected}; "
             what += "it is not used"
@@ -262,7 +262,7 @@ def _units(plate: ForcePlate, parameters: C3DParameters, length_unit: str) -> tu
     return tuple(found), []
 
 
-def _zeroed(
+def _zero(
     values: Values, units: tuple[str, ...], plate: ForcePlate, parameters: C3DParameters
 ) -> tuple[Values, list[Finding]]:
     """Channels of a plate without their mean over FORCE_PLATFORM:ZERO, unless the plate was loaded then."""
@@ -295,7 +295,7 @@ def _with_origin(
     return plate, [Finding("warning", "centre of pressure", file, what, "joint moments; check zero, ORIGIN, units")]
 
 
-def _exchanged(measured: Sequence[tuple[ForcePlate, Values, tuple[str, ...]]], file: str) -> list[Finding]:
+def _report_exchanged(measured: Sequence[tuple[ForcePlate, Values, tuple[str, ...]]], file: str) -> list[Finding]:
     """Say which two plates bear each other's channels: with these exchanged each has its centre of pressure on it."""
     findings = []
     for (one, own, units), (other, others, their_units) in itertools.combinations(measured, 2):

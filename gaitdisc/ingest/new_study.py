@@ -22,9 +22,9 @@ from gaitdisc.ingest.people_table import (
     group_word,
     is_people_table,
     kind_of_trial,
-    measured_people,
     person_key,
     person_word,
+    read_people,
     session_word,
     walk_key,
     walk_place,
@@ -67,7 +67,7 @@ Stamp = tuple[tuple[str, int, int], ...]  # name, size and time of the files of 
 Looked = dict[Stamp, tuple["FoundTrial | None", list[str]]]  # what was read of it, and what was said
 
 
-def found_study(
+def draft_study(
     folder: Path | str,
     home: Path | str | None = None,
     files: Sequence[Path] | None = None,
@@ -92,8 +92,8 @@ def found_study(
     notes: list[str] = []
     files = recording_files(folder) if files is None else files
     tables = [path for path in files if is_people_table(path)]
-    measured = measured_people(folder, tables, notes)
-    found = _found_trials(
+    measured = read_people(folder, tables, notes)
+    found = _read_drafts(
         folder, [path for path in files if path not in tables], notes, {} if looked is None else looked
     )
     if not found:
@@ -106,7 +106,7 @@ def found_study(
     groups = {trial.person: {one.group for one in found if one.person == trial.person} - {""} for trial in found}
     alone = {person: next(iter(own)) for person, own in groups.items() if len(own) == 1}
     found = [replace(trial, group=trial.group or alone.get(trial.person, "")) for trial in found]  # the only one
-    conditions, called = named_conditions(found, notes)
+    conditions, called = name_conditions(found, notes)
     sessions = _sessions(found)
     home = Path(home) if home is not None else folder
     way = Path(os.path.relpath(folder.resolve(), home.resolve()))
@@ -173,18 +173,18 @@ def _bodies(
     return found
 
 
-def _found_trials(folder: Path, files: Sequence[Path], notes: list[str], looked: Looked) -> list[FoundTrial]:
+def _read_drafts(folder: Path, files: Sequence[Path], notes: list[str], looked: Looked) -> list[FoundTrial]:
     """Every walk, read one after the other; what a draft needs of it is kept, its samples are not."""
     from gaitdisc.ingest.c3d import C3DReader
 
     found = []
     with C3DReader() as reader:
         for group in _walks(files):
-            stamp = tuple((file.as_posix(), *stamp_of(folder / file)) for file in group)
+            stamp = tuple((file.as_posix(), *read_stamp(folder / file)) for file in group)
             if stamp not in looked:
                 said: list[str] = []
                 read, trial = _readable(folder, group, reader, said)
-                looked[stamp] = (_found(tuple(read), trial) if trial is not None else None, said)
+                looked[stamp] = (_describe_trial(tuple(read), trial) if trial is not None else None, said)
             one, said = looked[stamp]
             found += [one] if one is not None else []
             notes += said
@@ -197,7 +197,7 @@ def _found_trials(folder: Path, files: Sequence[Path], notes: list[str], looked:
     return sorted(found, key=lambda each: order.index(each.which))
 
 
-def stamp_of(path: Path) -> tuple[int, int]:
+def read_stamp(path: Path) -> tuple[int, int]:
     """Size and time of a file; zero of one that is not there."""
     try:
         said = path.stat()
@@ -206,7 +206,7 @@ def stamp_of(path: Path) -> tuple[int, int]:
     return said.st_size, said.st_mtime_ns
 
 
-def _found(files: tuple[Path, ...], trial: Trial) -> FoundTrial:
+def _describe_trial(files: tuple[Path, ...], trial: Trial) -> FoundTrial:
     word, which = condition_word(files[0])
     kind = kind_of_trial(files[0]) or (STATIC if not which and stands(trial) else "")
     if kind:
@@ -277,7 +277,7 @@ def _walks(files: Sequence[Path]) -> list[list[Path]]:
     return list(groups.values())
 
 
-def named_conditions(found: Sequence[FoundTrial], notes: list[str]) -> tuple[Conditions, dict[str, str]]:
+def name_conditions(found: Sequence[FoundTrial], notes: list[str]) -> tuple[Conditions, dict[str, str]]:
     """Conditions of a draft, and the condition of each word that was found."""
     walks = [trial for trial in found if trial.walked]
     recognised: dict[str, str] = {}
@@ -364,7 +364,7 @@ def _models(found: Sequence[FoundTrial], notes: list[str]) -> Models:
         notes.append("the trials share no joint angle that varies; the draft names the usual ones")
         return Models()
     outputs = tuple(name for name in OUTPUTS if name in angles) or angles[:1]
-    emg = _shared_emg(found, notes)
+    emg = _find_shared_emg(found, notes)
     of_side = tuple(
         name for name in emg if name.split("_")[1][:3] in ("ham", "rf", "vas", "gas", "sol") and name.endswith("_r")
     )
@@ -376,7 +376,7 @@ def _varies(recording: Recording, name: str) -> bool:
     return bool(column.size and np.ptp(column) > CONSTANT_DEG and not name.endswith("_beta"))
 
 
-def _shared_emg(found: Sequence[FoundTrial], notes: list[str]) -> tuple[str, ...]:
+def _find_shared_emg(found: Sequence[FoundTrial], notes: list[str]) -> tuple[str, ...]:
     streams = [trial.emg for trial in found if trial.emg is not None]
     if not streams:
         return ()

@@ -15,7 +15,7 @@ from gaitdisc.errors import GaitdiscError
 from gaitdisc.ingest.columns import split_unit
 from gaitdisc.ingest.raw_file import read_raw
 from gaitdisc.recording.trial import AGE_YEARS, LENGTHS_M, MASS_KG, Limits
-from gaitdisc.spreadsheet import unquoted
+from gaitdisc.spreadsheet import unquote
 
 TABLES = ("participants", "subjects", "patients", "people", "persons", "demographics", "anthropometry", "manifest")
 LARGEST_BYTES = 2**22
@@ -77,7 +77,7 @@ def is_people_table(path: Path) -> bool:
     return path.suffix.lower() in (".csv", ".tsv") and path.stem.lower() in TABLES
 
 
-def measured_people(folder: Path, files: Iterable[Path], notes: list[str]) -> dict[str, Measured]:
+def read_people(folder: Path, files: Iterable[Path], notes: list[str]) -> dict[str, Measured]:
     """Mass, sex, stature, age by a person's folded word, from tables of people; what was taken is added to `notes`."""
     found: dict[str, Measured] = {}
     for file in sorted(files):
@@ -104,7 +104,7 @@ def person_key(word: str) -> str:
 
 def _read(lines: Sequence[str], file: str, notes: list[str]) -> dict[str, Measured]:
     rows = list(csv.reader(lines, delimiter=max("\t;,", key=lines[0].count)))
-    labels = [unquoted(label.strip()) for label in rows[0]]
+    labels = [unquote(label.strip()) for label in rows[0]]
     folded = []
     for label in labels:
         name, unit = split_unit(re.sub(r"\(([^()]*)\)\s*$", r"[\1]", label))
@@ -124,7 +124,7 @@ def _read(lines: Sequence[str], file: str, notes: list[str]) -> dict[str, Measur
         cells = {key: row[i].strip() if i is not None and i < len(row) else "" for key, i in at.items()}
         if cells["id"]:
             said: list[str] = []
-            found.setdefault(person_key(unquoted(cells["id"])), []).append(_measured(cells, stature, said))
+            found.setdefault(person_key(unquote(cells["id"])), []).append(_read_measures(cells, stature, said))
             notes += [f"{file}, line {number}: {words}" for words in said]
     agreed = {}  # what all rows of a person say; where two differ nothing is taken
     for word, measures in found.items():
@@ -138,7 +138,7 @@ def _read(lines: Sequence[str], file: str, notes: list[str]) -> dict[str, Measur
     return agreed
 
 
-def _measured(cells: Mapping[str, str], stature_label: str, notes: list[str]) -> Measured:
+def _read_measures(cells: Mapping[str, str], stature_label: str, notes: list[str]) -> Measured:
     """What a row says of a person; a stature in the unit of its label, else in the one in which it is a person's."""
     stated = re.search(r"(?:^|[^a-z])(m|cm|mm)\W*$", stature_label.lower())
     unit, factors = (f" {stated[1]}", [_METRES[stated[1]]]) if stated else (" m, cm or mm", list(_METRES.values()))

@@ -128,7 +128,7 @@ def without_frozen(streams: Mapping[str, Recording]) -> tuple[dict[str, Recordin
                 groups[channel.name] = [place]
         for columns in map(np.array, groups.values()):
             load = [int(at) for at in columns if recording.channels[at].quantity == "vertical_force"]
-            here = _dropped(recording, load) if key == "forces" else _frozen(recording.values[:, columns])
+            here = _mark_dropped(recording, load) if key == "forces" else _frozen(recording.values[:, columns])
             if here.any():
                 still[np.ix_(here, columns)] = True
                 place = (load or columns)[0]
@@ -171,7 +171,7 @@ def _frozen(x: Values) -> NDArray[np.bool_]:
     return marks
 
 
-def _dropped(forces: Recording, columns: Sequence[int]) -> NDArray[np.bool_]:
+def _mark_dropped(forces: Recording, columns: Sequence[int]) -> NDArray[np.bool_]:
     """Samples at exactly zero that a vertical force leaps to and back from, sooner than a foot comes back."""
     marks = np.zeros(len(forces.time), bool)
     for load in np.abs(forces.values[:, columns]).T:
@@ -242,7 +242,7 @@ def with_flexion_positive(streams: Mapping[str, Recording]) -> tuple[dict[str, R
         findings.append(Finding("warning", "knee sign", file, what, spoils, name))
     if not turned:
         return dict(streams), findings
-    moved = {key: _turned(recording, turned) for key, recording in streams.items()}
+    moved = {key: _turn(recording, turned) for key, recording in streams.items()}
     for name in turned:
         others = [c for key in moved for c in moved[key][1] if _of_knee(c) == name and c != name]
         why = ", so flexion is negative in this file" if senses[name] == -1 else " and follows the other knee"
@@ -273,7 +273,7 @@ def _of_knee(name: str) -> str:
     return found[1] if found else name
 
 
-def _turned(recording: Recording, knees: list[str]) -> tuple[Recording, list[str]]:
+def _turn(recording: Recording, knees: list[str]) -> tuple[Recording, list[str]]:
     signs, names = np.ones(len(recording.channels)), []
     generalised = set(recording.source.reader.split(" + ")) <= set(_GENERALISED)
     for place, channel in enumerate(recording.channels):

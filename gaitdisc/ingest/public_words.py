@@ -81,7 +81,7 @@ class PublicWords:
         except GaitdiscError as error:
             raise self.error(error) from error
 
-    def known_channels(self, trial: Trial, streams: Iterable[str]) -> Trial:
+    def keep_known_channels(self, trial: Trial, streams: Iterable[str]) -> Trial:
         """Trial without the channels whose labels are no public words, and a finding that says how many there are."""
         kept, left_out = dict(trial.streams), 0
         for key in set(streams) & set(kept):
@@ -115,7 +115,7 @@ class PublicWords:
         return word in self.words or word in package_words() or bool(_NUMBER.fullmatch(word)) or not word
 
 
-def words_of(study: Study, participant: Participant, named: Iterable[str] = ()) -> PublicWords:
+def list_words(study: Study, participant: Participant, named: Iterable[str] = ()) -> PublicWords:
     """Public words of one participant's recordings.
 
     named: channels that the user named, beside those of the study

@@ -9,7 +9,7 @@ from pathlib import Path
 from gaitdisc.channel import hint_nearest
 from gaitdisc.errors import MissingFileError, ReadError
 from gaitdisc.recording import Source
-from gaitdisc.regular_file import LARGEST_TEXT_BYTES, check_regular, known_sha256
+from gaitdisc.regular_file import LARGEST_TEXT_BYTES, check_regular, recall_sha256
 
 
 @dataclass(frozen=True)
@@ -71,7 +71,7 @@ def read_raw(path: Path | str, largest_bytes: int = LARGEST_TEXT_BYTES) -> RawFi
         raise ReadError(needed, f"the operating system reports: {words}", "Check name and permissions.") from error
     if not content.strip():
         raise ReadError(needed, f"it is empty ({len(content)} bytes)", "Export or copy it again.")
-    return RawFile(path.name, content, known_sha256(path))
+    return RawFile(path.name, content, recall_sha256(path))
 
 
 def _near(path: Path) -> str:

@@ -78,7 +78,7 @@ class ReaderProcess:
                 process.stdin.flush()
                 head: dict[str, Any] = json.loads(process.stdout.readline())
                 shapes = () if "said" in head else head["shapes"]
-                answers.append((head, [_received(process.stdout, shape) for shape in shapes]))
+                answers.append((head, [_receive(process.stdout, shape) for shape in shapes]))
 
         # A pipe cannot be waited on with a time limit on every system; a thread can.
         thread = threading.Thread(target=converse, daemon=True)
@@ -119,7 +119,7 @@ class ReaderProcess:
                 stderr=subprocess.DEVNULL,
                 env=environment,
             )
-            self._end = weakref.finalize(self, _ended, self._process)
+            self._end = weakref.finalize(self, _end, self._process)
             self._files = 0
         return self._process
 
@@ -128,7 +128,7 @@ class ReaderProcess:
         return self._end()
 
 
-def _ended(process: subprocess.Popen[bytes]) -> int:
+def _end(process: subprocess.Popen[bytes]) -> int:
     with contextlib.suppress(OSError):
         process.kill()
     code = process.wait()
@@ -139,7 +139,7 @@ def _ended(process: subprocess.Popen[bytes]) -> int:
     return code
 
 
-def _received(stream: IO[bytes], shape: tuple[int, ...]) -> Values:
+def _receive(stream: IO[bytes], shape: tuple[int, ...]) -> Values:
     values = np.empty(shape)
     if values.size:
         view = memoryview(values.data).cast("B")

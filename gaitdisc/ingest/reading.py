@@ -19,7 +19,7 @@ from gaitdisc.ingest.stated_units import per_kg_findings, plausible_unit
 from gaitdisc.ingest.storage import read_storage, write_storage
 from gaitdisc.ingest.table import read_frame, read_table, write_table
 from gaitdisc.ingest.trc import read_trc
-from gaitdisc.own_files import guarded
+from gaitdisc.own_files import guard
 from gaitdisc.recording import Finding, Recording, Source, Trial
 
 if TYPE_CHECKING:
@@ -106,15 +106,15 @@ def read_trial(
                 what = f"{', '.join(recording.names[:4])} are excluded because their time base differs"
                 findings.append(Finding("note", "left out", recording.source.file, what, "these signals"))
             else:
-                streams[key] = _joined(streams[key], recording, key)
+                streams[key] = _join(streams[key], recording, key)
     named = {key: replace(r, subject=subject, condition=condition) for key, r in streams.items()}
     events = tuple(sorted((event for one in parts for event in one.events), key=lambda event: event.time))
     if not any(str(file).lower().endswith(".c3d") for file in files):  # that reader reports unused labels itself
-        findings += _unused(channels, named, parts[0].name)
+        findings += _list_unused(channels, named, parts[0].name)
     surfaces = tuple(surface for one in parts for surface in one.surfaces)
     trial = Trial(parts[0].name, named, events, tuple(findings), subject, condition=condition, surfaces=surfaces)
     begin_s = {key: float(recording.time[0]) for key, recording in trial.streams.items() if len(recording.time)}
-    trial = trial if crop_s is None else _cropped(trial, *crop_s)  # only what a crop leaves is checked
+    trial = trial if crop_s is None else _crop(trial, *crop_s)  # only what a crop leaves is checked
     kept, turned = with_flexion_positive(trial.streams)
     kept, still = without_frozen(kept)
     kept, beyond = without_impossible(kept, begin_s)
@@ -167,7 +167,7 @@ def _one_base(one: Recording, other: Recording) -> bool:
     return bool(np.abs(one.time - other.time).max() <= 1e-3 / one.rate_hz)
 
 
-def _joined(one: Recording, other: Recording, key: str) -> Recording:
+def _join(one: Recording, other: Recording, key: str) -> Recording:
     files = f"{one.source.file} and {other.source.file}"
     if not _one_base(one, other):
         raise SamplingError(
@@ -195,7 +195,7 @@ def _joined(one: Recording, other: Recording, key: str) -> Recording:
     )
 
 
-def _unused(channels: Mapping[str, str] | None, streams: Mapping[str, Recording], name: str) -> list[Finding]:
+def _list_unused(channels: Mapping[str, str] | None, streams: Mapping[str, Recording], name: str) -> list[Finding]:
     there = {channel.rpartition(".")[0] or channel for r in streams.values() for channel in r.names}
     there |= {channel for r in streams.values() for channel in r.names} | {"time"}
     absent = [label for label, said in (channels or {}).items() if split_unit(said)[0] not in there]
@@ -205,7 +205,7 @@ def _unused(channels: Mapping[str, str] | None, streams: Mapping[str, Recording]
     return [Finding("note", "not found", name, what, "")]
 
 
-def _cropped(trial: Trial, start_s: float, end_s: float) -> Trial:
+def _crop(trial: Trial, start_s: float, end_s: float) -> Trial:
     streams = {key: recording.between(start_s, end_s) for key, recording in trial.streams.items()}
     for key, recording in streams.items():
         if len(recording.time) < 2:
@@ -266,5 +266,5 @@ def write_recording(recording: Recording, path: Path | str, overwrite: bool = Fa
             f"{Path(path).name} ends with {ending!r}" + hint_nearest(ending, WRITERS),
             "Use one of these endings.",
         )
-    with guarded("gd.write", overwrite=overwrite):
+    with guard("gd.write", overwrite=overwrite):
         return WRITERS[ending](recording, path)

@@ -35,7 +35,7 @@ def plausible_unit(
     if not joints:
         if stated:
             return stated, None
-        raise _undecided(file, "no joint angle of the file shows the unit")
+        raise _refuse_undecided(file, "no joint angle of the file shows the unit")
     bounded = [i for i in joints if "_rot" not in names[i]] or joints  # an arm or a thigh may wind on by whole turns
     most = _largest(values[:, bounded])
     moving = [i for i in joints if re.match(r"hip_flexion|knee_angle", names[i])]
@@ -63,13 +63,15 @@ def plausible_unit(
         doubt = Finding("warning", "unit in doubt", file, what, "all angles if they are radians; check inDegrees")
         return stated, doubt if stated == "deg" and like_rad else None
     if not beyond and not like_rad:
-        raise _undecided(file, f"the largest joint angle is {most:.3g}, the widest hip or knee range {reach:.3g}")
+        raise _refuse_undecided(
+            file, f"the largest joint angle is {most:.3g}, the widest hip or knee range {reach:.3g}"
+        )
     unit = "deg" if beyond else "rad"
     what = f"the header does not state degrees or radians; read as {unit} (largest joint angle {most:.4g})"
     return unit, Finding("warning", "unit inferred", file, what, "all angles, if wrong; state inDegrees in the header")
 
 
-def copied_coordinate_unit(name: str, values: Values, angles: dict[str, Values]) -> str | None:
+def find_copied_unit(name: str, values: Values, angles: dict[str, Values]) -> str | None:
     """Unit of OpenSim's `knee_angle_r_beta`, which copies the knee angle, or None where it copies nothing.
 
     OpenSim converts rotational coordinates when it writes a file but leaves coupled ones as they are, so that in a file
@@ -96,7 +98,7 @@ def _largest(values: Values) -> float:
     return float(np.abs(finite).max()) if finite.size else 0.0
 
 
-def _undecided(file: str, why: str) -> UnitError:
+def _refuse_undecided(file: str, why: str) -> UnitError:
     return UnitError(
         f"{file} must state degrees or radians (inDegrees=yes or no)",
         f"its header states neither, and {why}",

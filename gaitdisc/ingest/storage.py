@@ -15,27 +15,27 @@ import numpy as np
 from gaitdisc.channel import (
     QUANTITIES,
     Channel,
-    folded_label,
+    find_side,
+    fold_label,
     hint_nearest,
     list_names,
     path_label,
-    side_of,
     vocabulary,
 )
 from gaitdisc.errors import ReadError
-from gaitdisc.ingest.cells import Form, check_counts, even_time, parsed_cells
+from gaitdisc.ingest.cells import Form, check_counts, even_time, parse_cells
 from gaitdisc.ingest.columns import (
     RATE_WORDS,
     Column,
     check_written_names,
     column_in_unit,
-    named_channel,
+    name_channel,
     read_label,
-    sorted_trial,
+    sort_trial,
     split_unit,
 )
 from gaitdisc.ingest.raw_file import read_raw
-from gaitdisc.ingest.stated_units import copied_coordinate_unit, plausible_unit
+from gaitdisc.ingest.stated_units import find_copied_unit, plausible_unit
 from gaitdisc.recording import Finding, Recording, Trial
 from gaitdisc.recording.arrays import Values
 from gaitdisc.whole_file import write_whole
@@ -69,10 +69,10 @@ def read_storage(path: Path | str, channels: Mapping[str, str] | None = None) ->
     """
     raw = read_raw(path)
     lines = raw.lines()
-    header = parsed_header(lines, raw.name)
+    header = parse_header(lines, raw.name)
     columns = storage_columns(header, raw.name, channels)
     form = Form(raw.name, header.separator)
-    cells = parsed_cells(lines[header.body_line - 1 :], header.labels, header.body_line, form)
+    cells = parse_cells(lines[header.body_line - 1 :], header.labels, header.body_line, form)
     claims = ("rows", header.rows, len(cells.values)), ("columns", header.columns, len(header.labels))
     findings = [*check_counts(cells, raw.name, *claims), *naming_findings(columns, raw.name)]
     if lines[-1].strip() and len(cells.lines) >= 3:  # a number cut: no line end, shorter than all of one width
@@ -87,7 +87,7 @@ def read_storage(path: Path | str, channels: Mapping[str, str] | None = None) ->
     time = even_time(cells.values[:, 0], cells.printed_digit(0), raw.name, cells.lines)
     columns, more = _in_true_unit(columns, header.degrees, time, cells.values[:, 1:], raw.name)
     reader = raw.name.rpartition(".")[2].lower()
-    return sorted_trial(raw.source(reader), time, cells.values[:, 1:], columns, [*findings, *more])
+    return sort_trial(raw.source(reader), time, cells.values[:, 1:], columns, [*findings, *more])
 
 
 def write_storage(recording: Recording, path: Path | str) -> Path:
@@ -133,10 +133,10 @@ def _in_true_unit(
         unit, finding = plausible_unit(time, values[:, angles], names, stated, file)
         findings += [finding] if finding else []
     columns = [replace(c, unit=c.unit.replace("deg", unit)) if i in turning else c for i, c in enumerate(columns)]
-    in_degrees = {columns[i].channel.name: columns[i].converted(values[:, i]) for i in angles}
+    in_degrees = {columns[i].channel.name: columns[i].convert(values[:, i]) for i in angles}
     copies = []
     for i in angles:
-        own = copied_coordinate_unit(columns[i].channel.name, values[:, i], in_degrees)
+        own = find_copied_unit(columns[i].channel.name, values[:, i], in_degrees)
         if own and own != unit:
             columns[i] = replace(columns[i], unit=own)
             copies.append(columns[i].channel.name)
@@ -161,7 +161,7 @@ class StorageHeader:
     separator: str = "\t"  # what stands between cells: a tab, or a blank for any run of blanks
 
 
-def parsed_header(lines: Sequence[str], file: str) -> StorageHeader:
+def parse_header(lines: Sequence[str], file: str) -> StorageHeader:
     """Header of a storage file."""
     end = next((i for i, line in enumerate(lines) if line.strip().lower() == "endheader"), None)
     if end is None:
@@ -232,7 +232,7 @@ def storage_columns(header: StorageHeader, file: str, channels: Mapping[str, str
 
     channels: the study's `[channels]`
     """
-    words = folded_label(header.title) + " " + folded_label(file)
+    words = fold_label(header.title) + " " + fold_label(file)
     known = [vocabulary().named(split_unit(label)[0]) for label in header.labels[1:]]
     muscles = sum(channel is not None and channel.quantity == "emg" for channel in known)
     of_emg = "emg" in words or "electromyo" in words or muscles > len(known) / 2
@@ -240,14 +240,14 @@ def storage_columns(header: StorageHeader, file: str, channels: Mapping[str, str
     for number, label in enumerate(header.labels[1:], 1):
         name, unit, is_mapped = read_label(label, channels)
         if is_mapped:
-            column = _mapped(label, name, unit, header.title, file)
+            column = _map_column(label, name, unit, header.title, file)
         elif number in header.own:
             quantity, own_unit, side = header.own[number]
             # the label is the name to the letter here, brackets and all: the header states the unit
-            channel = Channel(label, quantity, own_unit, side) if quantity in QUANTITIES else named_channel(label)
+            channel = Channel(label, quantity, own_unit, side) if quantity in QUANTITIES else name_channel(label)
             column = column_in_unit(label, channel, own_unit, file)
         else:
-            column = _known(label, name, header.title, of_emg)
+            column = _vocabulary_column(label, name, header.title, of_emg)
             column = column_in_unit(label, column.channel, unit, file) if unit else column
         columns.append(column)
     return columns
@@ -270,17 +270,17 @@ def naming_findings(columns: Sequence[Column], file: str) -> list[Finding]:
     return findings
 
 
-def _mapped(label: str, name: str, unit: str | None, title: str, file: str) -> Column:
+def _map_column(label: str, name: str, unit: str | None, title: str, file: str) -> Column:
     """Column as the study's `[channels]` has it."""
-    channel = named_channel(name)
+    channel = name_channel(name)
     if channel.quantity == "emg" and unit is None:
         return Column(label, replace(channel, unit="1"), "1")
     if channel.quantity != "signal" or unit:
         return column_in_unit(label, channel, unit or channel.unit, file)
-    return replace(_guessed(label, name, title), guessed="[channels] gives its name but not its unit")
+    return replace(_guess(label, name, title), guessed="[channels] gives its name but not its unit")
 
 
-def _known(label: str, plain: str, title: str, of_emg: bool) -> Column:
+def _vocabulary_column(label: str, plain: str, title: str, of_emg: bool) -> Column:
     last = path_label(plain)
     stem, _, kind = last.partition("/")
     rate = next((unit for unit, word in RATE_WORDS.items() if word == kind), _RATES.get(title.lower(), ""))
@@ -297,19 +297,19 @@ def _known(label: str, plain: str, title: str, of_emg: bool) -> Column:
         return Column(label, channel, channel.unit)
     if of_emg:  # whose side or muscle the vocabulary cannot determine
         name = plain if plain.startswith("emg_") else f"emg_{plain}"
-        muscle, guess = Channel(name, "emg", "1", side_of(plain)), "read as EMG of an unknown muscle"
+        muscle, guess = Channel(name, "emg", "1", find_side(plain)), "read as EMG of an unknown muscle"
         of_right = vocabulary().named(f"{plain}_r")
         if of_right and of_right.quantity == "emg":
             muscle, guess = Channel(of_right.name.removesuffix("_r"), "emg", "1"), "the label does not name the side"
         return Column(label, muscle, "1", guess)
-    return _guessed(label, plain if plain.startswith("/forceset") else last, title)
+    return _guess(label, plain if plain.startswith("/forceset") else last, title)
 
 
-def _guessed(label: str, name: str, title: str) -> Column:
-    side = side_of(name)
+def _guess(label: str, name: str, title: str) -> Column:
+    side = find_side(name)
     if name.endswith(("_moment", "_force")):
         guess = "the generalised force of a copied rotation, read in N m although OpenSim calls it a force"
-        channel = named_channel(name)
+        channel = name_channel(name)
         return Column(label, channel, channel.unit, guess if name.endswith("_beta_force") else "")
     ground = _GROUND.fullmatch(name)
     if ground and (ground[1] or _GROUND_WORD.search(name)):

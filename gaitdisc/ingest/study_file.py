@@ -17,7 +17,7 @@ from gaitdisc.errors import SchemaError
 from gaitdisc.ingest.raw_file import read_raw
 from gaitdisc.ingest.study import FUNCTIONAL, MEASURES, STATIC, UNKNOWN, Participant, PlannedTrial, Study
 from gaitdisc.ingest.study_settings import Kinematics
-from gaitdisc.toml_text import parsed_toml, quoted
+from gaitdisc.toml_text import parse_toml, quote
 from gaitdisc.whole_file import write_whole
 
 LARGEST_STUDY_BYTES = 16 * 2**20  # a hundred thousand trials
@@ -82,7 +82,7 @@ def load_study(path: Path | str) -> Study:
     raw = read_raw(path, LARGEST_STUDY_BYTES)
     text = "\n".join(raw.lines())
     try:
-        content = parsed_toml(text)
+        content = parse_toml(text)
     except ValueError as error:
         raise SchemaError(
             f"{raw.name} must be a TOML file",
@@ -112,7 +112,7 @@ def study_text(study: Study, folder: Path | None = None) -> str:
     ):  # fmt: skip
         value = getattr(study, key)
         if isinstance(value, Kinematics) and value.marker_set.endswith(".toml"):
-            value = value.model_copy(update={"marker_set": _moved(value.marker_set, study.folder, folder)})
+            value = value.model_copy(update={"marker_set": _relocate(value.marker_set, study.folder, folder)})
         if value is None:
             parts.append(UNSET[key])
             continue
@@ -121,14 +121,14 @@ def study_text(study: Study, folder: Path | None = None) -> str:
             pairs = "".join(_pair(value, name) for name in type(value).model_fields)
         else:
             about = type(study).model_fields[key].description
-            pairs = "".join(f"{quoted(label)} = {quoted(name)}\n" for label, name in value.items())
+            pairs = "".join(f"{quote(label)} = {quote(name)}\n" for label, name in value.items())
         parts.append(f"# {about}\n[{key}]\n{pairs}")
     explained = False  # each key is explained where it stands first
     for participant in study.participants:
         measured = tuple(name for name in MEASURES if getattr(participant, name))
         text = f"[[participants]]\n{_pairs(participant, ('id', 'group', 'excluded', *measured), explained)}"
         for trial in participant.trials:
-            files = tuple(_moved(file, study.folder, folder) for file in trial.files)
+            files = tuple(_relocate(file, study.folder, folder) for file in trial.files)
             moved = trial.model_copy(update={"files": files})
             text += f"\n[[participants.trials]]\n{_pairs(moved, tuple(type(moved).model_fields), explained)}"
             explained = True
@@ -155,7 +155,7 @@ def _pair(part: BaseModel, name: str) -> str:
 
 def _value(value: Any) -> str:
     if isinstance(value, str):
-        return quoted(value)
+        return quote(value)
     if isinstance(value, tuple):
         items = [_value(item) for item in value]
         one_line = f"[{', '.join(items)}]"
@@ -163,13 +163,13 @@ def _value(value: Any) -> str:
     return repr(value)
 
 
-def _moved(file: str, old: Path, new: Path | None) -> str:
+def _relocate(file: str, old: Path, new: Path | None) -> str:
     if new is None or Path(file).is_absolute() or old.resolve() == new.resolve():
         return file
     return Path(os.path.relpath((old / file).resolve(), new.resolve())).as_posix()
 
 
-def grown_study(study: Study, draft: Study) -> Study:
+def grow_study(study: Study, draft: Study) -> Study:
     """Study with what a draft of the same folder of recordings has and it has not.
 
     Whoever is in the study keeps the pseudonym, also where the draft has another one for the same files; each trial
@@ -188,7 +188,7 @@ def grown_study(study: Study, draft: Study) -> Study:
         name = own[0] if own else next(free)
         new = [trial for trial in drafted.trials if any(_place(draft, file) not in owner for file in trial.files)]
         if new:
-            people[name] = _grown(people.get(name) or Participant(id=name), drafted, new, study)
+            people[name] = _grow(people.get(name) or Participant(id=name), drafted, new, study)
     trials = [trial for one in people.values() for trial in one.trials]
     kinds = (*study.conditions.words, STATIC, FUNCTIONAL, UNKNOWN)
     others = dict.fromkeys(trial.condition for trial in trials if trial.condition not in kinds)
@@ -203,7 +203,7 @@ def grown_study(study: Study, draft: Study) -> Study:
         raise schema_error(error, Study, "", "the study with the new recordings") from error
 
 
-def _grown(person: Participant, drafted: Participant, new: list[PlannedTrial], study: Study) -> Participant:
+def _grow(person: Participant, drafted: Participant, new: list[PlannedTrial], study: Study) -> Participant:
     """Person with the new trials, and with measures that were lacking."""
     trials = list(person.trials)
     for trial in new:
@@ -230,9 +230,9 @@ def schema_error(error: ValidationError, model: type[BaseModel], text: str, file
         for each in error.errors(include_url=False)  # a list is called too short, too, when an entry of it was refused
         if each["type"] != "too_short" or each.get("ctx", {})["actual_length"] >= len(each["input"])
     ]
-    first = min(findings, key=lambda each: (each["type"] != "extra_forbidden", line_of(text, _place_in(each)) or 0))
+    first = min(findings, key=lambda each: (each["type"] != "extra_forbidden", find_line(text, _place_in(each)) or 0))
     place = _place_in(first)
-    line = line_of(text, place)
+    line = find_line(text, place)
     where = file if line is None else f"{file}, line {line}"
     needed, found, remedy = _sentence(first, place, model)
     if len(findings) > 1:
@@ -252,24 +252,24 @@ def _sentence(finding: Mapping[str, Any], place: Place, model: type[BaseModel]) 
         needed = f"the keys of {_table(place[:-1])} must be among {', '.join(keys)}"
         return needed, f"{place[-1]!r} is unknown", did_you_mean(str(place[-1]), keys, "Remove it.")
     if kind == "missing" and isinstance(place[-1], int):
-        return f"{_named(place[:-1])} must have at least {place[-1] + 1} entries", f"found {place[-1]}", "Add one."
+        return f"{_name(place[:-1])} must have at least {place[-1] + 1} entries", f"found {place[-1]}", "Add one."
     if kind == "missing":
         remedy = f"Add {place[-1]} ({_about(place, model)})."
         return f"{_table(place[:-1])} must have {place[-1]!r}", "it is missing", remedy
     if kind == "gaitdisc":
-        return f"{_named(place)} must {context['needed']}", context["found"], context["remedy"]
+        return f"{_name(place)} must {context['needed']}", context["found"], context["remedy"]
     found = f"found {given!r}"
     if isinstance(given, list | tuple):
         found = f"found a list of {len(given)}"
     elif given is None or isinstance(given, dict):
         found = "found nothing" if given is None else "found a table"
-    wanted, remedy = _wanted(kind, given, context)
+    wanted, remedy = _state_need(kind, given, context)
     if kind == "tuple_type" and isinstance(given, dict):
         remedy = f"Write its header in two pairs of brackets: [[{place[-1]}]]."
-    return f"{_named(place)} must {wanted or finding['msg']}", found, remedy
+    return f"{_name(place)} must {wanted or finding['msg']}", found, remedy
 
 
-def _wanted(kind: str, given: Any, context: Mapping[str, Any]) -> tuple[str, str]:
+def _state_need(kind: str, given: Any, context: Mapping[str, Any]) -> tuple[str, str]:
     """What a value must be, and what to do about it."""
     if kind in _LIMITS:
         word, key = _LIMITS[kind]
@@ -281,11 +281,11 @@ def _wanted(kind: str, given: Any, context: Mapping[str, Any]) -> tuple[str, str
     return next((words for key, words in _KINDS.items() if kind.startswith(key)), ("", "Correct it."))
 
 
-def _named(place: Place) -> str:
+def _name(place: Place) -> str:
     if not place:
         return "the study"
     if isinstance(place[-1], int):
-        return f"{_named(place[:-1])}, entry {place[-1] + 1},"
+        return f"{_name(place[:-1])}, entry {place[-1] + 1},"
     return f"{_table(place[:-1])} {place[-1]}" if place[:-1] else str(place[-1])
 
 
@@ -324,10 +324,10 @@ def _model_in(annotation: Any) -> type[BaseModel] | None:
     return next((found for inner in typing.get_args(annotation) if (found := _model_in(inner))), None)
 
 
-def line_of(text: str, place: Place) -> int | None:
+def find_line(text: str, place: Place) -> int | None:
     r"""Line, from 1, of a key, or of its table where the key is absent; None where not even the table is there.
 
-    >>> line_of("title = 'x'\n[filters]\norder = 3\n", ("filters", "order"))
+    >>> find_line("title = 'x'\n[filters]\norder = 3\n", ("filters", "order"))
     3
     """
     lines: dict[Place, int] = {}

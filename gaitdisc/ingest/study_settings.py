@@ -11,7 +11,7 @@ from pydantic_core import PydanticCustomError
 
 from gaitdisc.channel import hint_nearest, vocabulary
 from gaitdisc.ingest.columns import split_unit
-from gaitdisc.units import known_units, offset_words, parsed_unit
+from gaitdisc.units import list_units, offset_words, parse_unit
 
 ANGLES = tuple(
     f"{angle}_{side}"
@@ -151,9 +151,9 @@ def check_channels(channels: Mapping[str, str]) -> None:
         place = ("channels", label)
         if not name:
             refuse(place, "be the name of a channel", f"found {said!r}", 'Write for example "emg_sol_r [V]".')
-        if unit is not None and parsed_unit(unit) is None:
-            found = f"found {unit!r}" + (offset_words(unit) or hint_nearest(unit, known_units()))
-            refuse(place, "be in the list of units", found, f"Use one of: {', '.join(known_units())}.")
+        if unit is not None and parse_unit(unit) is None:
+            found = f"found {unit!r}" + (offset_words(unit) or hint_nearest(unit, list_units()))
+            refuse(place, "be in the list of units", found, f"Use one of: {', '.join(list_units())}.")
         if unit is None:
             _check_spelling(place, name)
         if name in owners:

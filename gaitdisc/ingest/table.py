@@ -13,14 +13,14 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 
 from gaitdisc.errors import ReadError
-from gaitdisc.ingest.cells import Cells, Form, even_time, parsed_cells, printed_digit
-from gaitdisc.ingest.columns import Column, check_written_names, column_of, read_label, sorted_trial, split_unit
+from gaitdisc.ingest.cells import Cells, Form, even_time, parse_cells, printed_digit
+from gaitdisc.ingest.columns import Column, check_written_names, find_column, read_label, sort_trial, split_unit
 from gaitdisc.ingest.raw_file import RawFile, read_raw
 from gaitdisc.ingest.stated_units import plausible_unit
 from gaitdisc.recording import Finding, Recording, Source, Trial
 from gaitdisc.recording.arrays import Values
-from gaitdisc.spreadsheet import quoted, unquoted
-from gaitdisc.units import convert, parsed_unit
+from gaitdisc.spreadsheet import quote, unquote
+from gaitdisc.units import convert, parse_unit
 from gaitdisc.whole_file import write_whole
 
 if TYPE_CHECKING:
@@ -56,9 +56,9 @@ def read_table(path: Path | str, channels: Mapping[str, str] | None = None) -> T
                 "Write it again, or correct its ending.",
             ) from error
         labels, values = _of_frame(frame, raw.name, channels)
-        return _trial(raw.source("parquet"), _timed(labels, values, channels, raw.name), channels)
+        return _trial(raw.source("parquet"), _split_time(labels, values, channels, raw.name), channels)
     labels, cells = _text(raw, channels)
-    return _trial(raw.source("csv"), _timed(labels, cells.values, channels, raw.name, cells), channels)
+    return _trial(raw.source("csv"), _split_time(labels, cells.values, channels, raw.name, cells), channels)
 
 
 def read_frame(frame: pd.DataFrame, channels: Mapping[str, str] | None = None) -> Trial:
@@ -98,10 +98,10 @@ def frame_columns(frame: pd.DataFrame, channels: Mapping[str, str] | None = None
             'Rename the column, frame.rename(columns={"t": "time"}), or the index, frame.rename_axis("time").',
         )
     labels, values = _of_frame(frame, FRAME, channels)
-    return _timed(labels, values, channels, FRAME)
+    return _split_time(labels, values, channels, FRAME)
 
 
-def _timed(
+def _split_time(
     labels: list[str], values: Values, channels: Mapping[str, str] | None, file: str, cells: Cells | None = None
 ) -> TimedColumns:
     """Times apart from the other columns (row, column); cells of a text show how many digits its times have."""
@@ -118,8 +118,8 @@ def _timed(
 
 
 def _trial(source: Source, table: TimedColumns, channels: Mapping[str, str] | None) -> Trial:
-    columns = [column_of(label, source.file, channels) for label in table.labels]
-    return checked_trial(source, table.time, table.values, columns)
+    columns = [find_column(label, source.file, channels) for label in table.labels]
+    return check_trial(source, table.time, table.values, columns)
 
 
 def write_table(recording: Recording, path: Path | str) -> Path:
@@ -137,7 +137,7 @@ def write_table(recording: Recording, path: Path | str) -> Path:
         return write_whole(path, buffer.getvalue())
     text = io.StringIO()
     writer = csv.writer(text, lineterminator="\n")
-    writer.writerow(map(quoted, labels))
+    writer.writerow(map(quote, labels))
     writer.writerows([["" if math.isnan(cell) else repr(cell) for cell in row] for row in table.tolist()])
     return write_whole(path, text.getvalue())
 
@@ -163,13 +163,13 @@ def _text(raw: RawFile, channels: Mapping[str, str] | None) -> tuple[list[str], 
     units = _units_below(lines[top + 1 : top + 2], labels, separator)
     labels, top = (units, top + 1) if units else (labels, top)
     comma = separator != "," and any("," in line for line in lines[top + 1 : top + 50])
-    return labels, parsed_cells(lines[top + 1 :], labels, top + 2, Form(raw.name, separator, "," if comma else "."))
+    return labels, parse_cells(lines[top + 1 :], labels, top + 2, Form(raw.name, separator, "," if comma else "."))
 
 
 def _header(line: str, channels: Mapping[str, str] | None) -> tuple[str, list[str]] | None:
     """Separator and labels of a line that names a column of times; None of any other."""
     for separator in ",;\t":
-        labels = [unquoted(label.strip()) for label in next(csv.reader([line], delimiter=separator), [])]
+        labels = [unquote(label.strip()) for label in next(csv.reader([line], delimiter=separator), [])]
         if any(_time_unit(label, channels) for label in labels):
             return separator, labels
     return None
@@ -179,7 +179,7 @@ def _units_below(below: Sequence[str], labels: Sequence[str], separator: str) ->
     """Labels with the units of a line below them, where that line holds units and blanks alone; else nothing."""
     cells = [cell.strip().strip("()[]") for line in below for cell in next(csv.reader([line], delimiter=separator), [])]
     units = [re.sub(r"/s2?$", "", cell) for cell in cells if cell and cell != "ms"]
-    unknown = any(unit[:1].isdigit() or parsed_unit(unit) is None for unit in units)
+    unknown = any(unit[:1].isdigit() or parse_unit(unit) is None for unit in units)
     if len(cells) != len(labels) or not any(cells) or unknown:
         return []
     return [
@@ -225,7 +225,7 @@ def _of_frame(frame: pd.DataFrame, name: str, channels: Mapping[str, str] | None
     return labels, values
 
 
-def checked_trial(source: Source, time: Values, values: Values, columns: Sequence[Column]) -> Trial:
+def check_trial(source: Source, time: Values, values: Values, columns: Sequence[Column]) -> Trial:
     """Trial of columns (time, channel) in the file's units; a UnitError where angles contradict theirs."""
     findings: list[Finding] = []
     for unit in ("deg", "rad"):
@@ -234,4 +234,4 @@ def checked_trial(source: Source, time: Values, values: Values, columns: Sequenc
             names = [columns[i].channel.name for i in which]
             finding = plausible_unit(time, values[:, which], names, unit, source.file)[1]
             findings += [finding] if finding else []
-    return sorted_trial(source, time, values, columns, findings)
+    return sort_trial(source, time, values, columns, findings)

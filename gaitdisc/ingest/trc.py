@@ -11,12 +11,12 @@ import numpy as np
 
 from gaitdisc.channel import Channel
 from gaitdisc.errors import ReadError, SamplingError, UnitError
-from gaitdisc.ingest.cells import Form, check_counts, even_time, parsed_cells
-from gaitdisc.ingest.columns import Column, mapped_label, sorted_trial, split_unit
+from gaitdisc.ingest.cells import Form, check_counts, even_time, parse_cells
+from gaitdisc.ingest.columns import Column, map_label, sort_trial, split_unit
 from gaitdisc.ingest.raw_file import read_raw
 from gaitdisc.ingest.stated_units import distance_from_origin, refuse_other_unit
 from gaitdisc.recording import Finding, Trial
-from gaitdisc.units import inner_unit, parsed_unit
+from gaitdisc.units import inner_unit, parse_unit
 
 _KEYS = ("DataRate", "NumFrames", "NumMarkers", "Units")
 RATE_TOLERANCE = 2e-3  # between the header's rate and the time column; 59.94 Hz may be called 60
@@ -45,9 +45,9 @@ def read_trc(path: Path | str, channels: Mapping[str, str] | None = None) -> Tri
     """
     raw = read_raw(path)
     lines = raw.lines()
-    header = parsed_trc_header(lines, raw.name)
+    header = parse_trc_header(lines, raw.name)
     coordinates = [f"{label}.{axis}" for label in header.labels for axis in "xyz"]
-    cells = parsed_cells(
+    cells = parse_cells(
         lines[header.body_line - 1 :], ["Frame#", "Time", *coordinates], header.body_line, Form(raw.name)
     )
     claims = ("frames", [header.frames], len(cells.values)), ("markers", [header.markers], len(header.labels))
@@ -69,15 +69,15 @@ def read_trc(path: Path | str, channels: Mapping[str, str] | None = None) -> Tri
     places[(places == 0).all(axis=2)] = np.nan
     plain = [label.rpartition(":")[2].strip() or label for label in header.labels]
     pairs = zip(header.labels, plain, strict=True)
-    said = [mapped_label(label, channels) or mapped_label(short, channels) for label, short in pairs]
+    said = [map_label(label, channels) or map_label(short, channels) for label, short in pairs]
     names = [split_unit(name)[0] if name else short for name, short in zip(said, plain, strict=True)]
     if plain != list(header.labels):
         findings.append(Finding("note", "identifier", raw.name, "the part of the labels before ':' was removed", ""))
     columns = [Column(name, Channel(f"{name}.{axis}", "marker", "m"), header.unit) for name in names for axis in "xyz"]
-    return sorted_trial(raw.source("trc"), time, places.reshape(positions.shape), columns, findings)
+    return sort_trial(raw.source("trc"), time, places.reshape(positions.shape), columns, findings)
 
 
-def parsed_trc_header(lines: Sequence[str], file: str) -> TrcHeader:
+def parse_trc_header(lines: Sequence[str], file: str) -> TrcHeader:
     """Header of a marker file."""
     if len(lines) < 4 or not lines[0].lstrip().startswith("PathFileType"):
         raise ReadError(
@@ -94,7 +94,7 @@ def parsed_trc_header(lines: Sequence[str], file: str) -> TrcHeader:
             "Export the file again.",
         )
     rate, frames, markers = (_number(fields, key, file) for key in _KEYS[:3])
-    unit = parsed_unit(fields["Units"])
+    unit = parse_unit(fields["Units"])
     if unit is None or inner_unit(unit) != "m":
         raise UnitError(
             f"{file}: markers must have a unit of length in line 3",

@@ -65,14 +65,14 @@ def _of_session(trials: list[PlannedTrial], session: str) -> PlannedTrial | None
     return own[0] if own else trials[0] if len(trials) == 1 else None
 
 
-def refused_participant(study: Study, participant: Participant) -> str:
+def why_refused(study: Study, participant: Participant) -> str:
     """Why nothing of a participant is reported; empty where something is.
 
     Refused is who lacks a compared condition (unless the whole group does), shares a recording, or has two bodies.
     """
     if participant.excluded:
         return f"excluded in the study: {participant.excluded}"
-    if mixed := shared_recording(study, participant) or differing_body(study, participant):
+    if mixed := report_shared_recording(study, participant) or differing_body(study, participant):
         return mixed
     device = study.conditions.device
     alike = [person for person in study.participants if person.group and person.group == participant.group]
@@ -100,7 +100,7 @@ def same_recording(study: Study, one: PlannedTrial, other: PlannedTrial) -> bool
     return False
 
 
-def shared_recording(study: Study, participant: Participant) -> str:
+def report_shared_recording(study: Study, participant: Participant) -> str:
     """Say that a recording of a participant is also one of another participant, session or condition; or empty."""
     people = [person for person in study.participants if not person.excluded]
     used = [(one, trial) for one in people for trial in one.trials if trial.condition != UNKNOWN]

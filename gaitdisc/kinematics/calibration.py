@@ -53,7 +53,7 @@ class Calibration:
     spoiled: tuple[str, ...] = ()  # segments that exchanged labels of the static trial make unknown
 
 
-def calibrated(
+def calibrate_body(
     static: Recording, marker_set: MarkerSet, measures: BodyMeasures | None = None, hips: Points | None = None
 ) -> Calibration:
     """Frames, joint centres and marker places of a person from the static trial.
@@ -66,7 +66,7 @@ def calibrated(
     file = static.source.file or "the static trial"
     names = marker_set.names(marker_labels(static))
     _check_complete(marker_set, names, file)
-    needed = [(key, side) for key in marker_set.needed_landmarks(names) for side in "lr"]
+    needed = [(key, side) for key in marker_set.list_needed_landmarks(names) for side in "lr"]
     seen = dict.fromkeys(marker for key, side in needed for marker in marker_set.landmark(key, side, names))
     places, moved, start = still_places(static, names, [*seen])
     _check_complete(marker_set, places, file)
@@ -121,7 +121,7 @@ class _Builder:
             points=MappingProxyType(points),
             findings=tuple(self.findings),
             places=MappingProxyType(dict(self.places)),
-            spoiled=self._spoiled(),
+            spoiled=self._list_spoiled(),
         )
 
     def _place(self, key: str, side: str) -> Values:
@@ -249,7 +249,7 @@ class _Builder:
         wrong = min(landmark_order(self.marker_set, self.places, self.up))
         if wrong[0] > 0:
             return
-        pair = exchanged_in_static(self.marker_set, self.places, self.up)
+        pair = find_exchanged_in_static(self.marker_set, self.places, self.up)
         if pair is None:
             self._pelvis()
             check_right_handed(self.static["pelvis"].rotation, self.up, self.file)
@@ -258,7 +258,7 @@ class _Builder:
                 f"in {self.file} {wrong[1]} ({-wrong[0] * 1000:.0f} mm)",
                 "Correct the labels, or record the person with the legs side by side.",
             )
-        self.places = swapped(self.places, pair)
+        self.places = swap(self.places, pair)
         self.exchanged = pair
         what = f"{wrong[1]}: exchanging {' and '.join(pair)} in the static trial corrects it"
         self._note(
@@ -268,7 +268,7 @@ class _Builder:
             "warning",
         )
 
-    def _spoiled(self) -> tuple[str, ...]:
+    def _list_spoiled(self) -> tuple[str, ...]:
         """Segments that hold an exchanged marker, and those below them."""
         found: list[str] = []
         for segment in SEGMENTS:
@@ -306,7 +306,7 @@ def landmark_order(marker_set: MarkerSet, places: Points, up: Values) -> list[tu
     labels = {(key, side): marker_set.landmark(key, side, places) for key in (*SIDED, "sacrum") for side in "lr"}
     at = {(name,): np.asarray(place) for name, place in places.items()}
     at |= {names: np.mean([places[one] for one in names], axis=0) for names in labels.values() if names}
-    pairs = marker_set.sided_pairs(places)
+    pairs = marker_set.list_sided_pairs(places)
     across = np.sum([places[right] - places[left] for left, right in pairs], axis=0)
     across -= (across @ up) * up
     across = across / np.linalg.norm(across)
@@ -334,18 +334,17 @@ def landmark_order(marker_set: MarkerSet, places: Points, up: Values) -> list[tu
     ]
 
 
-def exchanged_in_static(marker_set: MarkerSet, places: Points, up: Values) -> tuple[str, str] | None:
+def find_exchanged_in_static(marker_set: MarkerSet, places: Points, up: Values) -> tuple[str, str] | None:
     """Pair of markers whose exchange puts all landmarks right, by the most; None where no pair does."""
     names = [name for name in marker_set.markers() if name in places]
     ranked = [
-        (min(landmark_order(marker_set, swapped(places, pair), up))[0], pair)
-        for pair in itertools.combinations(names, 2)
+        (min(landmark_order(marker_set, swap(places, pair), up))[0], pair) for pair in itertools.combinations(names, 2)
     ]
     margin, pair = max(ranked)
     return pair if margin > 0 else None
 
 
-def swapped(places: Points, pair: Sequence[str]) -> dict[str, Values]:
+def swap(places: Points, pair: Sequence[str]) -> dict[str, Values]:
     """Same places, those of two markers exchanged."""
     first, second = pair
     return {**places, first: places[second], second: places[first]}

@@ -9,10 +9,10 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from gaitdisc.kinematics.calibration import Calibration, Points, landmark_order, swapped
+from gaitdisc.kinematics.calibration import Calibration, Points, landmark_order, swap
 from gaitdisc.kinematics.markers import marker_labels
 from gaitdisc.kinematics.pose import SEGMENTS
-from gaitdisc.kinematics.segment_poses import free_fits, placed_markers
+from gaitdisc.kinematics.segment_poses import free_fits, place_markers
 from gaitdisc.recording import Finding, Recording
 from gaitdisc.recording.arrays import Values, spans_s
 
@@ -38,12 +38,12 @@ class Exchange(NamedTuple):
     after_m: float
 
 
-def exchanged_pairs(
+def find_exchanged_pairs(
     places: Points, calibration: Calibration, up: Values
 ) -> tuple[list[Exchange], dict[str, NDArray[np.bool_]]]:
     """Pairs of markers whose labels are exchanged in a trial, and where segments have lost their shape without one.
 
-    places each (frame, 3) [m]: as `named_places` returns them
+    places each (frame, 3) [m]: as `name_places` returns them
     up (3,): in the laboratory
     returns found: each pair with its frames
     returns broken each (frame,): segment -> frames in which its markers lie farther from their places than skin moves
@@ -60,7 +60,7 @@ def exchanged_pairs(
         segments = holders(pair, calibration)
         before_m, after_m = (
             np.max([one[name] for name in segments], axis=0)
-            for one in (now, misfits(swapped(places, pair), calibration, up))
+            for one in (now, misfits(swap(places, pair), calibration, up))
         )
         better = unexplained & (before_m > LOOKED_AT_M) & (after_m < before_m)
         found.append(
@@ -76,7 +76,7 @@ def misfits(places: Points, calibration: Calibration, up: Values) -> dict[str, V
     A foot that points backward in its shank (no ankle bends by 90 deg), and a pelvis that is upside down or turned
     against both feet, is infinitely far: markers exchanged may keep their distances.
     """
-    fits = free_fits(placed_markers(places, calibration), calibration)
+    fits = free_fits(place_markers(places, calibration), calibration)
     found, feet = {segment: fit.residual_m.copy() for segment, fit in fits.items()}, []
     for side in "lr":
         names = [calibration.marker_set.landmark(end, side, places) for end in ("heel", "toe")]
@@ -106,7 +106,7 @@ def _best_pair(places: Points, calibration: Calibration, up: Values) -> tuple[st
     for pair in itertools.combinations([name for name in places if holders((name,), calibration)], 2):
         segments = holders(pair, calibration)
         if off & set(segments):
-            after = misfits(swapped(places, pair), calibration, up)
+            after = misfits(swap(places, pair), calibration, up)
             before_m, after_m = (np.max([one[segment] for segment in segments], axis=0) for one in (now, after))
             others = [name for name in SEGMENTS if name not in segments]
             rest_m, rest_after_m = (np.max([one[name] for name in others], axis=0) for one in (now, after))
@@ -129,7 +129,7 @@ def exchange_findings(
     findings = []
     for one in found:
         first, second = (names[name] for name in one.pair)
-        order = landmark_order(calibration.marker_set, swapped(calibration.places, one.pair), up)
+        order = landmark_order(calibration.marker_set, swap(calibration.places, one.pair), up)
         where = "this trial" if min(order)[0] <= 0 else "this trial or in the static trial"
         before = f"{1000.0 * one.before_m:.0f} mm" if np.isfinite(one.before_m) else "rotated"
         what = f"{', '.join(one.segments)}: exchanging {first} and {second} in {where} corrects {one.frames.sum()} "

@@ -7,8 +7,8 @@ from typing import NamedTuple
 import numpy as np
 
 from gaitdisc.kinematics.calibration import Calibration
-from gaitdisc.kinematics.pose import Pose, fitted_pose
-from gaitdisc.kinematics.segment_poses import PlacedMarkers, named_places, placed_markers
+from gaitdisc.kinematics.pose import Pose, fit_pose
+from gaitdisc.kinematics.segment_poses import PlacedMarkers, name_places, place_markers
 from gaitdisc.recording import Finding, Recording
 from gaitdisc.recording.arrays import Values
 
@@ -38,12 +38,12 @@ def functional_hips(markers: Recording, calibration: Calibration) -> tuple[dict[
     calibration: of the same person's static trial, with the hips of a regression
     """
     file = markers.source.file or "the functional trial"
-    placed = placed_markers(named_places(markers, calibration), calibration, file)
-    pelvis = fitted_pose(*placed["pelvis"]).pose
+    placed = place_markers(name_places(markers, calibration), calibration, file)
+    pelvis = fit_pose(*placed["pelvis"]).pose
     hips, findings = {}, []
     for side in "lr":
         usual = calibration.points["pelvis"][f"hip_{side}"]
-        found, refused = _found(pelvis, placed[f"thigh_{side}"], usual)
+        found, refused = _find_hip(pelvis, placed[f"thigh_{side}"], usual)
         if found is None:
             what = f"hip_{side} from the landmarks, not from the functional trial: {refused}"
             findings.append(Finding("warning", "functional hip", file, what, SPOILS))
@@ -55,14 +55,14 @@ def functional_hips(markers: Recording, calibration: Calibration) -> tuple[dict[
     return hips, tuple(findings)
 
 
-def _found(pelvis: Pose, thigh: PlacedMarkers, usual: Values) -> tuple[Pivot | None, str]:
+def _find_hip(pelvis: Pose, thigh: PlacedMarkers, usual: Values) -> tuple[Pivot | None, str]:
     """Centre of one hip, or None and why."""
     whole = pelvis.known & np.isfinite(thigh.seen).all(axis=(1, 2))
     if whole.sum() < FEWEST_FRAMES:
         return None, f"pelvis and thigh are complete in {int(whole.sum())} frames, {FEWEST_FRAMES} are needed"
     above, markers = Pose(pelvis.origin[whole], pelvis.rotation[whole]), thigh.seen[whole]
-    below, places = fitted_pose(thigh.body, markers).pose, above.to_segment(markers)
-    found = fixed_point(above, below) if below.known.all() else sphere_centre(places, usual)
+    below, places = fit_pose(thigh.body, markers).pose, above.to_segment(markers)
+    found = find_fixed_point(above, below) if below.known.all() else sphere_centre(places, usual)
     # to each side, in the direction in which the thigh turns less
     way = (places - found.centre).mean(axis=1)
     way = way / np.linalg.norm(way, axis=1, keepdims=True)
@@ -78,7 +78,7 @@ def _found(pelvis: Pose, thigh: PlacedMarkers, usual: Values) -> tuple[Pivot | N
     return found, ""
 
 
-def fixed_point(above: Pose, below: Pose) -> Pivot:
+def find_fixed_point(above: Pose, below: Pose) -> Pivot:
     """Point that stays nearest to one place in both segments, in the frame of the one above [m].
 
     Source: Ehrig 2006, J Biomech 39:2798 (symmetrical centre of rotation estimation).

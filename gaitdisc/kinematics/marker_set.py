@@ -13,11 +13,11 @@ from functools import cache
 from pathlib import Path
 from typing import Any
 
-from gaitdisc.channel import folded_label, hint_nearest, list_names, schema_folder
+from gaitdisc.channel import fold_label, hint_nearest, list_names, schema_folder
 from gaitdisc.errors import ChannelError, ReadError, SchemaError
 from gaitdisc.kinematics.pose import FEWEST_POINTS, PARTS, SEGMENTS
 from gaitdisc.regular_file import check_regular
-from gaitdisc.toml_text import parsed_toml
+from gaitdisc.toml_text import parse_toml
 
 SIDED = (
     "asis",
@@ -76,7 +76,7 @@ class MarkerSet:
     def with_joints(self, joints: str) -> MarkerSet:
         """Return the same set with its joints free, held, or moving in a plane."""
         if joints not in JOINTS:
-            raise SchemaError(f"joints must be one of {', '.join(JOINTS)}", _found(joints, JOINTS), "Correct the word.")
+            raise SchemaError(f"joints must be one of {', '.join(JOINTS)}", _find(joints, JOINTS), "Correct the word.")
         return replace(self, joints=joints)
 
     def with_hip(self, method: str) -> MarkerSet:
@@ -84,7 +84,7 @@ class MarkerSet:
         if method not in METHODS["hip"]:
             known = METHODS["hip"]
             raise SchemaError(
-                f"the hip joint centre must be one of {', '.join(known)}", _found(method, known), "Correct the word."
+                f"the hip joint centre must be one of {', '.join(known)}", _find(method, known), "Correct the word."
             )
         return replace(self, joint_centres={**self.joint_centres, "hip": (method,)})
 
@@ -96,15 +96,15 @@ class MarkerSet:
         """
         by_fold: dict[str, str] = {}
         for label in labels:
-            by_fold.setdefault(folded_label(label), label)
+            by_fold.setdefault(fold_label(label), label)
         others: dict[str, list[str]] = {}
         for key, several in self.aliases.items():
             for side in "lr":
-                others.setdefault(sided(key, side), []).extend(sided(alias, side) for alias in several)
+                others.setdefault(name_sided(key, side), []).extend(name_sided(alias, side) for alias in several)
         found = {}
         for name in self.markers():
             own = (name, *others.get(name, ()))
-            label = next((by_fold[f] for f in map(folded_label, own) if f in by_fold), None)
+            label = next((by_fold[f] for f in map(fold_label, own) if f in by_fold), None)
             if label is not None:
                 found[name] = label
         return found
@@ -116,9 +116,9 @@ class MarkerSet:
     def _pairs(self) -> list[tuple[str, str]]:
         named = [marker for text in self.landmarks.values() for choice in choices(text) for marker in choice]
         named += [marker for several in self.tracked.values() for marker in several if marker not in METHODS]
-        return list(dict.fromkeys((sided(marker, "l"), sided(marker, "r")) for marker in named))
+        return list(dict.fromkeys((name_sided(marker, "l"), name_sided(marker, "r")) for marker in named))
 
-    def sided_pairs(self, names: Iterable[str]) -> list[tuple[str, str]]:
+    def list_sided_pairs(self, names: Iterable[str]) -> list[tuple[str, str]]:
         """Left marker and right marker of each pair that is there, in the names of this set."""
         there = set(names)
         return [pair for pair in self._pairs() if pair[0] != pair[1] and there.issuperset(pair)]
@@ -140,7 +140,7 @@ class MarkerSet:
         """
         there = set(names)
         for choice in choices(self.landmarks.get(key, "")):
-            markers = tuple(sided(marker, side) for marker in choice)
+            markers = tuple(name_sided(marker, side) for marker in choice)
             if there.issuperset(markers):
                 return markers
         return ()
@@ -149,14 +149,14 @@ class MarkerSet:
         """Markers of a static trial that are not among these names; of several choices the first is named."""
         there = set(names)
         absent = []
-        for key in self.needed_landmarks(there):
+        for key in self.list_needed_landmarks(there):
             for side in "lr":
                 if not self.landmark(key, side, there):
-                    first = (sided(marker, side) for marker in choices(self.landmarks[key])[0])
+                    first = (name_sided(marker, side) for marker in choices(self.landmarks[key])[0])
                     absent += [marker for marker in first if marker not in there]
         return list(dict.fromkeys(absent))
 
-    def needed_landmarks(self, names: Iterable[str]) -> list[str]:
+    def list_needed_landmarks(self, names: Iterable[str]) -> list[str]:
         """Landmarks without which no frame can be built from markers of these names."""
         there = set(names)
         needed: list[str] = list(NEEDED)
@@ -168,10 +168,10 @@ class MarkerSet:
         return needed
 
 
-def sided(name: str, side: str) -> str:
+def name_sided(name: str, side: str) -> str:
     """Name of a marker on one side, from one with or without `{S}` (R, L), `{s}` (r, l) or `{side}` (right, left).
 
-    >>> sided("{S}ASI", "l"), sided("knee_{s}", "r"), sided("{side} knee", "r")
+    >>> name_sided("{S}ASI", "l"), name_sided("knee_{s}", "r"), name_sided("{side} knee", "r")
     ('LASI', 'knee_r', 'right knee')
     """
     words = {"S": side.upper(), "s": side, "side": {"l": "left", "r": "right"}[side]}
@@ -184,7 +184,7 @@ def on_sides(points: Iterable[str], sides: str) -> tuple[str, ...]:
     >>> on_sides(["{S}ASI", "SACR"], "lr")
     ('LASI', 'RASI', 'SACR')
     """
-    return tuple(dict.fromkeys(sided(point, side) for point in points for side in sides))
+    return tuple(dict.fromkeys(name_sided(point, side) for point in points for side in sides))
 
 
 def choices(text: str) -> list[tuple[str, ...]]:
@@ -198,20 +198,20 @@ def choices(text: str) -> list[tuple[str, ...]]:
 
 def marker_set(name: str | Path) -> MarkerSet:
     """Marker set that comes along, by its name, or a laboratory's own, by the path of its file."""
-    shipped = shipped_marker_sets()
+    shipped = read_marker_sets()
     if isinstance(name, str) and name in shipped:
         return shipped[name]
     if str(name).endswith(".toml"):
         return read_marker_set(Path(name))
     raise SchemaError(
         f"a marker set must be one of {', '.join(shipped)}, or a file that ends in .toml",
-        _found(str(name), tuple(shipped)),
+        _find(str(name), tuple(shipped)),
         "Correct the name, or write the file as docs/kinematics.md shows.",
     )
 
 
 @cache
-def shipped_marker_sets() -> dict[str, MarkerSet]:
+def read_marker_sets() -> dict[str, MarkerSet]:
     """Marker sets that come along, by name."""
     paths = sorted((schema_folder() / "marker_sets").glob("*.toml"))
     return {path.stem: read_marker_set(path) for path in paths}
@@ -226,13 +226,13 @@ def read_marker_set(path: Path) -> MarkerSet:
         reason = "it is not a UTF-8 text" if isinstance(error, UnicodeDecodeError) else error.strerror
         raise ReadError("a marker set must be a file", f"{path.name}: {reason}", "Check the path.") from error
     try:
-        table = parsed_toml(text)
+        table = parse_toml(text)
     except tomllib.TOMLDecodeError as error:
         raise SchemaError("a marker set must be a TOML file", f"{path.name}: {error}", EXAMPLE) from error
-    return _checked(table, path)
+    return _check_text(table, path)
 
 
-def _checked(table: dict[str, Any], path: Path) -> MarkerSet:
+def _check_text(table: dict[str, Any], path: Path) -> MarkerSet:
     file, usual = path.name, {"title": path.stem, "citation": "", "joints": JOINTS[0]}
     known = ("title", "citation", "aliases", "landmarks", "joint_centres", "axes", "joints", "tracked")
     _check_words(table, known, "", file)
@@ -271,7 +271,7 @@ def _of_kind(kind: str, value: Any, where: str, file: str) -> Any:
     return value
 
 
-def _found(word: str, known: Sequence[str]) -> str:
+def _find(word: str, known: Sequence[str]) -> str:
     return f"found {word!r}" + hint_nearest(word, known)
 
 
@@ -279,7 +279,7 @@ def _check_words(words: Iterable[str], known: Sequence[str], where: str, file: s
     for word in words:
         if word not in known:
             needed = f"{where or 'a marker set '}takes {', '.join(known)}"
-            raise SchemaError(needed, f"{file}: {_found(word, known)}", EXAMPLE)
+            raise SchemaError(needed, f"{file}: {_find(word, known)}", EXAMPLE)
 
 
 def _check_landmarks(landmarks: Mapping[str, str], file: str) -> None:
@@ -319,16 +319,16 @@ def _check_tracked(tracked: Mapping[str, Iterable[str]], file: str) -> None:
             raise SchemaError(needed, f"{file} names {wrong[0]!r}", EXAMPLE)
 
 
-def recognised_marker_set(static: Iterable[str], trial: Iterable[str], file: str = "") -> MarkerSet:
+def recognise_marker_set(static: Iterable[str], trial: Iterable[str], file: str = "") -> MarkerSet:
     """Bundled set of which most markers are there, with all landmarks standing and three points a segment walking.
 
     >>> legs = [f"{side}{name}" for side in "LR" for name in ("ASI", "THI", "KNE", "TIB", "ANK", "HEE", "TOE")]
-    >>> recognised_marker_set(["SACR", *legs], ["SACR", *legs]).name
+    >>> recognise_marker_set(["SACR", *legs], ["SACR", *legs]).name
     'plug_in_gait'
     """
     static, trial = list(static), list(trial)
     fitting, nearest = [], []
-    for one in shipped_marker_sets().values():
+    for one in read_marker_sets().values():
         there, followed = one.names(static), one.names(trial)
         lacking, both = one.lacking(there), set(there) & set(followed)
         for followers in map(one.followers, SEGMENTS):
@@ -344,7 +344,7 @@ def recognised_marker_set(static: Iterable[str], trial: Iterable[str], file: str
         return max(fitting, key=lambda pair: pair[0])[1]
     *_, name, lacking = min(nearest)
     raise ChannelError(
-        f"the markers must belong to one of the sets {', '.join(shipped_marker_sets())}",
+        f"the markers must belong to one of the sets {', '.join(read_marker_sets())}",
         f"{file or 'the static trial'} has {list_names(static, none='no markers')}; the nearest set is {name}, which "
         f"also needs {list_names(lacking)}",
         "Name the marker set, rename the markers, or write your own set as docs/kinematics.md shows.",

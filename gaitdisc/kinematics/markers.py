@@ -54,7 +54,7 @@ def still_places(markers: Recording, names: Mapping[str, str], needed: Sequence[
     length = min(max(round(STILL_S * markers.rate_hz), 1), len(markers.time)) if len(markers.time) > 1 else 1
     step = max(round(STEP_S * markers.rate_hz), 1) if length > 1 else 1
     moved, start = min(
-        ((_moved(all_places[first : first + length, rows]), first)
+        ((_mean_distance(all_places[first : first + length, rows]), first)
          for first in range(0, len(all_places) - length + 1, step)),
         key=lambda pair: pair[0],
     )  # fmt: skip
@@ -66,10 +66,10 @@ def still_places(markers: Recording, names: Mapping[str, str], needed: Sequence[
             if len(seen):
                 places[name] = np.median(seen, axis=0)
                 break
-    return places, moved if np.isfinite(moved) else _moved(all_places[:, rows]), float(markers.time[start])
+    return places, moved if np.isfinite(moved) else _mean_distance(all_places[:, rows]), float(markers.time[start])
 
 
-def _moved(places: Values) -> float:
+def _mean_distance(places: Values) -> float:
     """Largest mean distance of the markers from their median places; infinite where one is never seen."""
     seen = np.isfinite(places[..., 0])
     if not seen.any(axis=0).all():

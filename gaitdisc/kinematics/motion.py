@@ -13,9 +13,15 @@ from scipy.spatial.transform import Rotation
 
 from gaitdisc.channel import Channel
 from gaitdisc.errors import ChannelError, ShapeError
-from gaitdisc.kinematics.calibration import Calibration, calibrated
-from gaitdisc.kinematics.exchanged_labels import UNFIT, Exchange, exchange_findings, exchanged_pairs, without_exchanged
-from gaitdisc.kinematics.marker_set import MarkerSet, marker_set, recognised_marker_set
+from gaitdisc.kinematics.calibration import Calibration, calibrate_body
+from gaitdisc.kinematics.exchanged_labels import (
+    UNFIT,
+    Exchange,
+    exchange_findings,
+    find_exchanged_pairs,
+    without_exchanged,
+)
+from gaitdisc.kinematics.marker_set import MarkerSet, marker_set, recognise_marker_set
 from gaitdisc.kinematics.markers import WalkingFrame, check_right_handed, marker_labels, up_axis, walking_frame
 from gaitdisc.kinematics.pose import (
     JOINT_CHANNELS,
@@ -24,16 +30,16 @@ from gaitdisc.kinematics.pose import (
     Pose,
     angle_signs,
     clinical_angles,
-    fitted_pose,
+    fit_pose,
     residual_m,
 )
 from gaitdisc.kinematics.segment_poses import (
     FARTHEST_M,
     PlacedMarkers,
     free_poses,
-    joined_poses,
-    named_places,
-    placed_markers,
+    join_poses,
+    name_places,
+    place_markers,
 )
 from gaitdisc.recording import Finding, Recording
 from gaitdisc.recording.arrays import Values, spans_s
@@ -64,7 +70,7 @@ class Motion:
     findings: tuple[Finding, ...] = ()  # what was inferred, bridged or left out
 
 
-def moved_body(
+def move_body(
     markers: Recording,
     static: Recording | None,
     marker_set: MarkerSet | str | Path | None = None,
@@ -85,31 +91,31 @@ def moved_body(
             "the trial has none",
             "Record a static trial with all markers of the set, or name it.",
         )
-    chosen = chosen_marker_set(markers, static, marker_set)
+    chosen = choose_marker_set(markers, static, marker_set)
     chosen = chosen if joints is None else chosen.with_joints(joints)
-    return motion(markers, calibrated(static, chosen, measures), forward)
+    return motion(markers, calibrate_body(static, chosen, measures), forward)
 
 
-def chosen_marker_set(markers: Recording, static: Recording, given: MarkerSet | str | Path | None = None) -> MarkerSet:
+def choose_marker_set(markers: Recording, static: Recording, given: MarkerSet | str | Path | None = None) -> MarkerSet:
     """Marker set of a trial: the one given, or the one that the labels of both trials are of."""
     if isinstance(given, MarkerSet):
         return given
     if given is not None:
         return marker_set(given)
-    return recognised_marker_set(marker_labels(static), marker_labels(markers), static.source.file)
+    return recognise_marker_set(marker_labels(static), marker_labels(markers), static.source.file)
 
 
 def motion(markers: Recording, calibration: Calibration, forward: Sequence[float] | None = None) -> Motion:
     """Segments, joint centres and angles of a trial; forward in laboratory axes, else found from the pelvis."""
     file = markers.source.file or "the trial"
-    places = named_places(markers, calibration)
-    placed = placed_markers(places, calibration, file)
+    places = name_places(markers, calibration)
+    placed = place_markers(places, calibration, file)
     up = up_axis(_middle(placed, ("pelvis",)), _middle(placed, ("foot_l", "foot_r")), file)
-    pelvis = fitted_pose(*placed["pelvis"]).pose.rotation
+    pelvis = fit_pose(*placed["pelvis"]).pose.rotation
     legs = _middle(placed, ("thigh_r", "shank_r")) - _middle(placed, ("thigh_l", "shank_l"))
     if np.nanmedian(np.einsum("fi,fi->f", np.cross(pelvis[:, :, 0], up), legs)) < 0:  # the legs too, not two spines
         check_right_handed(pelvis, up, file)
-    exchanges, broken = exchanged_pairs(places, calibration, up)
+    exchanges, broken = find_exchanged_pairs(places, calibration, up)
     unfit = {
         s: np.any([broken[s], *(e.frames for e in exchanges if s in e.segments)], axis=0) | (s in calibration.spoiled)
         for s in SEGMENTS
@@ -128,7 +134,7 @@ def motion(markers: Recording, calibration: Calibration, forward: Sequence[float
     check_right_handed(free["pelvis"].rotation, up, file)
     facing = free["pelvis"].rotation[:, :, 0]
     walking = walking_frame(free["pelvis"].origin, facing, up, markers.rate_hz, forward)
-    joined = joined_poses(free, placed, calibration, walking.rotation)
+    joined = join_poses(free, placed, calibration, walking.rotation)
     spoiled = np.any([*unfit.values()], axis=0)  # nothing is carried over by a body of which a part is unknown
     poses = {s: joined[s].without(unfit[s] | (spoiled & ~free[s].known)) for s in SEGMENTS}
     residuals = {segment: residual_m(poses[segment], *placed[segment]) for segment in SEGMENTS}

@@ -109,7 +109,7 @@ class RigidFit:
     residual_m: Values
 
 
-def fitted_pose(body: Values, observed: Values) -> RigidFit:
+def fit_pose(body: Values, observed: Values) -> RigidFit:
     """Pose that brings a rigid body nearest to the observed points.
 
     body (point, 3) [m]: points in the frame of the segment
@@ -117,7 +117,7 @@ def fitted_pose(body: Values, observed: Values) -> RigidFit:
     Source: Söderkvist & Wedin 1993, J Biomech 26:1473 (singular values; a mirrored solution is never taken).
 
     >>> body = np.array([[0, 0, 0], [0.1, 0, 0], [0, 0.2, 0], [0, 0, 0.1]])
-    >>> fitted_pose(body, body[None] + 1.0).pose.origin.round(9)
+    >>> fit_pose(body, body[None] + 1.0).pose.origin.round(9)
     array([[1., 1., 1.]])
     """
     seen = np.asarray(np.isfinite(observed).all(axis=2))
@@ -184,11 +184,11 @@ def angle_signs(joint: str, side: str) -> Values:
     return np.array([flexion, 1.0, 1.0] if side == "r" else [flexion, -1.0, -1.0])
 
 
-def rotation_of(angles_deg: Values) -> Values:
+def make_rotation(angles_deg: Values) -> Values:
     """Rotation (frame, 3, 3) of distal in proximal, of what `clinical_angles` gives (frame, 3) [deg].
 
     >>> angles = np.array([[30.0, -5.0, 8.0]])
-    >>> clinical_angles(np.eye(3)[None], rotation_of(angles)).round(9).tolist()
+    >>> clinical_angles(np.eye(3)[None], make_rotation(angles)).round(9).tolist()
     [[30.0, -5.0, 8.0]]
     """
     (cz, cx, cy), (sz, sx, sy) = np.cos(np.radians(angles_deg)).T, np.sin(np.radians(angles_deg)).T

@@ -14,7 +14,7 @@ from gaitdisc.errors import ChannelError
 from gaitdisc.kinematics.calibration import Calibration, Points
 from gaitdisc.kinematics.marker_set import METHODS
 from gaitdisc.kinematics.markers import marker_labels, marker_places
-from gaitdisc.kinematics.pose import FEWEST_POINTS, PARTS, SEGMENTS, Pose, RigidFit, fitted_pose
+from gaitdisc.kinematics.pose import FEWEST_POINTS, PARTS, SEGMENTS, Pose, RigidFit, fit_pose
 from gaitdisc.recording import Recording
 from gaitdisc.recording.arrays import Values
 
@@ -41,7 +41,7 @@ class PlacedMarkers(NamedTuple):
         return PlacedMarkers(self.body, self.seen[frames])
 
 
-def held_together(
+def hold_together(
     first: Mapping[str, Pose],
     placed: Mapping[str, PlacedMarkers],
     points: Mapping[str, Points],
@@ -72,7 +72,7 @@ def held_together(
             inside = np.swapaxes(plane, 1, 2) @ turn
             angle = np.arctan2(inside[:, 1, 0] - inside[:, 0, 1], inside[:, 0, 0] + inside[:, 1, 1])
             turns[segment] = _turn(angle[:, None] * plane[:, :, 2]) @ plane
-    allowed = _allowed(len(origin), plane)
+    allowed = _allow_steps(len(origin), plane)
     moving: NDArray[np.intp] = np.arange(len(origin))
     for _ in range(ROUNDS):
         some = {segment: turn[moving] for segment, turn in turns.items()}
@@ -165,7 +165,7 @@ def _columns(segment: str) -> NDArray[np.intp]:
     return np.arange(3) + 3 + 3 * SEGMENTS.index(segment)
 
 
-def _allowed(frames: int, plane: Values | None) -> Values:
+def _allow_steps(frames: int, plane: Values | None) -> Values:
     """Columns of the steps that may be taken, (frame, all, allowed): all, or those in the plane."""
     width = 3 + 3 * len(SEGMENTS)
     if plane is None:
@@ -214,12 +214,12 @@ def _turn(vectors: Values) -> Values:
     return np.eye(3) + sine * cross + (1 - cosine) * (cross @ cross)
 
 
-def held_in_gaps(
+def hold_in_gaps(
     free: Mapping[str, Pose], placed: Mapping[str, PlacedMarkers], points: Mapping[str, Points]
 ) -> dict[str, Pose]:
     """Poses held together at the joints, in frames in which some segment is unknown and beside them; NaN in all others.
 
-    free: each segment over its own points, NaN where too few; placed, points: as `held_together` takes them
+    free: each segment over its own points, NaN where too few; placed, points: as `hold_together` takes them
     """
     unknown = ~np.logical_and.reduce([free[segment].known for segment in SEGMENTS])
     beside = np.convolve(unknown, np.ones(3), "same") > 0
@@ -227,14 +227,14 @@ def held_in_gaps(
     held = {}
     some = {segment: one.among(rows) for segment, one in placed.items()}
     part = {segment: Pose(pose.origin[rows], pose.rotation[rows]) for segment, pose in free.items()}
-    for segment, pose in held_together(part, some, points, steady_m=CARRIED_STEADY_M).items():
+    for segment, pose in hold_together(part, some, points, steady_m=CARRIED_STEADY_M).items():
         origin, rotation = np.full((len(unknown), 3), np.nan), np.full((len(unknown), 3, 3), np.nan)
         origin[rows], rotation[rows] = pose.origin, pose.rotation
         held[segment] = Pose(origin, rotation)
     return held
 
 
-def carried_over(free: Pose, held: Pose) -> Pose:
+def carry_over(free: Pose, held: Pose) -> Pose:
     """A segment's pose whose gaps are those of the held body, led over from known to known frame.
 
     Held together, two markers and a joint determine a pose. It differs from that of the segment's own points: skin
@@ -270,13 +270,13 @@ def _between(known: NDArray[np.intp], rotations: Values, where: NDArray[np.intp]
     return Slerp(known, Rotation.from_matrix(rotations))(where).as_matrix()
 
 
-def named_places(markers: Recording, calibration: Calibration) -> dict[str, Values]:
+def name_places(markers: Recording, calibration: Calibration) -> dict[str, Values]:
     """Places of a trial's markers, each (frame, 3) [m], by the names of the marker set."""
     names = calibration.marker_set.names(marker_labels(markers))
     return dict(zip(names, marker_places(markers, [*names.values()]).swapaxes(0, 1), strict=True))
 
 
-def placed_markers(places: Mapping[str, Values], calibration: Calibration, file: str = "") -> dict[str, PlacedMarkers]:
+def place_markers(places: Mapping[str, Values], calibration: Calibration, file: str = "") -> dict[str, PlacedMarkers]:
     """Markers that both trials have, by segment."""
     placed = {}
     for segment, body in calibration.body.items():
@@ -305,12 +305,12 @@ def free_fits(
         for joint in METHODS:
             if joint in calibration.body[segment]:
                 body = np.vstack([calibration.body[segment][joint], body])
-                above = carried_joint(f"{joint}{segment[-2:]}", poses, calibration)
+                above = carry_joint(f"{joint}{segment[-2:]}", poses, calibration)
                 places = np.concatenate([above[:, None], places], axis=1)
-        fits[segment] = fitted_pose(body, places)
+        fits[segment] = fit_pose(body, places)
         poses[segment] = fits[segment].pose
         if held is not None:
-            poses[segment] = carried_over(poses[segment], held[segment])
+            poses[segment] = carry_over(poses[segment], held[segment])
             fits[segment] = replace(fits[segment], pose=poses[segment])
     return fits
 
@@ -322,7 +322,7 @@ def free_poses(
     return {segment: fit.pose for segment, fit in free_fits(placed, calibration, held).items()}
 
 
-def joined_poses(
+def join_poses(
     free: Mapping[str, Pose], placed: Mapping[str, PlacedMarkers], calibration: Calibration, walker: Values
 ) -> dict[str, Pose]:
     """The segments with their joints as the marker set has them: free, held, or in the plane of walking.
@@ -331,13 +331,13 @@ def joined_poses(
     """
     joints = calibration.marker_set.joints
     if joints != "free":
-        return held_together(free, placed, calibration.points, walker if joints == "planar" else None)
+        return hold_together(free, placed, calibration.points, walker if joints == "planar" else None)
     if all(free[segment].known.all() for segment in SEGMENTS):
         return dict(free)
-    return free_poses(placed, calibration, held_in_gaps(free, placed, calibration.points))
+    return free_poses(placed, calibration, hold_in_gaps(free, placed, calibration.points))
 
 
-def carried_joint(joint: str, poses: Mapping[str, Pose], calibration: Calibration) -> Values:
+def carry_joint(joint: str, poses: Mapping[str, Pose], calibration: Calibration) -> Values:
     """A joint centre (frame, 3) [m] as the segment above carries it."""
     name, side = joint.split("_")
     above = {"hip": "pelvis", "knee": f"thigh_{side}", "ankle": f"shank_{side}"}[name]

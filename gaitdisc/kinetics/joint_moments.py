@@ -13,7 +13,7 @@ from gaitdisc.channel import Channel
 from gaitdisc.errors import SamplingError, SchemaError, ShapeError
 from gaitdisc.kinematics.pose import JOINT_CHANNELS, SEGMENTS_OF, Pose, angle_signs
 from gaitdisc.kinetics.body_inertia import LEG, TABLES, Person, leg_inertia, segment_lengths
-from gaitdisc.kinetics.newton_euler import RigidBody, SegmentMotion, joint_wrenches, needed_wrench, segment_motions
+from gaitdisc.kinetics.newton_euler import RigidBody, SegmentMotion, compute_wrench, joint_wrenches, segment_motions
 from gaitdisc.kinetics.plate_steps import FootPath, PlateStep
 from gaitdisc.kinetics.platform import Platform, Wrench
 from gaitdisc.recording import Recording, Trial
@@ -59,7 +59,7 @@ def foot_loads(
                 total += Wrench(values[:, :3], values[:, 3:])
         named = any(platform.side == side for platform in found)
         spans = [Span(time[0], time[-1])] if named else list((airborne or {}).get(side, ()))
-        loads[side] = FootLoad(total, _known(steps, side, time, spans))
+        loads[side] = FootLoad(total, _mark_known(steps, side, time, spans))
     return loads
 
 
@@ -74,7 +74,7 @@ def swings(trial: Trial, feet: Mapping[str, FootPath]) -> dict[str, list[Span]]:
     return found
 
 
-def _known(steps: Sequence[PlateStep], side: str, time: Values, known_spans: Sequence[Span]) -> NDArray[np.bool_]:
+def _mark_known(steps: Sequence[PlateStep], side: str, time: Values, known_spans: Sequence[Span]) -> NDArray[np.bool_]:
     own = [step for step in steps if step.side == side and step.clean]
     between = [Span(one.end, after.start) for one, after in itertools.pairwise(own)]
     known = np.zeros(len(time), bool)
@@ -164,7 +164,7 @@ class Leg:
 
     def needed(self, up: Values) -> dict[str, Wrench]:
         """Wrench that moves each segment and bears its weight; up (3,) is a unit vector."""
-        return {segment: needed_wrench(self.moving[segment], body, up) for segment, body in self.bodies.items()}
+        return {segment: compute_wrench(self.moving[segment], body, up) for segment, body in self.bodies.items()}
 
 
 def legs(

@@ -18,8 +18,8 @@ from gaitdisc.kinematics.pose import Pose
 from gaitdisc.kinetics.platform import Wrench
 from gaitdisc.recording import Recording
 from gaitdisc.recording.arrays import Values
-from gaitdisc.signals.butterworth import lowpassed
-from gaitdisc.signals.derivatives import differentiated
+from gaitdisc.signals.butterworth import low_pass
+from gaitdisc.signals.derivatives import derivative
 
 GRAVITY = 9.80665  # m/s2
 
@@ -33,20 +33,20 @@ class SegmentMotion:
     angular_velocity: Values  # (frame, 3) [rad/s], of the segment
     angular_acceleration: Values  # (frame, 3) [rad/s2], of the segment
 
-    def acceleration_of(self, point: Values) -> Values:
+    def point_acceleration(self, point: Values) -> Values:
         """Acceleration (frame, 3) [m/s2] of a point (3,) [m] of the segment's frame."""
         arm = self.pose.rotation @ np.asarray(point, float)
         spin = np.cross(self.angular_velocity, np.cross(self.angular_velocity, arm))
         return self.acceleration + np.cross(self.angular_acceleration, arm) + spin
 
 
-def smoothed_pose(pose: Pose, time: Values, cutoff_hz: float) -> Pose:
+def smooth_pose(pose: Pose, time: Values, cutoff_hz: float) -> Pose:
     """Pose low-passed on even times, its axes made a rotation again; gaps up to 0.1 s are bridged, longer stay NaN."""
     frames = len(pose)
     values = np.hstack([pose.origin, pose.rotation.reshape(frames, 9)])
     values[~pose.known] = np.nan
     channels = tuple(Channel(f"pose_{place}", "signal", "1") for place in range(12))
-    smooth = lowpassed(Recording(time, values, channels), cutoff_hz).values
+    smooth = low_pass(Recording(time, values, channels), cutoff_hz).values
     return Pose(smooth[:, :3], nearest_rotations(smooth[:, 3:].reshape(frames, 3, 3)))
 
 
@@ -68,10 +68,10 @@ def segment_motion(pose: Pose, rate_hz: float) -> SegmentMotion:
     """Derivatives of a pose by the package's five-point differences; NaN within two frames of an end or a gap."""
     flat = pose.rotation.reshape(len(pose), 9)
     turned = np.swapaxes(pose.rotation, 1, 2)
-    rate = differentiated(flat, rate_hz).reshape(-1, 3, 3) @ turned
-    second = differentiated(flat, rate_hz, 2).reshape(-1, 3, 3) @ turned
+    rate = derivative(flat, rate_hz).reshape(-1, 3, 3) @ turned
+    second = derivative(flat, rate_hz, 2).reshape(-1, 3, 3) @ turned
     # R'' R^T is the cross-product matrix of the angular acceleration and a symmetric part
-    return SegmentMotion(pose, differentiated(pose.origin, rate_hz, 2), _axial(rate), _axial(second))
+    return SegmentMotion(pose, derivative(pose.origin, rate_hz, 2), _axial(rate), _axial(second))
 
 
 def segment_motions(poses: Mapping[str, Pose], time: Values, cutoff_hz: float) -> dict[str, SegmentMotion]:
@@ -85,7 +85,7 @@ def segment_motions(poses: Mapping[str, Pose], time: Values, cutoff_hz: float) -
                 f"{name} has {len(pose)} frames, and there are {len(time)} times",
                 "Use the poses and times of the same recording.",
             )
-        smooth = smoothed_pose(pose, time, cutoff_hz) if np.isfinite(cutoff_hz) else pose
+        smooth = smooth_pose(pose, time, cutoff_hz) if np.isfinite(cutoff_hz) else pose
         found[name] = segment_motion(smooth, rate_hz)
     return found
 
@@ -109,27 +109,27 @@ class RigidBody:
     tensor: Values  # (3, 3) [kg m2], about the centre of mass
 
 
-def needed_wrench(moving: SegmentMotion, body: RigidBody, up: Values) -> Wrench:
+def compute_wrench(moving: SegmentMotion, body: RigidBody, up: Values) -> Wrench:
     """Wrench that moves a segment and bears its weight: m (a - g), rate of angular momentum; up (3,) is a unit vector.
 
     >>> from gaitdisc.kinematics.pose import Pose
     >>> still = SegmentMotion(Pose(np.zeros((1, 3)), np.eye(3)[None]), *np.zeros((3, 1, 3)))
     >>> body = RigidBody(2.0, np.array([0.1, 0.0, 0.0]), np.eye(3))
-    >>> needed_wrench(still, body, np.array([0.0, 1.0, 0.0])).moment.round(5)
+    >>> compute_wrench(still, body, np.array([0.0, 1.0, 0.0])).moment.round(5)
     array([[0.     , 0.     , 1.96133]])
     """
     rotation = moving.pose.rotation
     tensor = rotation @ body.tensor @ np.swapaxes(rotation, 1, 2)
     spin = moving.angular_velocity
     turning = _times(tensor, moving.angular_acceleration) + np.cross(spin, _times(tensor, spin))
-    force = body.mass_kg * (moving.acceleration_of(body.centre) + GRAVITY * np.asarray(up, float))
+    force = body.mass_kg * (moving.point_acceleration(body.centre) + GRAVITY * np.asarray(up, float))
     return Wrench.at(moving.pose.to_laboratory(body.centre), force, turning)
 
 
 def joint_wrenches(needed: Sequence[Wrench], ground: Wrench) -> list[Wrench]:
     """What each joint of a chain gives to the segments beyond it, from the last joint upwards.
 
-    needed: `needed_wrench` of the segments from the one on the ground (foot) to the nearest to the trunk (thigh); each
+    needed: `compute_wrench` of the segments from the one on the ground (foot) to the nearest to the trunk (thigh); each
         one's proximal joint is the joint that is named after it
     returns: one for each segment, by its proximal joint: of the nearer segment on the farther one. `about` the joint's
         centre it is the internal joint moment
@@ -161,5 +161,5 @@ def moment_per_foot_kg(joint: Values, heel: Values, toe: Values, up: Values, rat
     forward = toe - heel
     forward = forward - np.outer(forward @ up, up)
     axis = np.cross(forward / np.linalg.norm(forward, axis=1, keepdims=True), up)
-    push = differentiated(middle, rate_hz, 2) + GRAVITY * up
+    push = derivative(middle, rate_hz, 2) + GRAVITY * up
     return np.einsum("fx,fx->f", axis, np.cross(middle - joint, push))

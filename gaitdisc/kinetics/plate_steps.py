@@ -14,7 +14,7 @@ from gaitdisc.kinetics.newton_euler import GRAVITY
 from gaitdisc.kinetics.platform import Platform, Wrench
 from gaitdisc.recording import Finding, Recording
 from gaitdisc.recording.arrays import Span, Values, read_only, runs
-from gaitdisc.signals.derivatives import differentiated
+from gaitdisc.signals.derivatives import derivative
 from gaitdisc.signals.direction import marker_position
 
 BESIDE_FOOT_M = 0.10  # a centre of pressure farther from the line from heel to toes than this is another foot's
@@ -52,7 +52,7 @@ class FootPath:
     def swings(self) -> list[Span]:
         """Spans [s] in which heel and toes go forwards, where the foot is fastest, too fast to bear load."""
         rate_hz = (len(self.time) - 1) / float(self.time[-1] - self.time[0])
-        heel, toe = (differentiated(part, rate_hz) for part in (self.heel, self.toe))
+        heel, toe = (derivative(part, rate_hz) for part in (self.heel, self.toe))
         speed = np.nan_to_num(np.linalg.norm(heel + toe, axis=1))
         fastest = int(np.argmax(speed))
         if not speed[fastest] > 0:
@@ -66,7 +66,7 @@ class FootPath:
         """Frames (frame,) in which a part (frame, 3) [m], `heel` or `toe`, hardly moves."""
         rate_hz = (len(self.time) - 1) / float(self.time[-1] - self.time[0])
         with np.errstate(invalid="ignore"):
-            return np.linalg.norm(differentiated(part, rate_hz), axis=1) < STILL_M_PER_S
+            return np.linalg.norm(derivative(part, rate_hz), axis=1) < STILL_M_PER_S
 
     def beside(self, points: Values, up: Values) -> Values:
         """How far points (frame, 3) [m] lie from the line heel to toe, seen from above, (frame,) [m]; up (3,)."""
@@ -162,7 +162,7 @@ class Weight:
         return float(np.mean(window * platform.load_n[on]) / needed)
 
 
-def weighed_steps(
+def weigh_steps(
     steps: Sequence[PlateStep], found: Sequence[Platform], airborne: Mapping[str, Sequence[Span]], weight: Weight
 ) -> list[PlateStep]:
     """Steps, doubted where the other foot swings and the force is not what weight and motion of the person need."""

@@ -13,7 +13,7 @@ from gaitdisc.channel import Channel
 from gaitdisc.errors import ChannelError, ReadError, ShapeError, UnitError
 from gaitdisc.recording import Recording, Surface, Trial
 from gaitdisc.recording.arrays import Span, Values, read_only
-from gaitdisc.signals.butterworth import lowpassed
+from gaitdisc.signals.butterworth import low_pass
 from gaitdisc.signals.contacts import loaded
 
 LEAST_LOAD_N = 20.0  # below it a foot counts as off a platform, and a centre of pressure is noise divided by noise
@@ -128,7 +128,7 @@ class Platform:
         values = np.hstack([self.wrench.force, self.wrench.about(self.point)]) * on[:, None]
         if np.isfinite(cutoff_hz):
             channels = tuple(Channel(f"wrench_{place}", "signal", "1") for place in range(6))
-            values = lowpassed(Recording(self.time, values, channels), cutoff_hz).values
+            values = low_pass(Recording(self.time, values, channels), cutoff_hz).values
         return Wrench.at(self.point, values[:, :3], values[:, 3:])
 
 

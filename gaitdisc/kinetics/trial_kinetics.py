@@ -13,12 +13,12 @@ from gaitdisc.kinematics.pose import Pose
 from gaitdisc.kinetics.body_inertia import Person
 from gaitdisc.kinetics.joint_moments import FootLoad, KineticsSettings, Leg, foot_loads, joint_moments, legs, swings
 from gaitdisc.kinetics.newton_euler import GRAVITY
-from gaitdisc.kinetics.plate_steps import FootPath, PlateStep, Weight, empty_findings, plate_steps, weighed_steps
+from gaitdisc.kinetics.plate_steps import FootPath, PlateStep, Weight, empty_findings, plate_steps, weigh_steps
 from gaitdisc.kinetics.platform import platforms
 from gaitdisc.recording import Finding, Recording, Trial
 from gaitdisc.recording.arrays import Values
-from gaitdisc.signals.butterworth import lowpassed
-from gaitdisc.signals.derivatives import differentiated
+from gaitdisc.signals.butterworth import low_pass
+from gaitdisc.signals.derivatives import derivative
 from gaitdisc.signals.direction import marker_position
 
 # of body weight; walks at hand reach 11 % and, where only one foot's stance is seen, 9 %: studies/results
@@ -135,7 +135,7 @@ def trial_kinetics(
     steps, airborne, up = plate_steps(found, feet), swings(trial, feet), found[0].up
     if "pelvis" in poses:
         weight = Weight(person.weighed_n or person.kg * GRAVITY, time, poses["pelvis"].origin @ up)
-        steps = weighed_steps(steps, found, airborne, weight)
+        steps = weigh_steps(steps, found, airborne, weight)
     left_out = [finding for step in steps if (finding := step.finding(file))]
     if not any(step.clean for step in steps):
         reasons = "; ".join(f"{one.platform} at {one.start:.2f} s: {one.reason}" for one in steps[:3])
@@ -155,8 +155,8 @@ def trial_kinetics(
             mean = np.mean([marker_position(markers, name) for name in trunk], axis=0)
             channels = tuple(Channel(f"trunk.{axis}", "marker", "m") for axis in "xyz")
             carried = Recording(time, mean, channels, source=markers.source)
-            smooth = lowpassed(carried, cutoff_hz) if np.isfinite(cutoff_hz) else carried
-            acceleration = differentiated(smooth.values, markers.rate_hz, 2)
+            smooth = low_pass(carried, cutoff_hz) if np.isfinite(cutoff_hz) else carried
+            acceleration = derivative(smooth.values, markers.rate_hz, 2)
         balance = force_balance(both, alike, up, person, acceleration)
     findings = (*empty_findings(found, file), *left_out, balance.finding(file))
     moments = replace(moments, subject=trial.subject, condition=trial.condition, source=markers.source)

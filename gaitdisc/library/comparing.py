@@ -14,7 +14,7 @@ from gaitdisc.comparison.compare import compare_walks
 from gaitdisc.comparison.compare_recordings import compare_files
 from gaitdisc.comparison.mismatch import Smallest
 from gaitdisc.errors import ShapeError
-from gaitdisc.library.walks import Walk, trial_of
+from gaitdisc.library.walks import Walk, make_trial
 from gaitdisc.processing.walk_pair import walk_pair
 from gaitdisc.recording.arrays import real_array
 from gaitdisc.recording.recording import several
@@ -85,7 +85,7 @@ def compare(
     smallest = Smallest(smallest_deg, smallest_n_m_per_kg)
     if isinstance(first, Path | str) and isinstance(second, Path | str):
         return compare_files(Path(first), Path(second), several(channels), cutoff_hz, detector, smallest)
-    walks = walk_pair(trial_of(first), trial_of(second), cutoff_hz, detector)
+    walks = walk_pair(make_trial(first), make_trial(second), cutoff_hz, detector)
     return compare_walks(walks[0], walks[1], several(channels), smallest=smallest)
 
 

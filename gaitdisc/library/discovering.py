@@ -7,12 +7,12 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from gaitdisc.discovery.catalogue import Request
-from gaitdisc.discovery.discover_files import discovered
+from gaitdisc.discovery.discover_files import find_missing
 from gaitdisc.errors import LOG, SchemaError, SimulationError
-from gaitdisc.library.simulating import ModelLike, model_of
+from gaitdisc.library.simulating import ModelLike, as_model
 from gaitdisc.recording import Recording
 from gaitdisc.simulation.measured import Measured
-from gaitdisc.simulation.measured_table import measured_of_recordings, measured_of_table, read_measured
+from gaitdisc.simulation.measured_table import measure_recordings, measure_table, read_measured
 from gaitdisc.simulation.python_simulation import PythonSimulation
 from gaitdisc.simulation.simulation import Simulation
 from gaitdisc.simulation.simulation_file import names_engine
@@ -84,17 +84,17 @@ def discover(
     request = Request.read(None if catalogue is None else Path(catalogue), tuple(effects), alpha, progress or LOG.info)
     if isinstance(model, Path | str) and names_engine(model):
         return _of_engine(Path(model), data, request)
-    simulation = model_of(model)
-    measured, files = _measured(data, simulation)
+    simulation = as_model(model)
+    measured, files = _measure(data, simulation)
     if isinstance(model, Path | str):
         files[Path(model)] = "simulation"
     if isinstance(simulation, PythonSimulation) and simulation.manner:
         request.progress(simulation.manner)
-    return discovered(simulation, measured, request, files)
+    return find_missing(simulation, measured, request, files)
 
 
 def _of_engine(model: Path, data: Any, request: Request) -> tuple[Discovery, Simulation]:
-    from gaitdisc.discovery.discover_engine import discover_engine, measured_of_file
+    from gaitdisc.discovery.discover_engine import discover_engine, read_trials
     from gaitdisc.engines.tracked_mapping import read_tracked
 
     walk = read_tracked(model)
@@ -111,26 +111,26 @@ def _of_engine(model: Path, data: Any, request: Request) -> tuple[Discovery, Sim
         return answered.found, answered.augmented
 
     def read(mapping: Simulation) -> Measured:
-        return measured_of_file(Path(data), mapping) if isinstance(data, Path | str) else _measured(data, mapping)[0]
+        return read_trials(Path(data), mapping) if isinstance(data, Path | str) else _measure(data, mapping)[0]
 
     files = {Path(data): "measured table"} if isinstance(data, Path | str) else {}
     answer = discover_engine(model, read, request, files)
     return answer.found, answer.augmented
 
 
-def _measured(data: object, simulation: Simulation) -> tuple[Measured, dict[Path, str]]:
+def _measure(data: object, simulation: Simulation) -> tuple[Measured, dict[Path, str]]:
     if isinstance(data, Path | str):
         return read_measured(data, simulation), {Path(data): "measured table"}
     several: Any = data if isinstance(data, list | tuple) else [data]
     if several and all(isinstance(one, Recording) for one in several):
-        return measured_of_recordings(several, simulation), {}
+        return measure_recordings(several, simulation), {}
     import pandas as pd
 
     if isinstance(data, list | tuple) and data and all(isinstance(one, pd.DataFrame) for one in data):
-        trials = [_timed(one).assign(trial=number) for number, one in enumerate(data, 1)]
-        return measured_of_table(pd.concat(trials), simulation, "the table"), {}
+        trials = [_times(one).assign(trial=number) for number, one in enumerate(data, 1)]
+        return measure_table(pd.concat(trials), simulation, "the table"), {}
     if isinstance(data, pd.DataFrame):
-        return measured_of_table(_timed(data), simulation, "the table"), {}
+        return measure_table(_times(data), simulation, "the table"), {}
     raise SimulationError(
         "measured data must be a table, a file or recordings",
         f"found {type(data).__name__}",
@@ -138,5 +138,5 @@ def _measured(data: object, simulation: Simulation) -> tuple[Measured, dict[Path
     )
 
 
-def _timed(table: pd.DataFrame) -> pd.DataFrame:
+def _times(table: pd.DataFrame) -> pd.DataFrame:
     return table.reset_index() if "time" not in table and table.index.name == "time" else table

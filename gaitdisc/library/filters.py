@@ -10,12 +10,12 @@ import numpy as np
 from gaitdisc.channel import Channel
 from gaitdisc.errors import SamplingError, ShapeError
 from gaitdisc.ingest.table import has_times
-from gaitdisc.library.walks import PLAIN, Kind, recording_of
+from gaitdisc.library.walks import PLAIN, Kind, make_recording
 from gaitdisc.recording import Recording, Trial
 from gaitdisc.recording.arrays import real_array
-from gaitdisc.signals.butterworth import KINEMATICS_HZ, highpassed, lowpassed
-from gaitdisc.signals.derivatives import differentiated_recording
-from gaitdisc.signals.emg import ENVELOPE_HZ, HIGHPASS_HZ, enveloped
+from gaitdisc.signals.butterworth import KINEMATICS_HZ, high_pass, low_pass
+from gaitdisc.signals.derivatives import differentiate_recording
+from gaitdisc.signals.emg import ENVELOPE_HZ, HIGHPASS_HZ, envelopes
 from gaitdisc.signals.gaps import MAX_SPLINE_S
 
 if TYPE_CHECKING:
@@ -78,7 +78,7 @@ def lowpass(
     >>> bool(np.abs(gd.lowpass(slow + fast, cutoff_hz=6.0, rate_hz=100.0) - slow)[100:400].max() < 0.01)
     True
     """
-    return _in_its_form(signal, rate_hz, lambda recording: lowpassed(recording, cutoff_hz, order, max_gap_s))
+    return _in_its_form(signal, rate_hz, lambda recording: low_pass(recording, cutoff_hz, order, max_gap_s))
 
 
 def highpass(
@@ -121,7 +121,7 @@ def highpass(
     >>> bool(np.abs(gd.highpass(slow + fast, cutoff_hz=40.0, rate_hz=1000.0) - fast)[100:1900].max() < 0.01)
     True
     """
-    return _in_its_form(signal, rate_hz, lambda recording: highpassed(recording, cutoff_hz, order, max_gap_s))
+    return _in_its_form(signal, rate_hz, lambda recording: high_pass(recording, cutoff_hz, order, max_gap_s))
 
 
 def envelope(
@@ -168,7 +168,7 @@ def envelope(
     >>> round(float(gd.envelope(emg, rate_hz=1000.0)[1000]), 2)  # mean of a rectified sine: 2 / pi
     0.64
     """
-    return _in_its_form(emg, rate_hz, lambda recording: enveloped(recording, highpass_hz, lowpass_hz, order), EMG)
+    return _in_its_form(emg, rate_hz, lambda recording: envelopes(recording, highpass_hz, lowpass_hz, order), EMG)
 
 
 def differentiate(signal: Signal, order: int = 1, rate_hz: float | None = None) -> Signal:
@@ -205,14 +205,14 @@ def differentiate(signal: Signal, order: int = 1, rate_hz: float | None = None) 
     >>> bool(np.nanmax(np.abs(gd.differentiate(np.sin(t), rate_hz=100.0) - np.cos(t))) < 1e-6)
     True
     """
-    return _in_its_form(signal, rate_hz, lambda recording: differentiated_recording(recording, order))
+    return _in_its_form(signal, rate_hz, lambda recording: differentiate_recording(recording, order))
 
 
 def _in_its_form(
     signal: Any, rate_hz: float | None, done: Callable[[Recording], Recording], kind: Kind | None = None
 ) -> Any:
     if isinstance(signal, Recording | Trial):
-        recording = recording_of(signal)  # of a trial it says which stream to give
+        recording = make_recording(signal)  # of a trial it says which stream to give
         _check_rate(rate_hz, recording)
         return done(recording)
     if hasattr(signal, "to_frame"):  # a column of a DataFrame
@@ -220,7 +220,7 @@ def _in_its_form(
     if hasattr(signal, "columns"):
         timed = has_times(signal)
         time = None if timed else _times(len(signal), rate_hz)
-        recording = recording_of(signal if timed else signal.set_axis(time).rename_axis("time"), kind)
+        recording = make_recording(signal if timed else signal.set_axis(time).rename_axis("time"), kind)
         _check_rate(rate_hz, recording)
         made, filtered = done(recording), signal.copy()
         labels = [label for label in signal.columns if str(label) in made.names]  # not that of the times

@@ -8,12 +8,12 @@ from pathlib import Path
 
 from gaitdisc.ingest.c3d_kinetics import body_measures_in
 from gaitdisc.ingest.reading import read_trial
-from gaitdisc.kinematics.motion import moved_body
+from gaitdisc.kinematics.motion import move_body
 from gaitdisc.kinetics.body_inertia import Person
 from gaitdisc.kinetics.joint_moments import KineticsSettings
 from gaitdisc.kinetics.trial_kinetics import trial_kinetics
-from gaitdisc.library.walks import Walk, trial_of
-from gaitdisc.processing.markers_to_moments import foot_paths_of
+from gaitdisc.library.walks import Walk, make_trial
+from gaitdisc.processing.markers_to_moments import find_foot_paths
 from gaitdisc.processing.side_checks import check_weight, standing_weight_n
 from gaitdisc.recording import Recording, Trial
 from gaitdisc.recording.trial import BodyMeasures
@@ -59,11 +59,9 @@ def angles(
     >>> import gaitdisc as gd
     >>> gd.angles("walk.c3d", "static.c3d")["knee_angle_r"]  # doctest: +SKIP
     """
-    trial = trial_of(walk)
+    trial = make_trial(walk)
     standing, measures = _standing(static)
-    found = moved_body(
-        trial.stream("markers"), standing.stream("markers"), marker_set, measures, forward, joints
-    ).angles
+    found = move_body(trial.stream("markers"), standing.stream("markers"), marker_set, measures, forward, joints).angles
     return replace(found, subject=trial.subject, condition=trial.condition)
 
 
@@ -112,14 +110,14 @@ def moments(
     >>> import gaitdisc as gd
     >>> gd.moments("walk.c3d", "static.c3d", mass_kg=70.0)["knee_angle_r_moment"]  # doctest: +SKIP
     """
-    trial = trial_of(walk)
+    trial = make_trial(walk)
     standing, measures = _standing(static)
     weighed_n = standing_weight_n(standing)  # whoever stands on plates is weighed there
     person = Person(measures.mass_kg if mass_kg is None else mass_kg, sex, measures.height_m, weighed_n)
     check_weight(weighed_n, person.kg, standing.name)
-    moved = moved_body(trial.stream("markers"), standing.stream("markers"), marker_set, measures)
+    moved = move_body(trial.stream("markers"), standing.stream("markers"), marker_set, measures)
     settings = KineticsSettings(force_cutoff_hz=force_cutoff_hz)
-    return trial_kinetics(trial, moved.poses, foot_paths_of(moved), person, settings).moments
+    return trial_kinetics(trial, moved.poses, find_foot_paths(moved), person, settings).moments
 
 
 def _standing(static: Trial | Path | str) -> tuple[Trial, BodyMeasures]:

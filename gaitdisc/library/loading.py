@@ -5,8 +5,8 @@ from __future__ import annotations
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from gaitdisc.library.walks import Walk, trial_of
-from gaitdisc.processing.inspection import inspected_file, inspected_trial
+from gaitdisc.library.walks import Walk, make_trial
+from gaitdisc.processing.inspection import inspect_file, inspect_trial
 from gaitdisc.saved.kind import load_saved
 
 if TYPE_CHECKING:
@@ -70,6 +70,6 @@ def check(walk: Walk) -> Inspection:
     'green'
     """
     if isinstance(walk, Path | str):
-        return inspected_file(Path(walk))
-    trial = trial_of(walk)
-    return inspected_trial(trial, trial.name)
+        return inspect_file(Path(walk))
+    trial = make_trial(walk)
+    return inspect_trial(trial, trial.name)

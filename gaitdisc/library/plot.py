@@ -10,9 +10,9 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from gaitdisc.channel import hint_nearest, side_of
+from gaitdisc.channel import find_side, hint_nearest
 from gaitdisc.errors import ChannelError, ShapeError
-from gaitdisc.library.walks import recording_of
+from gaitdisc.library.walks import make_recording
 from gaitdisc.recording import Recording, Strides
 from gaitdisc.report.panels import axes_or_new
 
@@ -63,7 +63,7 @@ def recording(
     """
     from gaitdisc.processing.curves_figure import draw_recording
 
-    recording = recording_of(recording)
+    recording = make_recording(recording)
     names = [channels] if isinstance(channels, str) else list(channels or recording.names[:4])
     axes = axes_or_new(ax)
     draw_recording(axes, recording, names)
@@ -103,13 +103,13 @@ def cycles(recording: Recording | pd.DataFrame, strides: Strides, channel: str, 
     from gaitdisc.processing.page import draw_cycles
 
     _refuse_other(strides, "Strides", "gaitdisc.cycles")
-    one = recording_of(recording).selected([channel])
+    one = make_recording(recording).selected([channel])
     every = strides.normalised(one)[:, :, 0]
     every = every[np.isfinite(every).all(axis=1)]
     axes = axes_or_new(ax)
     if len(every):
         sd = every.std(axis=0, ddof=1) if len(every) > 1 else np.zeros(every.shape[1])
-        draw_cycles(axes, every, every.mean(axis=0), sd, side_of(channel))
+        draw_cycles(axes, every, every.mean(axis=0), sd, find_side(channel))
     _stride_axis(axes, channel, one.channels[0].unit)
     return axes
 
@@ -147,10 +147,10 @@ def curves(run: ResponseRun, channel: str, participant: str | None = None, ax: A
 
     _refuse_other(run, "ResponseRun", "gaitdisc.fit_response")
     numbers = curve_numbers(run, participant or _first(run.reported))
-    numbers = numbers[numbers["channel"] == _known(channel, numbers["channel"])]
+    numbers = numbers[numbers["channel"] == _check_known(channel, numbers["channel"])]
     axes = axes_or_new(ax)
-    draw_walks(axes, numbers, SIDES[side_of(channel)].colour)
-    axes.legend(handles=[walks_key(run)[0], walks_key(run)[1 if side_of(channel) == "l" else 2]], frameon=False)
+    draw_walks(axes, numbers, SIDES[find_side(channel)].colour)
+    axes.legend(handles=[walks_key(run)[0], walks_key(run)[1 if find_side(channel) == "l" else 2]], frameon=False)
     _stride_axis(axes, channel, str(numbers["unit"].iloc[0]))
     return axes
 
@@ -215,17 +215,17 @@ def discovery(found: Discovery, channel: str | None = None, left: bool = False, 
     """
     from gaitdisc.discovery.figure import (
         discovery_key,
+        display_runs,
         draw_left,
         draw_runs,
         noise_floor,
-        shown_runs,
-        stretch_of,
+        pick_stretch,
     )
 
     _refuse_other(found, "Discovery", "gaitdisc.discover")
-    name = _known(channel, found.channels) if channel else found.held_out.ranked[0]
+    name = _check_known(channel, found.channels) if channel else found.held_out.ranked[0]
     unit, floor = noise_floor(found, name)
-    numbers, axes = stretch_of(shown_runs(found), name), axes_or_new(ax)
+    numbers, axes = pick_stretch(display_runs(found), name), axes_or_new(ax)
     if left:
         draw_left(axes, numbers, name, floor)
     else:
@@ -269,12 +269,12 @@ def mismatch(found: Mismatch, channel: str, gap: bool = False, ax: Axes | None =
     from gaitdisc.report.panels import SIDES
 
     _refuse_other(found, "Mismatch", "gaitdisc.compare")
-    numbers = mismatch_numbers(found, [_known(channel, found.names)])
+    numbers = mismatch_numbers(found, [_check_known(channel, found.names)])
     axes, draw = axes_or_new(ax), draw_gap if gap else draw_both
-    draw(axes, numbers, found.regions_of(channel), SIDES[side_of(channel)].colour)
+    draw(axes, numbers, found.regions_of(channel), SIDES[find_side(channel)].colour)
     key = mismatch_key(found, "gap" if gap else "curves")
     if not gap:  # one channel has one side
-        own = key[1 if side_of(channel) == "l" else 2]
+        own = key[1 if find_side(channel) == "l" else 2]
         own.set_label(found.first)
         key = [key[0], own, key[-1]]
     axes.legend(handles=key, frameon=False)
@@ -310,11 +310,11 @@ def reconstruction(done: Reconstruction, state: str, participant: str | None = N
     >>> import gaitdisc as gd
     >>> gd.plot.reconstruction(gd.load("reconstruct"), "knee_angle_l")  # doctest: +SKIP
     """
-    from gaitdisc.reconstruction.page import draw_state, shown_curves, states_key
+    from gaitdisc.reconstruction.page import draw_state, pick_curves, states_key
 
     _refuse_other(done, "Reconstruction", "`gaitdisc reconstruct`")
-    numbers = shown_curves(done, participant or _first(done.participants))
-    numbers = numbers[numbers["state"] == _known(state, [channel.name for channel in done.states])]
+    numbers = pick_curves(done, participant or _first(done.participants))
+    numbers = numbers[numbers["state"] == _check_known(state, [channel.name for channel in done.states])]
     axes = axes_or_new(ax)
     draw_state(axes, numbers)
     axes.legend(handles=states_key(list(dict.fromkeys(numbers["model"]))), frameon=False)
@@ -390,7 +390,7 @@ def _stride_axis(axes: Axes, channel: str, unit: str) -> None:
     axes.set_title(label(channel))
 
 
-def _known(name: str, among: object) -> str:
+def _check_known(name: str, among: object) -> str:
     names = list(dict.fromkeys(str(one) for one in among))  # type: ignore[attr-defined]
     if name not in names:
         raise ChannelError(

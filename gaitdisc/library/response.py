@@ -8,8 +8,8 @@ from dataclasses import asdict, replace
 from gaitdisc.errors import ChannelError, SamplingError
 from gaitdisc.ingest.study import Conditions, Participant, Study
 from gaitdisc.ingest.study_settings import ANGLES, OUTPUTS, HeldOut, Models
-from gaitdisc.library.walks import Walk, trial_of
-from gaitdisc.processing.filter_null import filter_null_of
+from gaitdisc.library.walks import Walk, make_trial
+from gaitdisc.processing.filter_null import make_filter_null
 from gaitdisc.processing.pooled_cycles import WALK
 from gaitdisc.processing.process import processed
 from gaitdisc.recording import Trial
@@ -17,7 +17,7 @@ from gaitdisc.recording.recording import several
 from gaitdisc.response.fit_response import fit_response as fitted
 from gaitdisc.response.participant_response import RESPONSE, ResponseRun
 from gaitdisc.run.run_study import response_settings
-from gaitdisc.saved.provenance import made_now
+from gaitdisc.saved.provenance import provenance_now
 
 WITHOUT, WITH = "nominal", "exo"
 
@@ -76,7 +76,7 @@ def fit_response(
     >>> run = gd.fit_response("nominal.c3d", "exo.c3d", emg=["emg_sol_r"])  # doctest: +SKIP
     >>> run.to_frame()  # doctest: +SKIP
     """
-    trials = {word: replace(trial_of(one), condition=word) for word, one in ((WITHOUT, nominal), (WITH, exo))}
+    trials = {word: replace(make_trial(one), condition=word) for word, one in ((WITHOUT, nominal), (WITH, exo))}
     if not 0 < held_out_share < 1:
         raise SamplingError("held_out_share must lie in 0 to 1", f"it is {held_out_share!r}", "Write 0.1 for 10 %.")
     inputs = _angles(trials, several(outputs), None if angles is None else several(angles))
@@ -85,12 +85,12 @@ def fit_response(
     conditions, held_out = Conditions(nominal=WITHOUT, device=WITH), HeldOut(share=held_out_share)
     study = Study(conditions=conditions, models=models, held_out=held_out, participants=(Participant(id=person),))
     walks = {word: processed(trial, study) for word, trial in trials.items()}
-    settings, null = response_settings(study), filter_null_of(walks[WITH], study.filters)
+    settings, null = response_settings(study), make_filter_null(walks[WITH], study.filters)
     response = fitted(walks[WITHOUT].trajectory, walks[WITH].trajectory, settings, null, banded=True)
     summaries = tuple(replace(walk.summary(), subject=person) for walk in walks.values())
     files = {name: sha256 for walk in summaries for name, sha256 in walk.files.items()}
     made = {**study.public_settings(), "fits": asdict(settings)}
-    origin = made_now(made, seed, files, "chapter 4: response to a device")
+    origin = provenance_now(made, seed, files, "chapter 4: response to a device")
     fits = (replace(response, participant=person),)
     return ResponseRun(f"Response of {person}", WITHOUT, WITH, (), origin, {WALK.file: summaries, RESPONSE.file: fits})
 

@@ -11,16 +11,16 @@ from typing import TYPE_CHECKING, Any, cast
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from gaitdisc.channel import Channel, side_of
+from gaitdisc.channel import Channel, find_side
 from gaitdisc.engines.engine import Engine
-from gaitdisc.engines.mapping import replaced_inputs
+from gaitdisc.engines.mapping import replace_inputs
 from gaitdisc.engines.own_runs import observed
 from gaitdisc.engines.written import whole_model
 from gaitdisc.errors import ShapeError, SimulationError, UnitError
 from gaitdisc.ingest.table import has_times
-from gaitdisc.library.walks import recording_of
+from gaitdisc.library.walks import make_recording
 from gaitdisc.recording import Recording, Source
-from gaitdisc.recording.strides import interpolated
+from gaitdisc.recording.strides import interpolate
 from gaitdisc.simulation.compiled_simulation import Drive, Rows
 from gaitdisc.simulation.evaluating import Points
 from gaitdisc.simulation.functions import simulation_from_function
@@ -35,7 +35,7 @@ if TYPE_CHECKING:
 ModelLike = Path | str | Simulation | PythonSimulation | Callable[..., Any]
 
 
-def model_of(model: ModelLike) -> Simulation:
+def as_model(model: ModelLike) -> Simulation:
     """Simulation of what a script names.
 
     model: a simulation file, an object, or a Python function as `simulation_from_function` takes it
@@ -104,7 +104,7 @@ def simulate(
     if isinstance(model, Path | str) and names_engine(model):
         simulation, engine = whole_model(model)
     else:
-        simulation = model_of(model)
+        simulation = as_model(model)
     time = np.asarray(time, float)
     if time.ndim != 1 or len(time) < 3:
         raise ShapeError(
@@ -144,7 +144,7 @@ def _run_by(
     """States (time, state) by an engine's own integrator, and observed channels (time,)."""
     count, rate = len(engine.coordinates), _rate(time)
     q, v = start[None, :count], start[None, count:]
-    driven = replaced_inputs(simulation, time, driven, rate)
+    driven = replace_inputs(simulation, time, driven, rate)
     held = engine.along(np.repeat(q, 2, axis=0), np.zeros((2, count)), driven[:2], rate).at(np.zeros(1, np.intp))
     states = engine.run(replace(engine.near(held, q, v), t=time[:1]), driven[None], rate)[0]
     lost = np.flatnonzero(~np.isfinite(states).all(axis=1))
@@ -177,7 +177,7 @@ def _driven(simulation: Simulation, time: NDArray[np.float64], inputs: Any) -> N
         )
     table: Any = given
     if hasattr(table, "columns") and has_times(table):  # it is read at the simulation's times
-        given = recording_of(table.select_dtypes("number"))
+        given = make_recording(table.select_dtypes("number"))
     known = given.names if isinstance(given, Recording) else [str(name) for name in given]
     columns = []
     for name in names:
@@ -188,7 +188,7 @@ def _driven(simulation: Simulation, time: NDArray[np.float64], inputs: Any) -> N
                 f"Add it: inputs={{{name!r}: values}}.",
             )
         if isinstance(given, Recording):
-            values = interpolated(given.time, given.selected([name]).values, time)[:, 0]
+            values = interpolate(given.time, given.selected([name]).values, time)[:, 0]
         else:
             values = np.asarray(given[name](time) if callable(given[name]) else given[name], float)
             values = np.full(len(time), values) if values.ndim == 0 else values
@@ -236,7 +236,7 @@ def _channel(name: str, simulation: Simulation) -> Channel:
     units = {part.name: part.unit for part in (*simulation.states, *simulation.inputs)}
     observed = dict(simulation.observations).get(name, name)
     unit = simulation.sensor(name).unit or units.get(name) or units.get(observed.strip(), "1")
-    side = side_of(name)
+    side = find_side(name)
     try:
         return Channel(name, "signal", unit, side)
     except UnitError:

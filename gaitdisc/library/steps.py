@@ -9,8 +9,8 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from gaitdisc.errors import StrideError
-from gaitdisc.library.walks import Walk, recording_of, trial_of
-from gaitdisc.processing.contact_choice import chosen_contacts, seen_contacts
+from gaitdisc.library.walks import Walk, make_recording, make_trial
+from gaitdisc.processing.contact_choice import choose_contacts, find_contacts
 from gaitdisc.recording import Recording, Strides, Trial
 from gaitdisc.signals.contacts import Contacts
 from gaitdisc.signals.strides import cut_strides
@@ -49,7 +49,7 @@ def contacts(trial: Walk, detector: str = "auto") -> dict[str, Contacts]:
     >>> {side: one.detector for side, one in sorted(gd.contacts(walk).items())}
     {'l': 'force', 'r': 'force'}
     """
-    return dict(chosen_contacts(trial_of(trial), detector).contacts)
+    return dict(choose_contacts(make_trial(trial), detector).contacts)
 
 
 def contacts_by_detector(trial: Walk) -> dict[str, dict[str, Contacts]]:
@@ -73,7 +73,7 @@ def contacts_by_detector(trial: Walk) -> dict[str, dict[str, Contacts]]:
     >>> found["force"]["r"].compared(found["angles"]["r"]).median_ms < 0  # angles see a contact early
     True
     """
-    return seen_contacts(trial_of(trial))[0]
+    return find_contacts(make_trial(trial))[0]
 
 
 def cycles(
@@ -121,17 +121,21 @@ def cycles(
     >>> strides.normalised(walk.stream("kinematics")).shape[1]
     101
     """
-    found = chosen_contacts(trial_of(trial), detector).contacts if contacts is None else _given(contacts, side, trial)
+    found = (
+        choose_contacts(make_trial(trial), detector).contacts
+        if contacts is None
+        else _pick_given(contacts, side, trial)
+    )
     if side not in found:
         raise StrideError(
             f"cycles of side {side!r} begin at its initial contacts",
             f"contacts were found for side {', '.join(sorted(found)) or 'none'}",
             "Use the other side ('r' or 'l'), or another detector.",
         )
-    return cut_strides(found[side], None if recording is None else recording_of(recording), min_s, max_s)
+    return cut_strides(found[side], None if recording is None else make_recording(recording), min_s, max_s)
 
 
-def _given(contacts: Any, side: str, trial: Walk) -> dict[str, Contacts]:
+def _pick_given(contacts: Any, side: str, trial: Walk) -> dict[str, Contacts]:
     """Contacts by side, as they were given."""
     if isinstance(contacts, Mapping):
         return dict(contacts)
@@ -139,7 +143,7 @@ def _given(contacts: Any, side: str, trial: Walk) -> dict[str, Contacts]:
         return {contacts.side: contacts}
     time = np.asarray(contacts, float)
     plain = hasattr(trial, "columns")  # a table in which nothing has to be found may have any names
-    walk = Trial("the table", {"signals": recording_of(trial)}) if plain else trial_of(trial)  # type: ignore[arg-type]
+    walk = Trial("the table", {"signals": make_recording(trial)}) if plain else make_trial(trial)  # type: ignore[arg-type]
     latest = max((one.time[-1] for one in walk.streams.values()), default=np.inf)
     if time.size and np.nanmax(time) > latest:
         raise StrideError(

@@ -7,15 +7,15 @@ from pathlib import Path
 from typing import TYPE_CHECKING, TypeAlias, Union
 
 from gaitdisc.channel import Channel, vocabulary
-from gaitdisc.cohort.cohort import the_twelve, walks_of
+from gaitdisc.cohort.cohort import make_walks, the_twelve
 from gaitdisc.cohort.demonstration import write_trial
 from gaitdisc.errors import ChannelError, ShapeError
-from gaitdisc.ingest.columns import stream_of
+from gaitdisc.ingest.columns import find_stream
 from gaitdisc.ingest.reading import read_trial
 from gaitdisc.ingest.table import frame_columns
-from gaitdisc.own_files import guarded
+from gaitdisc.own_files import guard
 from gaitdisc.recording import Recording, Trial
-from gaitdisc.whole_file import written_together
+from gaitdisc.whole_file import write_together
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -25,7 +25,7 @@ PLAIN = ("signal", "1")
 Kind = tuple[str, str]  # quantity and unit
 
 
-def recording_of(signal: Recording | Trial | pd.DataFrame, kind: Kind | None = None) -> Recording:
+def make_recording(signal: Recording | Trial | pd.DataFrame, kind: Kind | None = None) -> Recording:
     """Recording of every column of a table beside its times, under its own names; a recording as it is.
 
     Names of the vocabulary have their unit, all others none, where no kind is given.
@@ -50,14 +50,14 @@ def recording_of(signal: Recording | Trial | pd.DataFrame, kind: Kind | None = N
     return Recording(columns.time, columns.values, channels)
 
 
-def trial_of(walk: Walk) -> Trial:
+def make_trial(walk: Walk) -> Trial:
     """Trial of a walk: itself, what its files or tables hold, or a recording sorted into streams."""
     if isinstance(walk, Trial):
         return walk
     if not isinstance(walk, Recording):
         return read_trial(walk)
-    keys = dict.fromkeys(map(stream_of, walk.channels))
-    streams = {key: walk.selected_by(lambda channel, key=key: stream_of(channel) == key) for key in keys}
+    keys = dict.fromkeys(map(find_stream, walk.channels))
+    streams = {key: walk.selected_by(lambda channel, key=key: find_stream(channel) == key) for key in keys}
     return Trial(walk.source.file or "the recording", streams, subject=walk.subject, condition=walk.condition)
 
 
@@ -81,7 +81,7 @@ def example_walks(duration_s: float = 20.0) -> dict[str, Trial]:
     >>> sorted(gd.example_walks(5.0))
     ['exo', 'nominal']
     """
-    return walks_of(the_twelve()[0], duration_s).trials
+    return make_walks(the_twelve()[0], duration_s).trials
 
 
 def example_files(folder: Path | str, duration_s: float = 20.0, overwrite: bool = False) -> dict[str, tuple[Path, ...]]:
@@ -113,5 +113,5 @@ def example_files(folder: Path | str, duration_s: float = 20.0, overwrite: bool 
     """
     place = Path(folder)
     walks = example_walks(duration_s)
-    with guarded("gd.example_files", overwrite=overwrite), written_together():
+    with guard("gd.example_files", overwrite=overwrite), write_together():
         return {word: tuple(place / name for name in write_trial(trial, place, word)) for word, trial in walks.items()}

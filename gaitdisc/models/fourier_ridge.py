@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from gaitdisc.errors import TrainingError
-from gaitdisc.recording import Samples, Scale, scale_of
+from gaitdisc.recording import Samples, Scale, fit_scale
 
 PENALTIES = tuple(10.0**power for power in range(-8, 2))
 WIDTHS = (0.5, 1.0, 2.0, 4.0)  # of the kernel, in typical distances between two samples
@@ -62,7 +62,7 @@ def fit_fourier_ridge(training: Samples, check: Samples, features: int = 0, seed
             "the validation part has no samples",
             "Record longer, or give validation a larger share.",
         )
-    x_scale, y_scale = scale_of(training.x), scale_of(training.y)
+    x_scale, y_scale = fit_scale(training.x), fit_scale(training.y)
     part, checked = (
         (x_scale.scaled(s.x).astype(np.float32), y_scale.scaled(s.y).astype(np.float32)) for s in (training, check)
     )

@@ -206,7 +206,7 @@ def _adam(weights, g, moments, matrices, pace):
 
 
 @inlined
-def _gathered(values, rows, into):
+def _gather(values, rows, into):
     for k in range(rows.size):
         row = values[rows[k]]
         for column in range(row.size):
@@ -251,8 +251,8 @@ def descend_epoch(
         g[:] = F32(0)
         for start in range(0, rows.size, BLOCK):
             block = rows[start : start + BLOCK]
-            _gathered(x, block, x_block)
-            _gathered(y, block, y_block)
+            _gather(x, block, x_block)
+            _gather(y, block, y_block)
             gradient(weights, added, x_block[: block.size], y_block[: block.size], hidden, rows.size)
             for k in range(g.size):
                 g[k] += added[k]

@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from gaitdisc.errors import TrainingError
-from gaitdisc.recording import Samples, Scale, scale_of
+from gaitdisc.recording import Samples, Scale, fit_scale
 
 PENALTIES = tuple(10.0**power for power in range(-7, 2))
 PHASE = "phi"
@@ -74,7 +74,7 @@ def fit_ridge(samples: Samples, harmonics: int = 8, inner_share: float = 0.15) -
 
 def _solved(samples: Samples, harmonics: int, penalty: float) -> tuple[Scale, NDArray[np.float64], NDArray[np.float64]]:
     columns = _columns(samples.x, samples.inputs, harmonics)
-    scale = scale_of(columns)
+    scale = fit_scale(columns)
     scaled, offset = scale.scaled(columns), samples.y.mean(axis=0)
     normal = scaled.T @ scaled / len(scaled) + penalty * np.eye(scaled.shape[1])
     return scale, np.linalg.solve(normal, scaled.T @ (samples.y - offset) / len(scaled)), offset

@@ -80,13 +80,13 @@ def torch_threads(count: int) -> Iterator[None]:
 
 
 @contextmanager
-def pinned_threads(count: int) -> Iterator[None]:
+def pin_threads(count: int) -> Iterator[None]:
     """Let torch and every BLAS use that many threads on the CPU, and as many as before when the block ends.
 
     Matrices of 64 columns are slower on two threads than on one, and two trainings beside each other slower still.
 
     >>> from threadpoolctl import threadpool_info
-    >>> with pinned_threads(1):
+    >>> with pin_threads(1):
     ...     {pool["num_threads"] for pool in threadpool_info() if pool["user_api"] == "blas"}
     {1}
     """

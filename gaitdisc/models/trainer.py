@@ -16,9 +16,9 @@ from torch import Tensor, nn
 
 from gaitdisc.errors import TrainingError
 from gaitdisc.models.descent import Descent, descend
-from gaitdisc.models.trained_network import TrainedNetwork, pinned_threads
-from gaitdisc.models.training_settings import ScaledSamples, TrainingSettings, schedule_of
-from gaitdisc.recording import Samples, Scale, scale_of
+from gaitdisc.models.trained_network import TrainedNetwork, pin_threads
+from gaitdisc.models.training_settings import ScaledSamples, TrainingSettings, make_schedule
+from gaitdisc.recording import Samples, Scale, fit_scale
 
 LEAST_SAMPLES = 50
 LEAST_BEFORE_INNER = 20
@@ -76,10 +76,10 @@ def train(
     samples.trainable(LEAST_SAMPLES, settings.missing_inputs)
     before, inner = samples.last_block(settings.inner_share, SEAM_S) if check is None else (samples, check)
     before.trainable(LEAST_BEFORE_INNER, settings.missing_inputs)
-    device = chosen_device(settings.device)
-    x_scale, y_scale = scale_of(before.x), scale_of(before.y)
+    device = choose_device(settings.device)
+    x_scale, y_scale = fit_scale(before.x), fit_scale(before.y)
     part, checked, whole = (_tensors(s, x_scale, y_scale, device) for s in (before, inner, samples))
-    with pinned_threads(settings.threads), torch.random.fork_rng():
+    with pin_threads(settings.threads), torch.random.fork_rng():
         best = _best_candidate(build, part, checked, settings, progress)
         if settings.solved:
             solve_readout(best.network, whole, best.penalty)
@@ -98,13 +98,13 @@ def train(
     )
 
 
-def resolved(model: TrainedNetwork, samples: Samples, inner_share: float = 0.15) -> TrainedNetwork:
+def resolve(model: TrainedNetwork, samples: Samples, inner_share: float = 0.15) -> TrainedNetwork:
     """Return a network with the same hidden layers and its last layer solved for other samples."""
     before, inner = samples.last_block(inner_share, SEAM_S)
     scales = model.x_scale, model.y_scale
     part, checked, whole = (_tensors(each, *scales, torch.device("cpu")) for each in (before, inner, samples))
     network = copy.deepcopy(model.network)
-    with pinned_threads(1):
+    with pin_threads(1):
         solve_readout(network, whole, choose_penalty(network, part, checked)[0])
     return replace(model, network=network)
 
@@ -129,11 +129,11 @@ def _best_candidate(
     count = len(settings.decays)
     torch.manual_seed(settings.seed)
     network = build(part.x.shape[1], part.y.shape[1]).to(part.x.device)
-    schedule = schedule_of(len(part.x), settings.decays[0], settings)
+    schedule = make_schedule(len(part.x), settings.decays[0], settings)
     best = None
     for number, decay in enumerate(settings.decays):
         shared = partial(lambda number, fraction: progress((number + fraction) / count), number)
-        steps = schedule if number == 0 else schedule.continued(decay)
+        steps = schedule if number == 0 else schedule.continue_at(decay)
         descent = descend(network, part, check, steps, settings, shared)
         scored = choose_penalty(network, part, check) if settings.solved else (0.0, min(descent.losses))
         candidate = _Candidate(network, descent, decay, *scored)
@@ -144,12 +144,12 @@ def _best_candidate(
     return best
 
 
-def chosen_device(wanted: str) -> torch.device:
+def choose_device(wanted: str) -> torch.device:
     """Device to train on.
 
     wanted: `cpu`, `cuda`, or `auto`: the GPU where there is one
 
-    >>> chosen_device("cpu")
+    >>> choose_device("cpu")
     device(type='cpu')
     """
     there = torch.cuda.is_available()

@@ -12,7 +12,7 @@ from gaitdisc.errors import ChannelError, GaitdiscError, StrideError
 from gaitdisc.recording import Finding, Recording, Trial
 from gaitdisc.signals.contact_movement import angle_contacts, marker_contacts
 from gaitdisc.signals.contacts import MATCH_S, Contacts, event_contacts, force_contacts, plate_contacts
-from gaitdisc.signals.direction import Direction, given_direction, walking_direction
+from gaitdisc.signals.direction import Direction, state_direction, walking_direction
 
 HEELS = {
     "r": ("RHEE", "R.Heel", "RHEEL", "R_Heel", "RCAL", "RCALC"),
@@ -46,7 +46,7 @@ class ContactChoice:
         return next(iter(self.contacts.values())).detector
 
 
-def chosen_contacts(
+def choose_contacts(
     trial: Trial, detector: str = "auto", direction: str = "", body_weight_n: float | None = None
 ) -> ContactChoice:
     """Initial contacts by the detector requested, or by the best one that the trial allows.
@@ -68,7 +68,7 @@ def chosen_contacts(
     needed = "strides need initial contacts from force, events, markers or joint angles"
     if any(len(recording.time) < 2 for recording in trial.streams.values()):
         raise nothing_found(trial, needed, ["a single frame"])
-    seen, refused = seen_contacts(trial, direction, body_weight_n)
+    seen, refused = find_contacts(trial, direction, body_weight_n)
     seen, late = events_on_plates(seen, trial.name)
     strides = {name: count for name, contacts in seen.items() if (count := _stride_count(contacts))}
     why = refused if detector == "auto" else {detector: refused.get(detector)}
@@ -77,7 +77,7 @@ def chosen_contacts(
         raise why.get(detector) or nothing_found(trial, needed, reasons)
     chosen = detector if detector != "auto" else best_detector(PREFERRED, strides, seen)
     reference, offset_s = _offset(chosen, seen)
-    taken = seen[chosen] if offset_s is None else _moved(seen[chosen], offset_s)
+    taken = seen[chosen] if offset_s is None else _move(seen[chosen], offset_s)
     findings = [*late, *_findings(trial, chosen, seen, refused, reference)]
     if chosen in SEEN_LATE:
         by = "the median of the steps that " + ("a plate recorded" if reference == "force" else "the events contain")
@@ -94,14 +94,14 @@ def best_detector(order: Sequence[str], strides: Mapping[str, int], seen: Mappin
     for name in richer:  # which miss a contact that the file marks, or see one between them
         events, other = seen["events"], seen[name]
         pairs = [events[side].compared(other[side], MOST_OFFSET_S) for side in events if side in other]
-        differ = any(len(pair.missed) + len(pair.extra) for pair in pairs) or exchanged_contacts(events, other)
+        differ = any(len(pair.missed) + len(pair.extra) for pair in pairs) or find_exchanged_contacts(events, other)
         stand = stand and bool(differ)
     return next(
         name for name in order if name in strides and (strides[name] >= ENOUGH * most or (name == "events" and stand))
     )
 
 
-def exchanged_contacts(events: Mapping[str, Contacts], other: Mapping[str, Contacts]) -> dict[str, list[float]]:
+def find_exchanged_contacts(events: Mapping[str, Contacts], other: Mapping[str, Contacts]) -> dict[str, list[float]]:
     """Contacts of a foot [s] that lie where the file marks the other foot, and none of this one; sides with any."""
     found = {}
     for side, one in other.items():
@@ -131,7 +131,7 @@ def events_on_plates(
         what += f"; the events are used, because they are {lags[1]:.0f} ms from the markers' contacts"
         return dict(seen), [Finding("warning", "events and plates", file, what, "moments; check the plates' clock")]
     moved = {
-        side: replace(c, foot_off=c.foot_off - late / 1e3) for side, c in _moved(seen["events"], -late / 1e3).items()
+        side: replace(c, foot_off=c.foot_off - late / 1e3) for side, c in _move(seen["events"], -late / 1e3).items()
     }
     what += "; the plates are used, and all events are shifted onto them"
     return {**seen, "events": moved}, [Finding("warning", "events and plates", file, what, "phase; check the events")]
@@ -145,7 +145,7 @@ def _lag_ms(seen: Mapping[str, Mapping[str, Contacts]], one: str, other: str, wi
     return float(1e3 * np.median(both)) if len(both) else None
 
 
-def seen_contacts(
+def find_contacts(
     trial: Trial, direction: str = "", body_weight_n: float | None = None
 ) -> tuple[dict[str, dict[str, Contacts]], dict[str, GaitdiscError | None]]:
     """Contacts as each detector places them, and why a detector finds no stride of both feet.
@@ -189,7 +189,7 @@ def _offset(chosen: str, seen: Mapping[str, Mapping[str, Contacts]]) -> tuple[st
     return "", None
 
 
-def _moved(contacts: Mapping[str, Contacts], offset_s: float) -> dict[str, Contacts]:
+def _move(contacts: Mapping[str, Contacts], offset_s: float) -> dict[str, Contacts]:
     return {side: replace(one, time=one.time + offset_s) for side, one in contacts.items()}
 
 
@@ -215,7 +215,7 @@ def _force(trial: Trial, direction: str, body_weight_n: float | None) -> dict[st
     return plate_contacts(forces, markers, heels, way, body_weight_n, pelvis)
 
 
-def named_markers(markers: Recording) -> tuple[dict[str, str], list[str]]:
+def find_marker_names(markers: Recording) -> tuple[dict[str, str], list[str]]:
     """Heel markers by side, and the pelvis markers, by the names that laboratories use."""
     there = {name.rsplit(".", 1)[0] for name in markers.names}
     heels = {side: next((name for name in names if name in there), "") for side, names in HEELS.items()}
@@ -231,12 +231,12 @@ def named_markers(markers: Recording) -> tuple[dict[str, str], list[str]]:
 
 def walking_markers(markers: Recording, direction: str = "") -> tuple[dict[str, str], list[str], Direction]:
     """Heels, pelvis and direction of walking: `+x` to `-z` in the laboratory's axes, found from them where empty."""
-    heels, pelvis = named_markers(markers)
+    heels, pelvis = find_marker_names(markers)
     way = walking_direction(markers, heels, pelvis)
     if direction:
         sign = -1.0 if direction[0] == "-" else 1.0
         # laboratories let z point up, OpenSim y; walking along one of them leaves the other
-        way = given_direction([sign * part for part in AXES[direction[-1]]], way.up.tolist())
+        way = state_direction([sign * part for part in AXES[direction[-1]]], way.up.tolist())
     return heels, pelvis, way
 
 

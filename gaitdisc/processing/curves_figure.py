@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 import pandas as pd
 
-from gaitdisc.channel import side_of
+from gaitdisc.channel import find_side
 from gaitdisc.processing.pooled_cycles import WALK, WalkSummary, mean_curve
 from gaitdisc.recording import Recording
 from gaitdisc.recording.arrays import Values
@@ -42,7 +42,7 @@ def curve_numbers(run: StudyRun, participant: str) -> pd.DataFrame:
     """Channel, unit, walk (`nominal` or `exo`), percent (101 points), n of strides, mean and sd over strides."""
     tables = []
     for walk in WALKS:
-        summary = walk_of(run, participant, walk)
+        summary = find_walk(run, participant, walk)
         if summary is None or not len(summary.curves):
             continue
         curves = summary.curves
@@ -52,7 +52,7 @@ def curve_numbers(run: StudyRun, participant: str) -> pd.DataFrame:
     return pd.concat(tables, ignore_index=True) if tables else pd.DataFrame(columns=columns)
 
 
-def walk_of(run: StudyRun, participant: str, walk: str) -> WalkSummary | None:
+def find_walk(run: StudyRun, participant: str, walk: str) -> WalkSummary | None:
     """Return the walk of one participant, or None where it could not be processed."""
     condition = run.nominal if walk == "nominal" else run.exo
     return next((w for w in run.of(WALK) if w.subject == participant and w.condition == condition), None)
@@ -67,7 +67,7 @@ def sides_together(names: list[str]) -> list[str]:
     joints: dict[str, list[str]] = {}
     for name in names:
         joints.setdefault(sideless(name), []).append(name)
-    pairs = [sorted(pair, key=lambda n: "lr".find(side_of(n))) for pair in joints.values() if len(pair) > 1]
+    pairs = [sorted(pair, key=lambda n: "lr".find(find_side(n))) for pair in joints.values() if len(pair) > 1]
     singles = [pair for pair in joints.values() if len(pair) == 1]
     return [name for group in (*pairs, *singles) for name in group]
 
@@ -99,8 +99,10 @@ def _figure(run: StudyRun, participant: str, numbers: pd.DataFrame, name: str) -
     low, high = (numbers["mean"] - spread).groupby(joint).min(), (numbers["mean"] + spread).groupby(joint).max()
     room = 0.06 * (high - low).clip(lower=1e-9)
     for axes, (channel, curves) in zip(cells, groups, strict=True):
-        draw_walks(axes, curves, SIDES[side_of(str(channel))].colour)
-        axes.set_title(label(str(channel)).replace("EMG ", ""), color=SIDES[side_of(str(channel))].colour, fontsize=7.4)
+        draw_walks(axes, curves, SIDES[find_side(str(channel))].colour)
+        axes.set_title(
+            label(str(channel)).replace("EMG ", ""), color=SIDES[find_side(str(channel))].colour, fontsize=7.4
+        )
         label_curve(axes, str(channel), str(curves["unit"].iloc[0]))
         key = sideless(str(channel))
         axes.set_ylim(*((low[key] - room[key], high[key] + room[key]) if np.isfinite(low[key]) else (0.0, 1.0)))

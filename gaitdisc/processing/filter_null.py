@@ -8,12 +8,12 @@ import numpy as np
 
 from gaitdisc.channel import Channel
 from gaitdisc.ingest.study import Filters
-from gaitdisc.processing.process import Walk, envelope_of, is_raw
+from gaitdisc.processing.process import Walk, is_raw, make_envelope
 from gaitdisc.recording import Recording
 from gaitdisc.recording.arrays import Values
-from gaitdisc.recording.strides import interpolated
-from gaitdisc.signals.butterworth import lowpassed
-from gaitdisc.signals.derivatives import differentiated
+from gaitdisc.recording.strides import interpolate
+from gaitdisc.signals.butterworth import low_pass
+from gaitdisc.signals.derivatives import derivative
 from gaitdisc.statistics.r2 import simulate_null
 
 Differentiated = tuple[Values, Values, Values]
@@ -38,13 +38,13 @@ def filter_null(
     rate_hz = emg_hz or kinematics_hz
 
     def angles(noise: Values) -> Differentiated:
-        smooth = lowpassed(_recording(noise, kinematics_hz, "deg"), filters.kinematics_hz, filters.order)
-        return _differentiated(smooth.values, kinematics_hz)
+        smooth = low_pass(_recording(noise, kinematics_hz, "deg"), filters.kinematics_hz, filters.order)
+        return _differentiate(smooth.values, kinematics_hz)
 
     def emg(noise: Values) -> Differentiated:
-        smooth = envelope_of(_recording(noise, rate_hz, "V"), filters, emg_hz is not None)
+        smooth = make_envelope(_recording(noise, rate_hz, "V"), filters, emg_hz is not None)
         time = np.arange(round(len(noise) / rate_hz * kinematics_hz)) / kinematics_hz
-        return _differentiated(interpolated(smooth.time, smooth.values, time[:-1]), kinematics_hz)
+        return _differentiate(interpolate(smooth.time, smooth.values, time[:-1]), kinematics_hz)
 
     reached = {"angle": simulate_null(angles, round(NOISE_S * kinematics_hz), WALKS).r2}
     if any(channel.quantity == "emg" for channel in channels):
@@ -52,15 +52,15 @@ def filter_null(
     return {channel.name: reached["emg" if channel.quantity == "emg" else "angle"] for channel in channels}
 
 
-def filter_null_of(walk: Walk, filters: Filters) -> dict[str, float]:
+def make_filter_null(walk: Walk, filters: Filters) -> dict[str, float]:
     """R2 that noise reaches through the filters of one walk at its own rates; whether EMG is raw is seen from it."""
     emg = walk.trial.streams.get("emg")
     emg_hz = emg.rate_hz if emg is not None and is_raw(emg) else None
     return filter_null(walk.state.channels, filters, walk.state.rate_hz, emg_hz)
 
 
-def _differentiated(values: Values, rate_hz: float) -> Differentiated:
-    parts = (values, differentiated(values, rate_hz, 1), differentiated(values, rate_hz, 2))
+def _differentiate(values: Values, rate_hz: float) -> Differentiated:
+    parts = (values, derivative(values, rate_hz, 1), derivative(values, rate_hz, 2))
     whole = np.isfinite(np.hstack(parts)).all(axis=1)
     x, xdot, xddot = (part[whole] for part in parts)
     return x, xdot, xddot

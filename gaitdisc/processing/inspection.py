@@ -11,17 +11,17 @@ from gaitdisc.errors import GaitdiscError, StrideError
 from gaitdisc.ingest.c3d import C3DReader
 from gaitdisc.ingest.reading import read_planned_trial, read_trial
 from gaitdisc.ingest.study import Participant, PlannedTrial, Study
-from gaitdisc.ingest.trial_sets import is_functional, is_static, is_walk, not_compared, refused_participant, trial_sets
-from gaitdisc.processing.contact_choice import chosen_contacts
+from gaitdisc.ingest.trial_sets import is_functional, is_static, is_walk, not_compared, trial_sets, why_refused
+from gaitdisc.processing.contact_choice import choose_contacts
 from gaitdisc.processing.markers_to_moments import with_segment_angles
-from gaitdisc.processing.pooled import pooled_cycles, pooled_instead
+from gaitdisc.processing.pooled import can_pool, pool_cycles
 from gaitdisc.processing.process import StudyWalks, quality_findings, stride_findings
 from gaitdisc.processing.side_checks import side_findings
 from gaitdisc.processing.two_sources import without_contradicted
 from gaitdisc.recording import Finding, Strides, Trial
 from gaitdisc.signals.contacts import order_findings
 from gaitdisc.signals.strides import cut_strides, verify_walking
-from gaitdisc.words import html_of
+from gaitdisc.words import as_html
 
 SHOWN = 4  # channels of one line
 SAID = ("contact offset",)  # kinds of notes that are always printed: percent stride was moved, or is known to be early
@@ -63,7 +63,7 @@ class Inspection:
         rows = [("light", self.light), ("refused", self.refusal), *self.streams.items()]
         rows += [(f"strides {side}", f"{kept}, {dropped} dropped") for side, (kept, dropped) in self.strides.items()]
         rows += [(one.severity, one.line()) for one in self.findings]
-        return html_of(f"Inspection of {self.name}", [row for row in rows if row[1]])
+        return as_html(f"Inspection of {self.name}", [row for row in rows if row[1]])
 
     @property
     def light(self) -> str:
@@ -97,26 +97,26 @@ class Inspection:
         return lines
 
 
-def inspected_study(study: Study) -> Iterator[Inspection]:
+def inspect_study(study: Study) -> Iterator[Inspection]:
     """Read and process every trial of a study as `gaitdisc run` would, in its order; then who is refused as a whole."""
     refused = []
     with C3DReader() as reader:
         for participant in study.participants:
-            reason = refused_participant(study, participant)
-            seen = _unused(study, participant, reader)
+            reason = why_refused(study, participant)
+            seen = _list_unused(study, participant, reader)
             if not_compared(study, participant) and not reason:
-                seen |= _pooled(study, participant, reader)
+                seen |= _pool(study, participant, reader)
             else:
-                walks = _processed(study, participant, reader)
+                walks = _process(study, participant, reader)
                 refusals = not reason and any(one.refusal for one in walks.values())
-                seen |= (_pooled(study, participant, reader, instead=True) if refusals else {}) or walks
+                seen |= (_pool(study, participant, reader, instead=True) if refusals else {}) or walks
             yield from (seen[place] for place in sorted(seen))
             if reason and not participant.excluded:
                 refused.append(Inspection("", participant.id, refusal=reason))
     yield from refused
 
 
-def _processed(study: Study, participant: Participant, reader: C3DReader) -> dict[int, Inspection]:
+def _process(study: Study, participant: Participant, reader: C3DReader) -> dict[int, Inspection]:
     """Trials that models are to be fitted to, each alone, by their place in the study."""
     found = {}
     walks = StudyWalks(study, participant, lambda planned: read_planned_trial(study, participant, planned, reader))
@@ -127,15 +127,15 @@ def _processed(study: Study, participant: Participant, reader: C3DReader) -> dic
             read = walks.read_walk(planned)
             try:
                 walk = read.processed(study)
-                found[place] = _seen(read.trial, _named(planned), walk.strides, walk.findings)
+                found[place] = _findings(read.trial, _name(planned), walk.strides, walk.findings)
             except GaitdiscError as error:
-                found[place] = replace(inspected_trial(read.trial, _named(planned)), refusal=str(error))
+                found[place] = replace(inspect_trial(read.trial, _name(planned)), refusal=str(error))
         except GaitdiscError as error:
-            found[place] = Inspection(_named(planned), participant.id, planned.condition, refusal=str(error))
+            found[place] = Inspection(_name(planned), participant.id, planned.condition, refusal=str(error))
     return found
 
 
-def _pooled(study: Study, participant: Participant, reader: C3DReader, instead: bool = False) -> dict[int, Inspection]:
+def _pool(study: Study, participant: Participant, reader: C3DReader, instead: bool = False) -> dict[int, Inspection]:
     """Pooled trials by place in the study, then what is refused whole; none that cannot stand in for a comparison."""
     streams: dict[str, dict[str, str]] = {}
     read_with: dict[str, tuple[Finding, ...]] = {}
@@ -147,8 +147,8 @@ def _pooled(study: Study, participant: Participant, reader: C3DReader, instead: 
         return trial
 
     sets = trial_sets(study, participant)
-    every = pooled_cycles(study, participant, read)
-    if instead and not pooled_instead(every):
+    every = pool_cycles(study, participant, read)
+    if instead and not can_pool(every):
         return {}
     places = {id(planned): place for place, planned in enumerate(participant.trials)}
     found: dict[int, Inspection] = {}
@@ -166,51 +166,51 @@ def _pooled(study: Study, participant: Participant, reader: C3DReader, instead: 
             kept, lost = (rows[rows["kept"] == wanted]["side"].value_counts() for wanted in (True, False))
             counts = {side: (int(kept.get(side, 0)), int(lost.get(side, 0))) for side in sorted(set(rows["side"]))}
             found[places[id(planned)]] = Inspection(
-                _named(planned), participant.id, where, streams.get(called, {}), counts, _sorted(own), refusal=reason
+                _name(planned), participant.id, where, streams.get(called, {}), counts, _sort(own), refusal=reason
             )
         for reason in reasons.values():
             found[len(participant.trials) + len(found)] = Inspection("", participant.id, pooled.where, refusal=reason)
     return found
 
 
-def _unused(study: Study, participant: Participant, reader: C3DReader) -> dict[int, Inspection]:
+def _list_unused(study: Study, participant: Participant, reader: C3DReader) -> dict[int, Inspection]:
     """Trials that are not used as walks, standing or of unknown condition, by their place in the study."""
     found = {}
     for place, planned in enumerate(participant.trials):
         if is_walk(study, planned):
             continue
-        name = _named(planned)
+        name = _name(planned)
         try:
             trial = read_planned_trial(study, participant, planned, reader)
         except GaitdiscError as error:
             found[place] = Inspection(name, participant.id, planned.condition, refusal=str(error))
             continue
         stands = is_static(study, planned) or is_functional(study, planned)
-        found[place] = _seen(trial, name, {}, trial.findings) if stands else inspected_trial(trial, name)
+        found[place] = _findings(trial, name, {}, trial.findings) if stands else inspect_trial(trial, name)
     return found
 
 
-def _named(planned: PlannedTrial) -> str:
+def _name(planned: PlannedTrial) -> str:
     return ", ".join(Path(file).name for file in planned.files)
 
 
-def inspected_file(path: Path, reader: C3DReader | None = None) -> Inspection:
+def inspect_file(path: Path, reader: C3DReader | None = None) -> Inspection:
     """Read one file and say what it holds and what is wrong with it."""
     try:
         trial = read_trial(path, reader=reader)
     except GaitdiscError as error:
         return Inspection(path.name, refusal=str(error))
-    return inspected_trial(trial, path.name)
+    return inspect_trial(trial, path.name)
 
 
-def inspected_trial(trial: Trial, name: str) -> Inspection:
+def inspect_trial(trial: Trial, name: str) -> Inspection:
     """Say what a walk holds and what is wrong with it."""
     trial = with_segment_angles(without_contradicted(trial))
     findings = [*trial.findings, *quality_findings(trial)]
     strides: dict[str, Strides] = {}
     refusal = ""
     try:
-        choice = chosen_contacts(trial)
+        choice = choose_contacts(trial)
         findings += choice.findings
         strides = {side: cut_strides(contacts) for side, contacts in sorted(choice.contacts.items())}
         findings += order_findings(choice.contacts["r"], choice.contacts["l"], trial.name)
@@ -224,7 +224,7 @@ def inspected_trial(trial: Trial, name: str) -> Inspection:
             refusal = f"not used as a walk: {error}"
         else:
             findings.append(Finding("note", "no strides", trial.name, str(error), ""))
-    return _seen(trial, name, strides, findings, refusal)
+    return _findings(trial, name, strides, findings, refusal)
 
 
 def _streams(trial: Trial) -> dict[str, str]:
@@ -232,12 +232,12 @@ def _streams(trial: Trial) -> dict[str, str]:
     return {key: f"{len(r.channels)}{spans.get(key, ', one frame')}" for key, r in trial.streams.items()}
 
 
-def _seen(
+def _findings(
     trial: Trial, name: str, strides: Mapping[str, Strides], findings: Sequence[Finding], refusal: str = ""
 ) -> Inspection:
     counts = {side: (len(cut), len(cut.dropped)) for side, cut in strides.items()}
-    return Inspection(name, trial.subject, trial.condition, _streams(trial), counts, _sorted(findings), refusal=refusal)
+    return Inspection(name, trial.subject, trial.condition, _streams(trial), counts, _sort(findings), refusal=refusal)
 
 
-def _sorted(findings: Sequence[Finding]) -> tuple[Finding, ...]:
+def _sort(findings: Sequence[Finding]) -> tuple[Finding, ...]:
     return tuple(sorted(findings, key=lambda finding: finding.rank))

@@ -9,17 +9,17 @@ from numpy.typing import NDArray
 
 from gaitdisc.errors import ChannelError, UnitError
 from gaitdisc.ingest.study import Study
-from gaitdisc.kinematics.marker_set import shipped_marker_sets
+from gaitdisc.kinematics.marker_set import read_marker_sets
 from gaitdisc.kinematics.markers import marker_labels, marker_places, up_axis
 from gaitdisc.kinematics.pose import hip_of_spines
 from gaitdisc.kinetics.newton_euler import GRAVITY, moment_per_foot_kg
-from gaitdisc.processing.contact_choice import chosen_contacts
-from gaitdisc.processing.process import envelope_of, is_raw
+from gaitdisc.processing.contact_choice import choose_contacts
+from gaitdisc.processing.process import is_raw, make_envelope
 from gaitdisc.recording import Finding, Trial
 from gaitdisc.recording.arrays import Values
-from gaitdisc.recording.strides import interpolated
-from gaitdisc.signals.butterworth import lowpassed
-from gaitdisc.signals.derivatives import differentiated
+from gaitdisc.recording.strides import interpolate
+from gaitdisc.signals.butterworth import low_pass
+from gaitdisc.signals.derivatives import derivative
 from gaitdisc.signals.emg import emg_findings
 from gaitdisc.signals.strides import cut_strides
 
@@ -69,12 +69,12 @@ def joint_record(trial: Trial, study: Study, joint: str, mass_kg: float | None) 
             f"{trial.name}: {name} varies by {moved:.2g} deg, as if it were in radians and labelled as degrees",
             "State the file's unit (inDegrees=no), or choose a joint that is not locked.",
         )
-    smooth = lowpassed(raw, max(ANGLE_HZ, filters.kinematics_hz), filters.order, filters.gap_s)
-    rate, speedup = (np.radians(differentiated(smooth.values, smooth.rate_hz, order)[:, 0]) for order in (1, 2))
+    smooth = low_pass(raw, max(ANGLE_HZ, filters.kinematics_hz), filters.order, filters.gap_s)
+    rate, speedup = (np.radians(derivative(smooth.values, smooth.rate_hz, order)[:, 0]) for order in (1, 2))
     moment = _moment(trial, name, mass_kg, raw.time)
     envelopes, muscles, dead = _envelopes(trial, study, side, raw.time)
     weight = None if mass_kg is None else mass_kg * GRAVITY
-    choice = chosen_contacts(
+    choice = choose_contacts(
         trial, study.strides.detector, study.treadmill.direction if study.treadmill else "", weight
     )
     strides = cut_strides(choice.contacts[side], raw, study.strides.min_s, study.strides.max_s)
@@ -109,8 +109,8 @@ def _moment(trial: Trial, name: str, mass_kg: float | None, time: Values) -> Val
             "Write mass_kg of the participant in the study file.",
         )
     factor = mass_kg if unit == "N m/kg" and mass_kg is not None else 1.0
-    smooth = lowpassed(own, MOMENT_HZ) if own.rate_hz > 3 * MOMENT_HZ else own
-    values = interpolated(own.time, smooth.values, time)
+    smooth = low_pass(own, MOMENT_HZ) if own.rate_hz > 3 * MOMENT_HZ else own
+    values = interpolate(own.time, smooth.values, time)
     return values[:, 0] * factor
 
 
@@ -119,8 +119,8 @@ def _per_kg(trial: Trial, study: Study, joint: str, time: Values) -> Values:
     if "markers" not in trial.streams:
         return np.empty(0)
     markers, side, labels = trial.stream("markers"), study.strides.side, marker_labels(trial.stream("markers"))
-    known = max(shipped_marker_sets().values(), key=lambda one: len(one.names(labels)))
-    own, smooth = known.names(labels), lowpassed(markers, ANGLE_HZ, study.filters.order, study.filters.gap_s)
+    known = max(read_marker_sets().values(), key=lambda one: len(one.names(labels)))
+    own, smooth = known.names(labels), low_pass(markers, ANGLE_HZ, study.filters.order, study.filters.gap_s)
     seen = {
         (key, on): marker_places(smooth, [own[name] for name in names]).mean(axis=1)
         for on in "lr"
@@ -135,7 +135,7 @@ def _per_kg(trial: Trial, study: Study, joint: str, time: Values) -> Values:
     centre, heel, toe = (seen[key, side] for key in (JOINT_AT[joint], "heel", "toe"))
     up = up_axis(np.nanmean(marker_places(markers, labels), axis=1), heel)
     each = moment_per_foot_kg(centre, heel, toe, up, markers.rate_hz)
-    return interpolated(markers.time, (-each if joint == "knee_angle" else each)[:, None], time)[:, 0]
+    return interpolate(markers.time, (-each if joint == "knee_angle" else each)[:, None], time)[:, 0]
 
 
 def _envelopes(trial: Trial, study: Study, side: str, time: Values) -> tuple[Values, tuple[str, ...], list[Finding]]:
@@ -150,7 +150,7 @@ def _envelopes(trial: Trial, study: Study, side: str, time: Values) -> tuple[Val
             f"{trial.name} has {', '.join(sorted(lost)) or 'none'}" + (" dead" if lost else ""),
             "Name the muscles in [channels], or set side in [strides] to the leg with electrodes.",
         )
-    smooth = [envelope_of(own.selected([name]), study.filters) for name in own.names]
-    values = np.hstack([interpolated(one.time, one.values, time) for one in smooth])
+    smooth = [make_envelope(own.selected([name]), study.filters) for name in own.names]
+    values = np.hstack([interpolate(one.time, one.values, time) for one in smooth])
     left_out = [replace(one, severity="warning", spoils="this muscle, which is excluded") for one in dead]
     return np.maximum(values, 0.0), tuple(own.names), left_out

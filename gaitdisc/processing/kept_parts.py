@@ -15,7 +15,7 @@ import pandas as pd
 from gaitdisc.errors import SchemaError
 from gaitdisc.report.figure import SavedFigure
 from gaitdisc.saved.provenance import code_sha256
-from gaitdisc.saved.unit_folder import file_sha256, read_sealed, sealed_text
+from gaitdisc.saved.unit_folder import file_sha256, read_sealed, seal_text
 from gaitdisc.whole_file import write_whole
 
 FOLDER = "kept"  # of a report: a file for each part
@@ -55,4 +55,4 @@ def figure_again(shown: Mapping[str, Any], folder: Path, inline_bytes: int) -> S
 def keep_part(report: Path, name: str, key: str, data: Any, files: Iterable[Path]) -> None:
     """Keep what a part shows elsewhere, beside hashes of its files."""
     hashes = {file.relative_to(report).as_posix(): file_sha256(file) for file in sorted(files)}
-    write_whole(report / FOLDER / f"{name}.json", sealed_text({"key": key, "data": data, "files": hashes}))
+    write_whole(report / FOLDER / f"{name}.json", seal_text({"key": key, "data": data, "files": hashes}))

@@ -68,7 +68,7 @@ class LegCurves:
         return mean_where_known(self.cycles[name])
 
 
-def legs_of(pooled: PooledCycles) -> dict[str, LegCurves]:
+def make_legs(pooled: PooledCycles) -> dict[str, LegCurves]:
     """Both legs of a person, session and condition; a leg without a kept cycle is not there."""
     places = {channel.name: column for column, channel in enumerate(pooled.channels)}
     units = {channel.name: channel.unit for channel in pooled.channels}

@@ -38,7 +38,7 @@ class ComputedTrial:
     from_markers: tuple[str, ...] = ()  # streams that were computed
 
 
-def computed_trial(
+def compute_trial(
     trial: Trial, calibration: Calibration, person: Person | None, settings: KineticsSettings | None = None
 ) -> ComputedTrial:
     """Trial with joint angles from its markers and, where platforms allow it, moments and powers.
@@ -67,7 +67,7 @@ def computed_trial(
         findings.append(Finding("note", "own model", file, what, ""))
     if person is not None and "forces" in trial.streams:
         try:
-            kinetics = trial_kinetics(trial, moved.poses, foot_paths_of(moved), person, settings)
+            kinetics = trial_kinetics(trial, moved.poses, find_foot_paths(moved), person, settings)
         except GaitdiscError as error:
             findings.append(Finding("warning", "no moments", file, str(error).rstrip("."), "moments and powers"))
         else:
@@ -131,7 +131,7 @@ def with_segment_angles(trial: Trial) -> Trial:
     return replace(trial, streams={**trial.streams, "kinematics": named}, findings=(*trial.findings, *findings))
 
 
-def foot_paths_of(moved: Motion) -> dict[str, FootPath]:
+def find_foot_paths(moved: Motion) -> dict[str, FootPath]:
     """Paths of heel and toes as the feet's segments carry them, with or without their markers in a frame."""
     found = {}
     for side in "lr":

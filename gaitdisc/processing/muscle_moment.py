@@ -95,7 +95,7 @@ class Driven:
         return np.column_stack([lfilter([1 - keep], [1, -keep], one - one[0]) + one[0] for one in late.T])
 
 
-def driven_of(record: JointRecord) -> Driven:
+def drives(record: JointRecord) -> Driven:
     """Return what drives the muscles about the joint of a record."""
     word, signs = JOINTS[record.joint], np.array([sign_at(record.joint, name) for name in record.muscles], float)
     if not signs.any():
@@ -200,7 +200,7 @@ class Sums(NamedTuple):
         return self.power - 2 * self.match @ found + np.einsum("pij,i,j->p", self.squares, found, found)
 
 
-def sums_of(columns: Values, moment: Values, pieces: NDArray[np.intp], count: int) -> Sums:
+def sum_pieces(columns: Values, moment: Values, pieces: NDArray[np.intp], count: int) -> Sums:
     """Return the normal equations of each piece 0 to count - 1; samples without a number or outside are left out."""
     kept = np.isfinite(moment) & np.isfinite(columns).all(axis=1)
     parts = []
@@ -221,7 +221,7 @@ def solved(total: Sums, muscles: int, respect: float = GAIN_RIDGE) -> Values:
     first = np.setdiff1d(np.arange(len(total.match)), waves)
     signed = np.zeros(len(first), bool)
     signed[: 2 * muscles] = signed[2 * muscles + 1 : 2 * muscles + 1 + FIRMNESS] = True
-    own = bounded(tied(total.squares[np.ix_(first, first)], muscles, respect), total.match[first], signed)
+    own = solve_ridge(tied(total.squares[np.ix_(first, first)], muscles, respect), total.match[first], signed)
     found = np.zeros(len(total.match))
     found[first] = own
     left = total.match[waves] - total.squares[np.ix_(waves, first)] @ own
@@ -238,7 +238,7 @@ def tied(squares: Values, muscles: int, respect: float = GAIN_RIDGE) -> Values:
     return normal
 
 
-def bounded(normal: Values, match: Values, signed: NDArray[np.bool_]) -> Values:
+def solve_ridge(normal: Values, match: Values, signed: NDArray[np.bool_]) -> Values:
     """Coefficients of normal equations by least squares, the `signed` ones not negative."""
     from scipy.optimize import lsq_linear
 
@@ -248,14 +248,14 @@ def bounded(normal: Values, match: Values, signed: NDArray[np.bool_]) -> Values:
     return np.asarray(lsq_linear(root.T, np.linalg.solve(root, match / size), (low, np.inf), method="bvls").x / size)
 
 
-def model_of(form: Form, found: Values, muscles: int, left_nm: float, before_nm: float) -> MuscleMoment:
+def make_model(form: Form, found: Values, muscles: int, left_nm: float, before_nm: float) -> MuscleMoment:
     """Return the model of some coefficients."""
     gains, rest = found[: 2 * muscles].reshape(muscles, 2), found[2 * muscles :]
     firm, waves = rest[1 : 1 + FIRMNESS], rest[1 + FIRMNESS : 1 + FIRMNESS + 2 * HARMONICS]
     return MuscleMoment(form, gains, float(rest[0]), firmness=firm, unseen=waves, left_nm=left_nm, before_nm=before_nm)
 
 
-def fitted_moment(driven: Driven, moment: Values, blocks: NDArray[np.intp], like: Form | None = None) -> MuscleMoment:
+def fit_moment(driven: Driven, moment: Values, blocks: NDArray[np.intp], like: Form | None = None) -> MuscleMoment:
     """Fit the model to a walk; delay and lag are those of a known form, else they are searched.
 
     `moment` is the net moment towards the positive angle [N m]; `blocks` numbers the blocks of strides that are left
@@ -269,13 +269,13 @@ def fitted_moment(driven: Driven, moment: Values, blocks: NDArray[np.intp], like
     tried = []
     for one in timings:
         form = Form(*one, span, usual)
-        sums = sums_of(form.columns(driven), np.where(known, moment, np.nan), blocks, count)
+        sums = sum_pieces(form.columns(driven), np.where(known, moment, np.nan), blocks, count)
         apart = 1.0 - np.eye(count)
         left = sum(float(sums.left(solved(sums.of(apart[block]), muscles))[block]) for block in range(count))
         tried.append((left, form, sums))
     left, form, sums = min(tried, key=lambda one: one[0])
     left_nm, before_nm = float(np.sqrt(left / known.sum())), float(np.std(moment[known]))
-    return model_of(form, solved(sums.of(np.ones(count)), muscles), muscles, left_nm, before_nm)
+    return make_model(form, solved(sums.of(np.ones(count)), muscles), muscles, left_nm, before_nm)
 
 
 def force_at_speed(lengthening: Values) -> Values:

@@ -18,20 +18,20 @@ from gaitdisc.processing.tables import (
     all_cycles,
     all_means,
     all_spatiotemporal,
-    left_out_cycles,
     offset_words,
     overview_table,
     spatiotemporal_table,
+    tabulate_left_out,
 )
 from gaitdisc.recording import PERCENT
 from gaitdisc.recording.arrays import Values
 from gaitdisc.report.figure import Figure, SavedFigure, file_names, largest_inline, save_figures
-from gaitdisc.report.page import Block, drawn_side_by_side, save_block, write_page
+from gaitdisc.report.page import Block, draw_side_by_side, save_block, write_page
 from gaitdisc.report.panels import SIDES, Room, in_style, legend, panels_for, sheets
 from gaitdisc.report.table import findings_table, provenance_tables, refusals_table, save_table, save_tables
 from gaitdisc.saved.provenance import Provenance
 from gaitdisc.saved.study_run import StudyRun
-from gaitdisc.words import SIDE_WORDS, counted, label, listed, sideless
+from gaitdisc.words import SIDE_WORDS, counted, label, listing, sideless
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -71,7 +71,7 @@ def write_cycles_page(run: StudyRun, folder: Path) -> Path:
     shown = {
         "run": run,
         "answer": cycles_sentences(run),
-        "blocks": saved_cycle_blocks(run, folder),
+        "blocks": save_cycle_blocks(run, folder),
         "tables": tables,
         "method": (*METHOD, *([COMPUTED] if computed else [])),
     }
@@ -107,7 +107,7 @@ def cycles_sentences(run: StudyRun) -> list[str]:
     ]
     if few := sorted({one.subject for one in kept if min(one.counted("l"), one.counted("r")) < FEW}):
         sentences.append(
-            f"Fewer than {FEW} cycles of a foot in a session and condition: {listed(few)}. Such curves show single "
+            f"Fewer than {FEW} cycles of a foot in a session and condition: {listing(few)}. Such curves show single "
             "steps, not how steadily a person walks."
         )
     if moved := [one for one in kept if one.contact_offset_s is not None]:
@@ -116,7 +116,7 @@ def cycles_sentences(run: StudyRun) -> list[str]:
     return sentences
 
 
-def saved_cycle_blocks(run: StudyRun, folder: Path) -> list[Block[SavedFigure]]:
+def save_cycle_blocks(run: StudyRun, folder: Path) -> list[Block[SavedFigure]]:
     """Part of the page for everybody together, then one for each person, with figures and tables written."""
     if not run.of(CYCLES):
         return []
@@ -127,14 +127,14 @@ def saved_cycle_blocks(run: StudyRun, folder: Path) -> list[Block[SavedFigure]]:
     people = list(dict.fromkeys(one.subject for one in run.of(CYCLES)))
     names, count = file_names(people), len(run.of(CYCLES))
     each = [([one for one in run.of(CYCLES) if one.subject == who], names[who], folder, count) for who in people]
-    drawn_side_by_side(_saved, [one for one in each if read_part(folder, *_part(*one)) is None], MOST_HERE)
-    return [save_block(first, folder), *(_saved(*one) for one in each)]  # all stand by now
+    draw_side_by_side(_save, [one for one in each if read_part(folder, *_part(*one)) is None], MOST_HERE)
+    return [save_block(first, folder), *(_save(*one) for one in each)]  # all stand by now
 
 
 def person_block(sets: Sequence[PooledCycles], name: str, drawn: bool = True) -> Block:
     """Part of the page for one person: counts, figures of each session and condition unless they stand, and tables."""
     kept = [one for one in sets if len(one.kept)]
-    left_out = left_out_cycles(sets, name)
+    left_out = tabulate_left_out(sets, name)
     places = file_names([one.where for one in kept])
     figures = [one for own in kept if drawn for one in cycles_figures(own, f"{name}-{places[own.where]}")]
     tables = [*([spatiotemporal_table(kept, name)] if kept else []), *([left_out] if left_out is not None else [])]
@@ -151,7 +151,7 @@ def _part(sets: Sequence[PooledCycles], name: str, *_: object) -> tuple[str, str
     return f"cycles-{name}", hash_content(sets, name)
 
 
-def _saved(sets: Sequence[PooledCycles], name: str, folder: Path, count: int) -> Block[SavedFigure]:
+def _save(sets: Sequence[PooledCycles], name: str, folder: Path, count: int) -> Block[SavedFigure]:
     part, key = _part(sets, name)
     block = person_block(sets, name, (kept := read_part(folder, part, key)) is None)
     save_tables(block.tables, folder)

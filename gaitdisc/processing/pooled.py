@@ -22,7 +22,7 @@ from gaitdisc.processing.contact_choice import SEEN_LATE, offset_finding
 from gaitdisc.processing.pooled_cycles import CYCLE_COLUMNS, PooledCycles
 from gaitdisc.processing.process import knees_and_hips, quality_findings
 from gaitdisc.processing.side_checks import side_findings
-from gaitdisc.processing.standing import Read, Standing, standing_of
+from gaitdisc.processing.standing import Read, Standing, find_standing
 from gaitdisc.processing.step_events import StepEvents, over_ground, step_events, walking_part
 from gaitdisc.processing.trial_cycles import (
     HeelPaths,
@@ -41,7 +41,7 @@ from gaitdisc.processing.trial_cycles import (
 from gaitdisc.recording import PERCENT, Cycle, Finding, Recording, Strides, Trial
 from gaitdisc.recording.arrays import Values
 from gaitdisc.saved.provenance import Refusal
-from gaitdisc.signals.contacts import rise_of
+from gaitdisc.signals.contacts import find_rise
 from gaitdisc.signals.sides import verify_sides
 from gaitdisc.signals.strides import LEAST_COVERAGE, duration_reasons, verify_walking
 
@@ -68,7 +68,7 @@ class _Seen:
     plate_steps: tuple[PlateStep, ...] | None = None  # where moments were computed from markers
 
 
-def pooled_cycles(study: Study, participant: Participant, read: Read) -> tuple[PooledCycles, ...]:
+def pool_cycles(study: Study, participant: Participant, read: Read) -> tuple[PooledCycles, ...]:
     """Cycles of a participant by session and condition, pooled over trials.
 
     A trial that cannot be read or used is left out with its reason, the others go on. Where a plate or an event of the
@@ -81,26 +81,26 @@ def pooled_cycles(study: Study, participant: Participant, read: Read) -> tuple[P
     found: list[PooledCycles] = []
     prints: dict[str, PlannedTrial] = {}  # of the samples of each trial that was read
     for session in dict.fromkeys(one.session for one in sets):
-        standing = standing_of(study, participant, session, read)
+        standing = find_standing(study, participant, session, read)
         seen: dict[str, list[_Seen]] = {}
         lost: dict[str, list[Refusal]] = {}
         with tempfile.TemporaryDirectory(prefix="gaitdisc_", ignore_cleanup_errors=True) as folder:
             for one in (own for own in sets if own.session == session):
-                seen[one.condition], lost[one.condition] = _seen_trials(standing, one, read, Path(folder), prints)
+                seen[one.condition], lost[one.condition] = _read_trials(standing, one, read, Path(folder), prints)
             times: dict[tuple[str, str], list[Values]] = {}
             for trial in (trial for trials in seen.values() for trial in trials):
                 for kind, detector in (("contacts", trial.steps.detector), ("foot_offs", trial.steps.off_detector)):
                     times.setdefault((kind, detector), []).append(trial.steps.later_s(kind))
             later = {of: np.concatenate(parts) for of, parts in times.items()}
             found += [
-                _pooled(standing, one, seen[one.condition], lost[one.condition], later)
+                _pool(standing, one, seen[one.condition], lost[one.condition], later)
                 for one in sets
                 if one.session == session
             ]
     return tuple(found)
 
 
-def _seen_trials(
+def _read_trials(
     standing: Standing, one: TrialSet, read: Read, folder: Path, prints: dict[str, PlannedTrial]
 ) -> tuple[list[_Seen], list[Refusal]]:
     participant = standing.participant
@@ -118,14 +118,14 @@ def _seen_trials(
                     f"its samples are identical to those of {participant.trial_name(twin)}",
                     "Remove one of the two.",
                 )
-            seen.append(_seen(standing, planned, number, trial, folder))
+            seen.append(_show_trial(standing, planned, number, trial, folder))
         except GaitdiscError as error:
             where = participant.trial_name(planned).removeprefix(participant.id).strip()
             lost.append(Refusal(participant.id, where, str(error)))
     return seen, lost
 
 
-def _seen(standing: Standing, planned: PlannedTrial, number: int, read: Trial, folder: Path) -> _Seen:
+def _show_trial(standing: Standing, planned: PlannedTrial, number: int, read: Trial, folder: Path) -> _Seen:
     """What a trial shows; its samples are not kept but for those that cycles are cut of, and these on disk."""
     study = standing.study
     computed = standing.computed(planned, walking_part(read))
@@ -154,7 +154,7 @@ def _seen(standing: Standing, planned: PlannedTrial, number: int, read: Trial, f
     findings = (*trial.findings, *steps.findings, *quality, *sides, *lost)
     findings += standing.findings(trial, legs is not None)
     files = {s.source.file: s.source.sha256 for s in trial.streams.values() if s.source.sha256}
-    plates = plate_loadings(trial, rise_of(weight_n))
+    plates = plate_loadings(trial, find_rise(weight_n))
     feet = None if any(one.kind == "exchanged heels" for one in steps.findings) else heel_paths(trial, direction)
     kept = tuple(put_away(one, folder) for one in states)
     return _Seen(planned, number, steps, outside, plates, feet, legs, kept, findings, files, plate_steps)
@@ -177,7 +177,7 @@ def _offset_s(later: Later, kind: str, detector: str) -> float | None:
     return float(np.median(times)) if len(times) else None
 
 
-def _pooled(
+def _pool(
     standing: Standing, one: TrialSet, seen: Sequence[_Seen], lost: Sequence[Refusal], later: Later
 ) -> PooledCycles:
     study, participant = standing.study, standing.participant
@@ -227,7 +227,7 @@ def _pooled(
     )
 
 
-def pooled_instead(found: Sequence[PooledCycles]) -> bool:
+def can_pool(found: Sequence[PooledCycles]) -> bool:
     """Whether pooled cycles stand in for a comparison that was refused: all walks are over ground, and give cycles."""
     return bool(found) and all(one.over_ground and len(one.kept) for one in found)
 

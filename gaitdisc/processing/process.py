@@ -12,20 +12,20 @@ import pandas as pd
 from gaitdisc.channel import nearest_word
 from gaitdisc.errors import ChannelError, SamplingError, StrideError
 from gaitdisc.ingest.study import Filters, Participant, PlannedTrial, Study
-from gaitdisc.processing.contact_choice import chosen_contacts
+from gaitdisc.processing.contact_choice import choose_contacts
 from gaitdisc.processing.pooled_cycles import STRIDE_COLUMNS, WalkSummary
 from gaitdisc.processing.side_checks import side_findings
-from gaitdisc.processing.standing import Read, Standing, standing_of
+from gaitdisc.processing.standing import Read, Standing, find_standing
 from gaitdisc.processing.two_sources import KIND as CONTRADICTED
 from gaitdisc.recording import PERCENT, Finding, Recording, Strides, Trajectory, Trial
 from gaitdisc.recording.arrays import Span, Values
-from gaitdisc.recording.strides import interpolated
-from gaitdisc.signals.butterworth import lowpassed, short_run_findings
+from gaitdisc.recording.strides import interpolate
+from gaitdisc.signals.butterworth import low_pass, short_run_findings
 from gaitdisc.signals.channel_quality import channel_findings, drift_findings, plateau_findings, plateau_marked
 from gaitdisc.signals.contacts import order_findings
 from gaitdisc.signals.derivatives import trajectory
-from gaitdisc.signals.emg import emg_findings, enveloped
-from gaitdisc.signals.gaps import filled, spike_findings, without_spikes
+from gaitdisc.signals.emg import emg_findings, envelopes
+from gaitdisc.signals.gaps import fill_gaps, spike_findings, without_spikes
 from gaitdisc.signals.sides import verify_sides
 from gaitdisc.signals.stride_quality import late_change_findings
 from gaitdisc.signals.stride_quality import stride_findings as outlier_findings
@@ -98,9 +98,9 @@ def processed(trial: Trial, study: Study, body_weight_n: float | None = None) ->
 
     body_weight_n: mass x 9.81, by which a plate counts as loaded; 50 N without it
     """
-    raw = without_spikes(plateau_marked(_needed(trial, "kinematics", study.models.angles)))
+    raw = without_spikes(plateau_marked(_require(trial, "kinematics", study.models.angles)))
     direction = study.treadmill.direction if study.treadmill else ""
-    choice = chosen_contacts(trial, study.strides.detector, direction, body_weight_n)
+    choice = choose_contacts(trial, study.strides.detector, direction, body_weight_n)
     limits = (study.strides.min_s, study.strides.max_s)
     side = study.strides.side
     if side not in choice.contacts:
@@ -110,7 +110,7 @@ def processed(trial: Trial, study: Study, body_weight_n: float | None = None) ->
             "Change side in [strides].",
         )
     gap_s = study.filters.gap_s
-    raw = filled(raw, cut_strides(choice.contacts[side], None, *limits), gap_s, TEMPLATE_TIMES * gap_s)
+    raw = fill_gaps(raw, cut_strides(choice.contacts[side], None, *limits), gap_s, TEMPLATE_TIMES * gap_s)
     strides = {side: cut_strides(found, raw, *limits) for side, found in sorted(choice.contacts.items())}
     findings = [*trial.findings, *quality_findings(trial, study.models.angles, study.models.emg), *choice.findings]
     if set(choice.contacts) == {"r", "l"}:
@@ -161,7 +161,7 @@ def stride_findings(state: Recording, strides: Strides) -> list[Finding]:
     return findings
 
 
-def _needed(trial: Trial, key: str, names: Sequence[str]) -> Recording:
+def _require(trial: Trial, key: str, names: Sequence[str]) -> Recording:
     recording = trial.stream(key)
     missing = [name for name in names if name not in recording.names]
     if missing:
@@ -186,10 +186,10 @@ def knees_and_hips(trial: Trial) -> Recording:
 def _state(trial: Trial, raw: Recording, study: Study) -> Recording:
     """Filtered angles and envelopes on the time base of the kinematics."""
     filters = study.filters
-    angles = lowpassed(raw, filters.kinematics_hz, filters.order, filters.gap_s)
+    angles = low_pass(raw, filters.kinematics_hz, filters.order, filters.gap_s)
     if not study.models.emg:
         return replace(angles, subject=trial.subject, condition=trial.condition)
-    emg = _needed(trial, "emg", study.models.emg)
+    emg = _require(trial, "emg", study.models.emg)
     dead = [finding for finding in emg_findings(emg) if finding.severity == "refused"] if is_raw(emg) else []
     if dead:
         raise ChannelError(
@@ -197,9 +197,9 @@ def _state(trial: Trial, raw: Recording, study: Study) -> Recording:
             f"{emg.source.file or trial.name}: " + "; ".join(f"{f.channel} is {f.kind}: {f.what}" for f in dead),
             "Remove the muscle from [models], or remove the trial.",
         )
-    envelope = envelope_of(emg, filters)
-    values = interpolated(envelope.time, envelope.values, angles.time)
-    marks = interpolated(envelope.time, np.asarray(envelope.suspect, float), angles.time) > 0
+    envelope = make_envelope(emg, filters)
+    values = interpolate(envelope.time, envelope.values, angles.time)
+    marks = interpolate(envelope.time, np.asarray(envelope.suspect, float), angles.time) > 0
     if not np.isfinite(values).any():
         raise SamplingError(
             f"trial {trial.name}: EMG and kinematics must overlap in time",
@@ -218,11 +218,11 @@ def _state(trial: Trial, raw: Recording, study: Study) -> Recording:
     )
 
 
-def envelope_of(emg: Recording, filters: Filters, raw: bool | None = None) -> Recording:
+def make_envelope(emg: Recording, filters: Filters, raw: bool | None = None) -> Recording:
     """Envelope of raw EMG; what is one is low-passed alone. Whether it is raw is seen where `raw` is not given."""
     if is_raw(emg) if raw is None else raw:
-        return enveloped(emg, filters.emg_highpass_hz, filters.emg_lowpass_hz, filters.order)
-    return lowpassed(emg, filters.emg_lowpass_hz, filters.order, filters.gap_s)
+        return envelopes(emg, filters.emg_highpass_hz, filters.emg_lowpass_hz, filters.order)
+    return low_pass(emg, filters.emg_lowpass_hz, filters.order, filters.gap_s)
 
 
 def is_raw(emg: Recording) -> bool:
@@ -239,8 +239,8 @@ def on_one_base(trial: Trial, rate_hz: float, keys: tuple[str, ...] | None = Non
 
     returns: the span that all streams cover; filter edges and bridged gaps are marked suspect
 
-    >>> from gaitdisc.cohort.cohort import the_twelve, walks_of
-    >>> on_one_base(walks_of(the_twelve()[0], 5.0).trials["nominal"], 100.0).rate_hz
+    >>> from gaitdisc.cohort.cohort import the_twelve, make_walks
+    >>> on_one_base(make_walks(the_twelve()[0], 5.0).trials["nominal"], 100.0).rate_hz
     100.0
     """
     ready = {key: trial.stream(key) for key in (keys or tuple(trial.streams))}
@@ -248,7 +248,7 @@ def on_one_base(trial: Trial, rate_hz: float, keys: tuple[str, ...] | None = Non
         if recording.rate_hz > rate_hz * (1 + 1e-6):
             raw = key == "emg" and is_raw(recording)
             slow = SHARE_OF_RATE * rate_hz
-            ready[key] = enveloped(recording) if raw else lowpassed(without_spikes(recording), slow)
+            ready[key] = envelopes(recording) if raw else low_pass(without_spikes(recording), slow)
     return Trial(trial.name, ready, trial.events, (), trial.subject, trial.condition).on_one_base(rate_hz)
 
 
@@ -286,7 +286,7 @@ class StudyWalks:
         trial = self.read(planned)
         session = planned.session or ""
         if session not in self._standing:
-            self._standing[session] = standing_of(self.study, self.participant, session, self.read)
+            self._standing[session] = find_standing(self.study, self.participant, session, self.read)
         standing = self._standing[session]
         computed = standing.computed(planned, trial).trial
         findings = standing.findings(computed, "kinematics" in computed.streams)

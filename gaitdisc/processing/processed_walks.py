@@ -11,7 +11,7 @@ from pathlib import Path
 
 from gaitdisc.errors import GaitdiscError, ReadError
 from gaitdisc.ingest.c3d import C3DReader
-from gaitdisc.ingest.public_words import PublicWords, of_trial, words_of
+from gaitdisc.ingest.public_words import PublicWords, list_words, of_trial
 from gaitdisc.ingest.reading import read_planned_trial
 from gaitdisc.ingest.study import Participant, PlannedTrial, Study
 from gaitdisc.ingest.trial_sets import functional_trial, not_compared, static_trial, trial_sets
@@ -60,7 +60,7 @@ def unit_key(study: Study, trial: PlannedTrial) -> str:
     return hashlib.sha256("\n".join(parts).encode()).hexdigest()
 
 
-def processed_walks(study: Study, participant: Participant) -> tuple[dict[str, Walk], tuple[Refusal, ...]]:
+def process_walks(study: Study, participant: Participant) -> tuple[dict[str, Walk], tuple[Refusal, ...]]:
     """Both walks of a participant by condition, and why one could not be had, in public words; it needs one of each."""
     lacking = not_compared(study, participant)
     if lacking:
@@ -72,7 +72,7 @@ def processed_walks(study: Study, participant: Participant) -> tuple[dict[str, W
 def walks_and_errors(study: Study, participant: Participant) -> tuple[dict[str, Walk], dict[str, GaitdiscError]]:
     """Both walks of a complete participant, by condition, and the error of one that could not be, in public words."""
     walks, errors = {}, {}
-    words = words_of(study, participant)
+    words = list_words(study, participant)
     with C3DReader() as reader:  # starts its process at the first C3D file, one for both walks
         own = StudyWalks(study, participant, partial(public_trial, study, participant, words, reader))
         for word in study.conditions.both:
@@ -96,7 +96,7 @@ def public_trial(
     return public.of(lambda: public.trial(read_planned_trial(study, participant, planned, reader)))
 
 
-def computed_cycles(study: Study, participant: Participant, folder: Path) -> tuple[PooledCycles, ...]:
+def compute_cycles(study: Study, participant: Participant, folder: Path) -> tuple[PooledCycles, ...]:
     """Pooled cycles of a participant, computed, or loaded where an earlier run had the same files and settings."""
     key = cycles_key(study, participant)
     places = [
@@ -106,9 +106,9 @@ def computed_cycles(study: Study, participant: Participant, folder: Path) -> tup
     stored = tuple(one for one in (CYCLES.kept(place, key) for place in places) if one is not None)
     if len(stored) == len(places):
         return stored
-    from gaitdisc.processing.pooled import pooled_cycles  # brings scipy.signal, which a second run does not need
+    from gaitdisc.processing.pooled import pool_cycles  # brings scipy.signal, which a second run does not need
 
-    words = words_of(study, participant)
+    words = list_words(study, participant)
     unread: list[ReadError] = []
     with C3DReader() as reader:  # one process for all trials
 
@@ -125,7 +125,7 @@ def computed_cycles(study: Study, participant: Participant, folder: Path) -> tup
                 findings=tuple(map(words.finding, pooled.findings)),
                 refusals=tuple(replace(refusal, reason=words.said(refusal.reason)) for refusal in pooled.refusals),
             )
-            for pooled in pooled_cycles(study, participant, read)
+            for pooled in pool_cycles(study, participant, read)
         ]
     if unread:  # they may be readable another time, so that this stands for no key
         key = ""

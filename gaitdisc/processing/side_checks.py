@@ -10,12 +10,12 @@ import numpy as np
 from gaitdisc.errors import ChannelError, GaitdiscError, UnitError
 from gaitdisc.kinetics.joint_moments import swings
 from gaitdisc.kinetics.newton_euler import GRAVITY
-from gaitdisc.kinetics.plate_steps import BEYOND_EDGE_M, FootPath, Weight, foot_paths, plate_steps, weighed_steps
+from gaitdisc.kinetics.plate_steps import BEYOND_EDGE_M, FootPath, Weight, foot_paths, plate_steps, weigh_steps
 from gaitdisc.kinetics.platform import LEAST_LOAD_N, Platform, Wrench, platforms
-from gaitdisc.processing.contact_choice import named_markers
+from gaitdisc.processing.contact_choice import find_marker_names
 from gaitdisc.recording import Finding, Recording, Strides, Trial
 from gaitdisc.signals.direction import marker_position
-from gaitdisc.signals.emg import HIGHPASS_HZ, enveloped, live_channels, order_of_muscles
+from gaitdisc.signals.emg import HIGHPASS_HZ, envelopes, live_channels, order_of_muscles
 from gaitdisc.signals.sides import load_findings, marker_side_findings, sway_findings
 
 TOES = (("RTOE", "LTOE"), ("RMT5", "LMT5"), ("RMT1", "LMT1"), ("R.Toe.Tip", "L.Toe.Tip"), ("RTOE1", "LTOE1"))
@@ -48,7 +48,7 @@ def _muscle_findings(emg: Recording, strides: Mapping[str, Strides]) -> list[Fin
     if not live or emg.rate_hz <= 2 * HIGHPASS_HZ:
         return []
     try:
-        envelope = enveloped(emg.selected(live))
+        envelope = envelopes(emg.selected(live))
     except GaitdiscError:  # too short or with gaps: nothing is checked
         return []
     return order_of_muscles(envelope, strides)
@@ -59,7 +59,7 @@ def _feet_on_plates(trial: Trial) -> tuple[dict[str, FootPath], list[Platform], 
     markers = trial.stream("markers")
     there = {name.rsplit(".", 1)[0] for name in markers.names}
     toes = next((pair for pair in TOES if set(pair) <= there), None)
-    heels, pelvis = named_markers(markers)
+    heels, pelvis = find_marker_names(markers)
     if toes is None or "forces" not in trial.streams:
         raise ChannelError(
             "plates are compared with the feet, which needs toe markers and forces",
@@ -77,8 +77,8 @@ def _plate_findings(trial: Trial, weight_n: float | None) -> list[Finding]:
         steps = plate_steps(found, feet) if len(markers.time) > 1 else []  # a static trial may be a single frame
         if weight_n:
             height = np.mean([marker_position(markers, name) for name in pelvis], axis=0) @ found[0].up
-            steps = weighed_steps(steps, found, swings(trial, feet), Weight(weight_n, markers.time, height))
-        other = [_with_place_of(one, second) for one, second in zip(found, found[::-1], strict=True)]
+            steps = weigh_steps(steps, found, swings(trial, feet), Weight(weight_n, markers.time, height))
+        other = [_exchange_place(one, second) for one, second in zip(found, found[::-1], strict=True)]
         as_is = [not step.doubt for step in steps]
         astray = len(found) == 2 and len(as_is) >= FEWEST and sum(as_is) <= LEAST * len(as_is)
         exchanged = [not step.doubt for step in plate_steps(other, feet)] if astray else []
@@ -126,7 +126,7 @@ def check_weight(weighed_n: float | None, mass_kg: float | None, file: str) -> l
     return [Finding("warning", "body weight", file, what, f"moments and powers, by {100 * off:.0f} %; weigh again")]
 
 
-def _with_place_of(one: Platform, other: Platform) -> Platform:
+def _exchange_place(one: Platform, other: Platform) -> Platform:
     """Platform with its own force at the other's place, or with the other's foot where the file names feet."""
     if one.surface is None or other.surface is None:
         return replace(one, side=other.side)

@@ -12,16 +12,16 @@ from gaitdisc.errors import GaitdiscError, ShapeError
 from gaitdisc.ingest.c3d_kinetics import read_body_measures
 from gaitdisc.ingest.study import Participant, PlannedTrial, Study
 from gaitdisc.ingest.trial_sets import functional_trial, static_trial
-from gaitdisc.kinematics.calibration import Calibration, calibrated
+from gaitdisc.kinematics.calibration import Calibration, calibrate_body
 from gaitdisc.kinematics.functional_hips import functional_hips
 from gaitdisc.kinematics.marker_set import MarkerSet
-from gaitdisc.kinematics.motion import chosen_marker_set
+from gaitdisc.kinematics.motion import choose_marker_set
 from gaitdisc.kinetics.body_inertia import Person
 from gaitdisc.kinetics.joint_moments import KineticsSettings
 from gaitdisc.kinetics.newton_euler import GRAVITY
 from gaitdisc.processing.markers_to_moments import (
     ComputedTrial,
-    computed_trial,
+    compute_trial,
     with_segment_angles,
     without_exchanged_markers,
 )
@@ -125,7 +125,7 @@ class Standing:
         person, findings = self._person(planned, trial)
         settings = KineticsSettings(marker_cutoff_hz=self.study.filters.kinematics_hz)
         try:
-            found = computed_trial(trial, calibration, person, settings)
+            found = compute_trial(trial, calibration, person, settings)
         except GaitdiscError as error:
             return ComputedTrial(self._without_angles(given_up, trial.name, error))
         made = found.trial.findings[len(trial.findings) :]
@@ -213,7 +213,7 @@ class Standing:
         wanted = self.study.kinematics
         named = wanted.marker_set if wanted else ""  # a file lies relative to the study's
         own = self.study.path_of(named) if named.endswith(".toml") else named or None
-        chosen = chosen_marker_set(markers, static, own)
+        chosen = choose_marker_set(markers, static, own)
         if chosen.name not in self._calibrations:
             kept = chosen.with_joints(wanted.joints) if wanted and wanted.joints else chosen
             kept = kept.with_hip(wanted.hip) if wanted and wanted.hip else kept
@@ -223,7 +223,7 @@ class Standing:
     def _calibrated(self, static: Recording, chosen: MarkerSet) -> Calibration:
         """Hips by function where a trial of the session shows them and the study names no others."""
         measures = self._measures(self.planned)
-        body = calibrated(static, chosen, measures)
+        body = calibrate_body(static, chosen, measures)
         if self.circled is None or (self.study.kinematics and self.study.kinematics.hip):
             return body
         try:
@@ -232,7 +232,7 @@ class Standing:
             file = self.circled.source.file or "the functional trial"
             said = Finding("warning", "functional hip", file, str(error).rstrip("."), "hips by 1 to 2 cm")
             return replace(body, findings=(*body.findings, said))
-        own = calibrated(static, chosen, measures, hips) if hips else body
+        own = calibrate_body(static, chosen, measures, hips) if hips else body
         return replace(own, findings=(*own.findings, *findings))
 
     def _person(self, planned: PlannedTrial, trial: Trial) -> tuple[Person | None, tuple[Finding, ...]]:
@@ -257,7 +257,7 @@ class Standing:
         return read_body_measures(self.study.path_of(files[0])) if files else BodyMeasures()
 
 
-def standing_of(study: Study, participant: Participant, session: str, read: Read) -> Standing:
+def find_standing(study: Study, participant: Participant, session: str, read: Read) -> Standing:
     """Markers of a session's static trial, or why there are none."""
     planned = static_trial(study, participant, session)
     if planned is None:

@@ -15,10 +15,10 @@ from gaitdisc.processing.contact_choice import (
     SEEN_LATE,
     best_detector,
     events_on_plates,
-    exchanged_contacts,
-    named_markers,
+    find_contacts,
+    find_exchanged_contacts,
+    find_marker_names,
     nothing_found,
-    seen_contacts,
     walking_markers,
 )
 from gaitdisc.recording import Finding, Recording, Trial
@@ -96,7 +96,7 @@ def step_events(
     direction: direction of walking in the laboratory's axes, `+x` to `-z`; inferred where it is empty
     body_weight_n: mass x 9.81, by which a plate counts as loaded; 50 N without it
     """
-    seen, refused = seen_contacts(trial, direction, body_weight_n)
+    seen, refused = find_contacts(trial, direction, body_weight_n)
     seen, findings = events_on_plates(seen, trial.name)
     strides = {
         name: count
@@ -114,13 +114,13 @@ def step_events(
     sure = {name: count for name, count in strides.items() if name != "angles"} or strides
     chosen = best_detector(ORDER, sure, seen) if detector == "auto" else detector
     if chosen == "events":
-        for side, at in exchanged_contacts(seen["events"], seen.get("markers", {})).items():
+        for side, at in find_exchanged_contacts(seen["events"], seen.get("markers", {})).items():
             what = f"the heel of side {side} lands at {', '.join(f'{time:.2f}' for time in at[:5])} s, when the "
             what += "file's events have the other foot: the heels seem to be exchanged; the events are used"
             spoils = "lengths and widths of steps, excluded for this trial; correct the labels"
             findings.append(Finding("warning", "exchanged heels", trial.name, what, spoils))
     contacts = {side: one.time for side, one in seen[chosen].items()}
-    off_detector, offs = _seen_offs(trial, contacts, direction)
+    off_detector, offs = _find_offs(trial, contacts, direction)
     ground = {name: seen[name] for name in GROUND if name in seen}
     ground_offs = {name: {s: one.foot_off for s, one in sides.items()} for name, sides in ground.items()}
     for side, times in ground_offs.get("force", {}).items():  # a foot that leaves a plate may still be on the floor
@@ -133,8 +133,8 @@ def step_events(
         off_detector=off_detector,
         contacts=contacts,
         foot_offs=offs,
-        ground_contacts=_merged({name: {s: one.time for s, one in sides.items()} for name, sides in late.items()}),
-        ground_offs=_merged(ground_offs),
+        ground_contacts=_merge({name: {s: one.time for s, one in sides.items()} for name, sides in late.items()}),
+        ground_offs=_merge(ground_offs),
         findings=tuple(findings),
     )
 
@@ -164,7 +164,7 @@ def _stepping(trial: Trial) -> tuple[Values, NDArray[np.bool_]] | None:
     """Values, and at which of them somebody walks: the pelvis travels, or on the spot heels or joints move."""
     markers, legs = trial.streams.get("markers"), trial.streams.get("kinematics")
     try:
-        heels, pelvis = named_markers(markers) if markers is not None else ({}, [])
+        heels, pelvis = find_marker_names(markers) if markers is not None else ({}, [])
     except ChannelError:
         heels, pelvis = {}, []
     if markers is not None and heels:
@@ -210,7 +210,7 @@ def trial_markers(trial: Trial, direction: str = "") -> tuple[dict[str, str], li
         return None
 
 
-def _merged(seen: Mapping[str, Mapping[str, Values]]) -> dict[str, tuple[tuple[float, str], ...]]:
+def _merge(seen: Mapping[str, Mapping[str, Values]]) -> dict[str, tuple[tuple[float, str], ...]]:
     found: dict[str, list[tuple[float, str]]] = {}
     for name in GROUND:
         for side, times in seen.get(name, {}).items():
@@ -219,7 +219,7 @@ def _merged(seen: Mapping[str, Mapping[str, Values]]) -> dict[str, tuple[tuple[f
     return {side: tuple(sorted(times)) for side, times in found.items()}
 
 
-def _seen_offs(trial: Trial, contacts: Mapping[str, Values], direction: str) -> tuple[str, dict[str, Values]]:
+def _find_offs(trial: Trial, contacts: Mapping[str, Values], direction: str) -> tuple[str, dict[str, Values]]:
     """Foot offs of each side that has contacts, from markers or else from the ankle, and which of the two."""
     lengths = np.concatenate([np.diff(times) for times in contacts.values()])
     stride_s = float(np.median(lengths)) if len(lengths) else USUAL_STRIDE_S

@@ -31,13 +31,13 @@ VALUES = {  # column -> words, unit, digits
 
 def all_cycles(cycles: Sequence[PooledCycles]) -> pd.DataFrame:
     """Every cycle of everybody, kept or left out, one row each."""
-    return _stacked([_named(one, one.cycles) for one in cycles if len(one.cycles)], CYCLE_COLUMNS)
+    return _stack([_name_rows(one, one.cycles) for one in cycles if len(one.cycles)], CYCLE_COLUMNS)
 
 
 def all_means(cycles: Sequence[PooledCycles]) -> pd.DataFrame:
     """Mean curves of everybody, one row a channel, side and percent."""
     columns = ("channel", "unit", "side", "percent", "n", "mean", "sd")
-    return _stacked([_named(one, one.mean_curves()) for one in cycles if len(one.kept)], columns)
+    return _stack([_name_rows(one, one.mean_curves()) for one in cycles if len(one.kept)], columns)
 
 
 def mean_recordings(cycles: Sequence[PooledCycles]) -> dict[str, Recording]:
@@ -74,8 +74,8 @@ def all_curves(cycles: Sequence[PooledCycles]) -> pd.DataFrame:
                 values = curves[row, :, column]
                 if np.isfinite(values).any():
                     words = (cycle.trial, cycle.side, cycle.start_s, channel.name, channel.unit, PERCENT, values)
-                    tables.append(_named(one, pd.DataFrame(dict(zip(columns, words, strict=True)))))
-    return _stacked(tables, columns)
+                    tables.append(_name_rows(one, pd.DataFrame(dict(zip(columns, words, strict=True)))))
+    return _stack(tables, columns)
 
 
 def all_spatiotemporal(cycles: Sequence[PooledCycles]) -> pd.DataFrame:
@@ -96,13 +96,13 @@ def _who(one: PooledCycles) -> dict[str, str]:
     return dict(zip(WHO, (one.subject, one.group, one.session, one.condition), strict=True))
 
 
-def _named(one: PooledCycles, table: pd.DataFrame) -> pd.DataFrame:
+def _name_rows(one: PooledCycles, table: pd.DataFrame) -> pd.DataFrame:
     """Table behind the columns that say whose it is."""
     return table.assign(**_who(one))[[*WHO, *table.columns]]
 
 
-def _stacked(tables: Sequence[pd.DataFrame], columns: Sequence[str]) -> pd.DataFrame:
-    """Tables of `_named` under each other; of none the columns."""
+def _stack(tables: Sequence[pd.DataFrame], columns: Sequence[str]) -> pd.DataFrame:
+    """Tables of `_name_rows` under each other; of none the columns."""
     return pd.concat(tables, ignore_index=True) if tables else pd.DataFrame(columns=pd.Index([*WHO, *columns]))
 
 
@@ -183,7 +183,7 @@ def spatiotemporal_table(sets: Sequence[PooledCycles], name: str) -> Table:
     return Table(f"spatiotemporal-{name}", caption, columns, tuple(rows), numbers, groups)
 
 
-def left_out_cycles(sets: Sequence[PooledCycles], name: str) -> Table | None:
+def tabulate_left_out(sets: Sequence[PooledCycles], name: str) -> Table | None:
     """Cycles of one person that are left out, each with its reason; None where there are none."""
     numbers = all_cycles([one for one in sets if len(one.left_out)])
     numbers = numbers[~numbers["kept"].astype(bool)].reset_index(drop=True) if len(numbers) else numbers

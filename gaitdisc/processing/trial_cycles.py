@@ -12,20 +12,20 @@ from gaitdisc.channel import Channel, other_side, vocabulary
 from gaitdisc.errors import GaitdiscError
 from gaitdisc.ingest.study import Filters
 from gaitdisc.kinematics.markers import PATH_S, STRAIGHT_DEG
-from gaitdisc.kinematics.pose import clinical_angles, rotation_of
+from gaitdisc.kinematics.pose import clinical_angles, make_rotation
 from gaitdisc.kinetics.plate_steps import PlateStep
-from gaitdisc.processing.process import envelope_of, is_raw
+from gaitdisc.processing.process import is_raw, make_envelope
 from gaitdisc.processing.step_events import trial_markers
 from gaitdisc.recording import Cycle, Finding, Recording, Trial
 from gaitdisc.recording.arrays import Span, Values, runs
-from gaitdisc.recording.strides import NAN, interpolated
-from gaitdisc.recording.wrapping import unwrapped
-from gaitdisc.signals.butterworth import lowpassed
+from gaitdisc.recording.strides import NAN, interpolate
+from gaitdisc.recording.wrapping import unwrap
+from gaitdisc.signals.butterworth import low_pass
 from gaitdisc.signals.channel_quality import plateau_marked
 from gaitdisc.signals.contacts import RISE_N, loaded
 from gaitdisc.signals.direction import Direction, marker_position
 from gaitdisc.signals.emg import live_channels
-from gaitdisc.signals.gaps import filled, without_spikes
+from gaitdisc.signals.gaps import fill_gaps, without_spikes
 from gaitdisc.signals.strides import gap_reasons
 
 LONGEST_STANCE = 0.8  # of a stride: a plate that is loaded for longer carried two feet
@@ -176,7 +176,7 @@ def feet_in(cycles: list[Cycle], feet: HeelPaths | None, belt_m_per_s: float = 0
     for one in cycles:
         other = other_side(one.side)
         first, beside, last = (
-            interpolated(feet.time, paths[side], np.array([at]))[0]
+            interpolate(feet.time, paths[side], np.array([at]))[0]
             for side, at in ((one.side, one.start), (other, one.opposite_contact), (one.side, one.end))
         )
         stride = _level(last - first, way.up)
@@ -239,21 +239,21 @@ def cycle_channels(
         ("forces", ("force", "vertical_force")),
         ("emg", ("emg",)),
     ):
-        recording = _known(trial, key, quantities)
+        recording = _list_known(trial, key, quantities)
         if recording is None:
             continue
         try:
-            state, how = _filtered(key, recording, filters, key in from_markers)
+            state, how = _filter(key, recording, filters, key in from_markers)
         except GaitdiscError as error:
             findings.append(Finding("warning", "left out", trial.name, f"{key}: {error}", f"curves of the {key}"))
             continue
         if key == "kinematics":
             own = [channel.name for channel in recording.channels if channel.name.startswith(LEGS)]
-            legs = filled(without_spikes(recording.selected(own)), None, filters.gap_s) if own else None
+            legs = fill_gaps(without_spikes(recording.selected(own)), None, filters.gap_s) if own else None
         if state is not None:
             states.append(state)
             words.append(how)
-    weighed = weighed_forces(trial)
+    weighed = scale_forces(trial)
     if weighed is not None and not any(set(weighed.names) & set(one.names) for one in states):
         states.append(weighed)
         words.append("forces in % of body weight as in the file")
@@ -261,7 +261,7 @@ def cycle_channels(
     return legs, tuple(states), (*findings, *said)
 
 
-def _known(trial: Trial, key: str, quantities: tuple[str, ...]) -> Recording | None:
+def _list_known(trial: Trial, key: str, quantities: tuple[str, ...]) -> Recording | None:
     """Channels of the vocabulary that have a value; forces only where they belong to a foot."""
     if key not in trial.streams:
         return None
@@ -276,27 +276,27 @@ def _known(trial: Trial, key: str, quantities: tuple[str, ...]) -> Recording | N
     return own.selected(names) if names else None
 
 
-def _filtered(key: str, recording: Recording, filters: Filters, computed: bool) -> tuple[Recording | None, str]:
+def _filter(key: str, recording: Recording, filters: Filters, computed: bool) -> tuple[Recording | None, str]:
     """Recording as it is shown, and which filter it had; what a file computed has none here."""
     low = f"low-pass {filters.kinematics_hz:g} Hz"
     if key == "emg":
         raw, slow = is_raw(recording), f"low-pass {filters.emg_lowpass_hz:g} Hz"
         how = f"EMG high-pass {filters.emg_highpass_hz:g} Hz, rectified, {slow}" if raw else f"EMG {slow}"
         live = live_channels(recording) if raw else recording.names
-        return (envelope_of(recording.selected(live), filters, raw), how) if live else (None, "")
+        return (make_envelope(recording.selected(live), filters, raw), how) if live else (None, "")
     if key == "forces":
-        return lowpassed(recording, FORCE_HZ, filters.order, filters.gap_s), f"forces low-pass {FORCE_HZ:g} Hz"
+        return low_pass(recording, FORCE_HZ, filters.order, filters.gap_s), f"forces low-pass {FORCE_HZ:g} Hz"
     if key == "moments" and computed:
         return recording, f"moments and powers from markers ({low}) and forces ({FORCE_HZ:g} Hz)"
     if key == "moments":
-        return filled(recording, None, filters.gap_s), "moments and powers as in the file"
-    whole = filled(without_spikes(plateau_marked(recording)), None, filters.gap_s)
+        return fill_gaps(recording, None, filters.gap_s), "moments and powers as in the file"
+    whole = fill_gaps(without_spikes(plateau_marked(recording)), None, filters.gap_s)
     if not computed:
         return whole, "angles as in the file"
-    return lowpassed(whole, filters.kinematics_hz, filters.order, filters.gap_s), f"angles from markers, {low}"
+    return low_pass(whole, filters.kinematics_hz, filters.order, filters.gap_s), f"angles from markers, {low}"
 
 
-def weighed_forces(trial: Trial) -> Recording | None:
+def scale_forces(trial: Trial) -> Recording | None:
     """Forces of the ground on each foot [% of body weight], zero off the plate; None where the file has none.
 
     Plug-in Gait's `NormalisedGRF` is fore-aft and vertical in percent of body weight, empty off the plate. Forwards is
@@ -353,15 +353,15 @@ def _from_own_heading(angles: Recording) -> Recording:
     """
     if not {"pelvis_tilt", "pelvis_list", "pelvis_rotation"} <= set(angles.names):
         return angles
-    turned = unwrapped(angles)["pelvis_rotation"]
+    turned = unwrap(angles)["pelvis_rotation"]
     known, time = np.isfinite(turned), np.arange(len(turned))
     half = max(round(PATH_S * angles.rate_hz / 2), 1)
     padded = np.pad(np.interp(time, time[known], turned[known]) if known.any() else turned, half, mode="edge")
     heading = np.convolve(padded, np.full(2 * half + 1, 1 / (2 * half + 1)), "valid")
     if not np.ptp(heading) >= STRAIGHT_DEG:
         return angles
-    level = rotation_of(np.stack([0 * heading, 0 * heading, heading], axis=1))
-    lab = rotation_of(np.stack([angles["pelvis_tilt"], angles["pelvis_list"], turned], axis=1))
+    level = make_rotation(np.stack([0 * heading, 0 * heading, heading], axis=1))
+    lab = make_rotation(np.stack([angles["pelvis_tilt"], angles["pelvis_list"], turned], axis=1))
     values = np.full(angles.values.shape, np.nan)
     values[:, [angles.index("pelvis_tilt"), angles.index("pelvis_list")]] = clinical_angles(level, lab)[:, :2]
     return angles.with_values(values)

@@ -17,12 +17,12 @@ from scipy.stats import median_abs_deviation, rankdata
 
 from gaitdisc.channel import list_names
 from gaitdisc.errors import GaitdiscError
-from gaitdisc.kinematics.marker_set import NEEDED, shipped_marker_sets
+from gaitdisc.kinematics.marker_set import NEEDED, read_marker_sets
 from gaitdisc.kinematics.markers import marker_labels, marker_places
 from gaitdisc.kinematics.pose import hip_of_spines
 from gaitdisc.recording import Finding, Recording, Trial
 from gaitdisc.recording.arrays import Values
-from gaitdisc.recording.strides import interpolated
+from gaitdisc.recording.strides import interpolate
 
 KIND = "contradicted"
 Contradictions = Iterator[tuple[Sequence[str], str]]  # channels that cannot be what they say, and why
@@ -52,11 +52,11 @@ def without_contradicted(trial: Trial) -> Trial:
     for check, streams in (
         (_in_radians, ("kinematics",)),
         (_against_markers, ("kinematics", "markers")),
-        (_turned_hips, ("kinematics",)),
+        (_find_turned_hips, ("kinematics",)),
         (_moment_sizes, ("moments",)),
         (_powers, ("moments", "kinematics")),
-        (_turned_moments, ("moments", "kinematics")),
-        (_turned_moments, ("moments", "forces")),
+        (_find_turned_moments, ("moments", "kinematics")),
+        (_find_turned_moments, ("moments", "forces")),
     ):
         if not set(streams) <= set(trial.streams):
             continue
@@ -76,7 +76,7 @@ def line_angles(markers: Recording) -> dict[str, Values]:
     """Angles of the lines hip to knee to ankle and heel to toe, each (frame,) [deg], as far as there are markers."""
     labels = marker_labels(markers)
     named: dict[tuple[str, str], list[str]] = {}
-    for known in sorted(shipped_marker_sets().values(), key=lambda one: len(one.names(labels))):  # the best one last
+    for known in sorted(read_marker_sets().values(), key=lambda one: len(one.names(labels))):  # the best one last
         own, on = known.names(labels), itertools.product(NEEDED, "lr")
         named |= {place: [own[name] for name in names] for place in on if (names := known.landmark(*place, own))}
     seen = {place: marker_places(markers, names).mean(axis=1) for place, names in named.items()}
@@ -133,7 +133,7 @@ def _against_markers(angles: Recording, markers: Recording) -> Contradictions:
     except GaitdiscError:  # no marker has three coordinates
         return
     for name in sorted(set(lines) & set(angles.names)):
-        line = interpolated(markers.time, lines[name][:, None], angles.time)[:, 0]
+        line = interpolate(markers.time, lines[name][:, None], angles.time)[:, 0]
         if not np.isfinite(line).any():
             continue
         known = np.isfinite(angles[name]) & (np.abs(line - np.nanmedian(line)) < OTHER_PLACE_DEG)
@@ -160,7 +160,7 @@ def _against_markers(angles: Recording, markers: Recording) -> Contradictions:
             yield [far], f"{what}, {near} {both[near].mean():+.0f} deg: an offset that the markers do not show"
 
 
-def _turned_hips(angles: Recording) -> Contradictions:
+def _find_turned_hips(angles: Recording) -> Contradictions:
     """A hip that flexes with the other one while the knees alternate, or both that extend while their knees swing."""
     names = [f"{joint}_{side}" for joint in ("hip_flexion", "knee_angle") for side in "rl"]
     if not set(names) <= set(angles.names) or min(_range(angles[name]) for name in names) < MOVES_DEG:
@@ -204,7 +204,7 @@ def _powers(moments: Recording, angles: Recording) -> Contradictions:
         if units.get(moment, "").replace("N m", "W") != units.get(power):
             continue
         rate = np.radians(np.gradient(angles[angle])) * angles.rate_hz
-        made = moments[moment] * interpolated(angles.time, rate[:, None], moments.time)[:, 0]
+        made = moments[moment] * interpolate(angles.time, rate[:, None], moments.time)[:, 0]
         known = np.isfinite(made) & np.isfinite(moments[power]) & (moments[power] != 0)
         made, given = made[known], moments[power][known]
         if len(made) < FEWEST or not made.any():
@@ -217,12 +217,12 @@ def _powers(moments: Recording, angles: Recording) -> Contradictions:
             yield names, f"{what}: the sign or unit of one of them is wrong"
 
 
-def _turned_moments(moments: Recording, source: Recording) -> Contradictions:
+def _find_turned_moments(moments: Recording, source: Recording) -> Contradictions:
     """Moments of a hip that go with its angle, which swings the leg on, or of an ankle that lift the loaded foot."""
     for moment, beside in ((f"{m}_{side}_moment", name.format(side)) for m, name in OPPOSED.items() for side in "rl"):
         if moment not in moments.names or beside not in source.names:
             continue
-        other = interpolated(source.time, source[beside][:, None], moments.time)[:, 0]
+        other = interpolate(source.time, source[beside][:, None], moments.time)[:, 0]
         own = np.where(moments[moment] == 0, np.nan, moments[moment])
         r = _correlation(own, other)
         if r > AGAINST and _range(other) >= MOVES_DEG and (beside.startswith("hip") or np.nanmean(own) > 0):

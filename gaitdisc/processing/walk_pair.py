@@ -12,11 +12,11 @@ import numpy as np
 
 from gaitdisc.errors import GaitdiscError, StrideError
 from gaitdisc.ingest.study import Filters
-from gaitdisc.processing.contact_choice import ENOUGH, PREFERRED, chosen_contacts, seen_contacts
+from gaitdisc.processing.contact_choice import ENOUGH, PREFERRED, choose_contacts, find_contacts
 from gaitdisc.processing.pooled_cycles import WalkSummary
-from gaitdisc.processing.process import envelope_of, knees_and_hips, quality_findings, stride_findings, walk_summary
+from gaitdisc.processing.process import knees_and_hips, make_envelope, quality_findings, stride_findings, walk_summary
 from gaitdisc.recording import Finding, Recording, Trial
-from gaitdisc.signals.butterworth import KINEMATICS_HZ, lowpassed
+from gaitdisc.signals.butterworth import KINEMATICS_HZ, low_pass
 from gaitdisc.signals.contact_movement import angle_contacts
 from gaitdisc.signals.contacts import Contacts
 from gaitdisc.signals.gaps import without_spikes
@@ -50,8 +50,8 @@ def walk_pair(
 
     cutoff_hz: -3 dB frequency of one pass of the low-pass of angles and moments
 
-    >>> from gaitdisc.cohort.cohort import the_twelve, walks_of
-    >>> walks = walks_of(the_twelve()[0], 20.0).trials.values()
+    >>> from gaitdisc.cohort.cohort import the_twelve, make_walks
+    >>> walks = make_walks(the_twelve()[0], 20.0).trials.values()
     >>> [(walk.detector, walk.curves.shape[1:]) for walk in walk_pair(*walks)]
     [('force', (101, 28)), ('force', (101, 28))]
     """
@@ -75,9 +75,9 @@ def _with_strides(trial: Trial) -> Trial:
     if "kinematics" not in trial.streams or trial.stream("kinematics").duration_s > MAX_S:
         return trial
     try:
-        chosen_contacts(trial)
+        choose_contacts(trial)
     except GaitdiscError:
-        return repeated_stride(trial)
+        return repeat_stride(trial)
     return trial
 
 
@@ -111,9 +111,9 @@ def _common_contacts(trials: list[Trial], detector: str) -> tuple[str, list[Mapp
 
 def _contacts(trial: Trial, name: str, joints: Recording | None) -> Mapping[str, Contacts]:
     if name != "angles":
-        seen, _ = seen_contacts(trial)  # as placed: one recording may lack the plate that corrects the other
+        seen, _ = find_contacts(trial)  # as placed: one recording may lack the plate that corrects the other
         contacts = {side: one for side, one in seen.get(name, {}).items() if len(one) > 1}
-        return contacts or chosen_contacts(trial, name).contacts  # which says why there are none
+        return contacts or choose_contacts(trial, name).contacts  # which says why there are none
     if joints is None:
         raise StrideError(
             "contacts from angles need hip flexion of one side in both recordings",
@@ -174,11 +174,11 @@ def _state(trial: Trial, key: str, cutoff_hz: float) -> Recording | None:
     if not recording.channels:
         return None
     if key == "emg":
-        return envelope_of(recording, Filters())
-    return lowpassed(without_spikes(recording), FORCE_HZ if key == "forces" else cutoff_hz)
+        return make_envelope(recording, Filters())
+    return low_pass(without_spikes(recording), FORCE_HZ if key == "forces" else cutoff_hz)
 
 
-def repeated_stride(trial: Trial) -> Trial:
+def repeat_stride(trial: Trial) -> Trial:
     """Walk that repeats the one stride of a trial, so that contacts are found as in any other walk.
 
     Only streams on the time base of the kinematics are kept. A last sample that repeats the first is left out.
@@ -188,7 +188,7 @@ def repeated_stride(trial: Trial) -> Trial:
     >>> from gaitdisc.channel import Channel
     >>> t = np.linspace(0.0, 1.0, 101)
     >>> hip = Recording(t, 30 * np.cos(2 * np.pi * t)[:, None], (Channel("hip_flexion_r", "angle", "deg", "r"),))
-    >>> round(repeated_stride(Trial("sim", {"kinematics": hip})).stream("kinematics").duration_s, 2)
+    >>> round(repeat_stride(Trial("sim", {"kinematics": hip})).stream("kinematics").duration_s, 2)
     8.0
     """
     kinematics = trial.stream("kinematics")

@@ -64,13 +64,13 @@ def first_strides(trials: Sequence[Samples], count: int, reach_s: float) -> Firs
     return FirstStrides(windows.rows(first), rest & ~near)
 
 
-def calibrated(done: WindowModel, strides: Samples, penalty: float = USUAL_PENALTY) -> WindowModel:
+def calibrate(done: WindowModel, strides: Samples, penalty: float = USUAL_PENALTY) -> WindowModel:
     """Correct a model for one person by ridge regression of its error, shrunk towards the model as it is.
 
     Minimises sum (y - f(x) - b - W h)^2 / windows + penalty sum W^2, where h holds the scaled readings with their
     history and, three times as heavy, the scaled states that the model f reconstructs.
 
-    penalty: from `rehearsed`; a large one takes off the mean error alone
+    penalty: from `rehearse`; a large one takes off the mean error alone
     """
     return _calibrated(done, strides, (penalty,))[0]
 
@@ -83,7 +83,7 @@ class Rehearsal:
     missed: NDArray[np.float64]  # (window, state) [each state's unit], errors on that person's further strides
 
 
-def rehearsed(done: WindowModel, trials: Sequence[Samples], count: int) -> Rehearsal:
+def rehearse(done: WindowModel, trials: Sequence[Samples], count: int) -> Rehearsal:
     """Calibrate for the person models are chosen by, never the one they are tested on, and see which penalty serves."""
     parted = first_strides(trials, count, done.sensing.reach_s)
     rest = stacked([each for each in trials if len(each)]).rows(parted.rest)

@@ -28,13 +28,13 @@ from gaitdisc.reconstruction.window_model import (
     Ensemble,
     Sensing,
     WindowModel,
-    network_of,
+    make_network,
 )
-from gaitdisc.reconstruction.windows import Lags, filled, refuse_unknown_way, windows_of
+from gaitdisc.reconstruction.windows import Lags, cut_windows, fill_readings, refuse_unknown_way
 from gaitdisc.recording import Recording, Scale
 from gaitdisc.recording.arrays import real_array
-from gaitdisc.saved.unit_folder import DamagedError, check_files, file_sha256, read_sealed, sealed_text
-from gaitdisc.whole_file import whole_file, write_whole, written_so_far, written_together
+from gaitdisc.saved.unit_folder import DamagedError, check_files, file_sha256, read_sealed, seal_text
+from gaitdisc.whole_file import find_written, whole_file, write_together, write_whole
 
 if TYPE_CHECKING:
     from gaitdisc.models.carried_windows import CarriedWindows
@@ -77,8 +77,8 @@ class SensingModel:
                     f"{recording.source.file or 'the recording'} has it in {found.unit}",
                     "State the unit in the study's [channels].",
                 )
-        read = filled(recording.selected(what.sensors), what.sensors, missing, self.reconstructor.sensor_means)
-        windows = windows_of(
+        read = fill_readings(recording.selected(what.sensors), what.sensors, missing, self.reconstructor.sensor_means)
+        windows = cut_windows(
             read, what.sensors, (), what.lags, np.zeros(len(read.time)), self.reconstructor.kind == MASKED
         )
         rows = np.searchsorted(recording.time, windows.time - 1e-9)
@@ -88,7 +88,7 @@ class SensingModel:
         return Recording(recording.time, values, states, recording.subject, recording.condition, recording.source)
 
 
-@written_together()
+@write_together()
 def save_model(model: SensingModel, folder: Path) -> None:
     """Save a model: `weights.npz`, and `model.json` with the hashes of both."""
     done = model.reconstructor
@@ -105,9 +105,9 @@ def save_model(model: SensingModel, folder: Path) -> None:
         "n_fitted": done.n_fitted,
         "seconds": done.seconds,
         "device": done.device,
-        "sha256": {path.name: file_sha256(written_so_far(path)) for path in places},
+        "sha256": {path.name: file_sha256(find_written(path)) for path in places},
     }
-    write_whole(folder / NAME, sealed_text(data))
+    write_whole(folder / NAME, seal_text(data))
 
 
 def load_model(folder: Path) -> SensingModel:
@@ -135,7 +135,7 @@ def load_model(folder: Path) -> SensingModel:
             f"it lacks {error}" if isinstance(error, KeyError) else found,
             "Run `gaitdisc reconstruct` again.",
         ) from error
-    build = None if kind in WITHOUT_NETWORK else network_of(kind, len(what.sensors))
+    build = None if kind in WITHOUT_NETWORK else make_network(kind, len(what.sensors))
     members = tuple(load_weights(path, build) for path in _places(kind, folder))
     weights = Ensemble(members) if kind == ENSEMBLE else members[0]
     readings = 1 if kind in STATIC else what.lags.count

@@ -44,7 +44,7 @@ def write_onnx(model: SensingModel, path: Path) -> None:
         ) from error
     fitted = model.reconstructor.model
     graph = _Graph(helper, np.float64 if isinstance(fitted, FourierRidge) else np.float32)
-    x = graph.add("Cast", WINDOW, to=graph.type_of(graph.number))
+    x = graph.add("Cast", WINDOW, to=graph.tensor_type(graph.number))
     if isinstance(fitted, FourierRidge):
         h = graph.scaled(x, fitted.x_scale)
         if len(fitted.phases):
@@ -57,7 +57,7 @@ def write_onnx(model: SensingModel, path: Path) -> None:
         states = graph.add("Mean", *each)
     else:
         states = _network(graph, fitted, x, model)  # type: ignore[arg-type]
-    graph.add("Cast", states, to=graph.type_of(np.float32), output=STATES)
+    graph.add("Cast", states, to=graph.tensor_type(np.float32), output=STATES)
     whole = graph.whole(len(fitted.inputs), len(fitted.outputs))
     helper.set_model_props(whole, _metadata(model))
     checker.check_model(whole, full_check=True)
@@ -91,14 +91,14 @@ class _Graph:
     nodes: list[Any] = field(default_factory=list)
     constants: list[Any] = field(default_factory=list)
 
-    def type_of(self, number: type) -> int:
+    def tensor_type(self, number: type) -> int:
         return self.helper.np_dtype_to_tensor_dtype(np.dtype(number))
 
     def constant(self, values: NDArray[Any] | list[int]) -> str:
         kind = np.int64 if isinstance(values, list) else self.number
         array, name = np.ascontiguousarray(values, kind), f"c{len(self.constants)}"
         data = array.tobytes()
-        self.constants.append(self.helper.make_tensor(name, self.type_of(kind), array.shape, data, raw=True))
+        self.constants.append(self.helper.make_tensor(name, self.tensor_type(kind), array.shape, data, raw=True))
         return name
 
     def add(self, operator: str, *inputs: str, output: str = "", outputs: int = 1, **attributes: Any) -> str:
@@ -108,7 +108,7 @@ class _Graph:
         return names[-1]
 
     def whole(self, inputs: int, outputs: int) -> Any:
-        single = self.type_of(np.float32)
+        single = self.tensor_type(np.float32)
         ends = [
             self.helper.make_tensor_value_info(name, single, [None, size])
             for name, size in ((WINDOW, inputs), (STATES, outputs))
@@ -150,7 +150,7 @@ def _recurrent(graph: _Graph, shred: Any, weights: dict[str, NDArray[Any]], x: s
     if shred.masked:
         missing = graph.add("IsNaN", h)
         known = graph.add("Where", missing, graph.constant(np.array(0.0)), h)
-        h = graph.add("Concat", known, graph.add("Cast", missing, to=graph.type_of(graph.number)), axis=2)
+        h = graph.add("Concat", known, graph.add("Cast", missing, to=graph.tensor_type(graph.number)), axis=2)
     h = graph.add("Transpose", h, perm=[1, 0, 2])  # (reading, window, input)
     operator, order = ORDERS[shred.cell]
     extra: dict[str, Any] = {"linear_before_reset": 1} if shred.cell == "gru" else {}

@@ -12,9 +12,9 @@ import pandas as pd
 from gaitdisc.reconstruction.reconstruction import CALIBRATED, FLOORS, WORTH, Reconstruction, enough_sensors
 from gaitdisc.report.figure import Figure, file_names, save_figures
 from gaitdisc.report.page import write_page
-from gaitdisc.report.panels import MEASURED, RECONSTRUCTED, Room, in_style, legend, lines_of, panels_for, sheets
-from gaitdisc.report.table import Table, left_out_table, provenance_tables, save_tables, seen_table
-from gaitdisc.words import counted, label, listed, number, plain, unit_text
+from gaitdisc.report.panels import MEASURED, RECONSTRUCTED, Room, in_style, legend, legend_lines, panels_for, sheets
+from gaitdisc.report.table import Table, provenance_tables, save_tables, tabulate_findings, tabulate_refusals
+from gaitdisc.words import counted, label, listing, number, plain, unit_text
 
 if TYPE_CHECKING:
     import rich.table
@@ -96,12 +96,12 @@ def reconstruction_sentences(done: Reconstruction) -> list[str]:
     """What is reconstructed from which sensors, how well, by which model, and what history and a network buy."""
     best = done.recommended
     over: Any = done.over_participants()
-    sensors, kinds = listed([label(channel.name) for channel in done.sensors]), list(done.models)
+    sensors, kinds = listing([label(channel.name) for channel in done.sensors]), list(done.models)
     row = over.loc[best]
     angles = _has_angles(done)
     rmse = f"an RMSE of {_plain(row['rmse_deg'], 2)} deg over the angles and " if angles else ""
     noun = "future state" if _ahead(done) else "other state"
-    units = listed(list(dict.fromkeys(channel.unit for channel in done.states)))
+    units = listing(list(dict.fromkeys(channel.unit for channel in done.states)))
     what = counted(len(done.states), noun) if angles else f"{counted(len(done.states), 'channel')} [{units}]"
     sentences = [
         f"From {sensors} {what} {'is' if len(done.states) == 1 else 'are'} reconstructed with {rmse}a relative L2 of "
@@ -112,8 +112,8 @@ def reconstruction_sentences(done: Reconstruction) -> list[str]:
     if compared:
         measure, digits, unit = ("rmse_deg", 2, " deg") if angles else ("relative_l2", 3, "")
         words = [f"{kind} {_plain(over.loc[kind, measure], digits)}{unit}" for kind in compared]
-        sentences.append(f"For comparison: {listed(words)}.")
-    sentences += _won(done, best, "rmse_deg" if angles else "relative_l2")
+        sentences.append(f"For comparison: {listing(words)}.")
+    sentences += _count_wins(done, best, "rmse_deg" if angles else "relative_l2")
     sentences += _after_calibration(done, best) if angles else []
     sentences += search_sentences(done.search) if done.search is not None else []
     if "leaks" in done.split:
@@ -123,7 +123,7 @@ def reconstruction_sentences(done: Reconstruction) -> list[str]:
     return [*sentences, NOT_MSE] if angles else sentences
 
 
-def _won(done: Reconstruction, best: str, measure: str) -> list[str]:
+def _count_wins(done: Reconstruction, best: str, measure: str) -> list[str]:
     """In how many participants the recommended model errs least, and who else does."""
     wide: Any = done.summary.pivot_table(index="participant", columns="model", values=measure)
     least = wide[[model for model in wide.columns if not model.endswith(CALIBRATED.format(""))]].idxmin(axis=1)
@@ -134,7 +134,7 @@ def _won(done: Reconstruction, best: str, measure: str) -> list[str]:
         return [f"It has the smallest error in all {people} participants."]
     counts = least[least != best].value_counts(sort=False).sort_values(ascending=False, kind="stable")
     others = [f"{model} in {count}" for model, count in counts.items()]
-    return [f"It has the smallest error in {own} of {people} participants, {listed(others)}."]
+    return [f"It has the smallest error in {own} of {people} participants, {listing(others)}."]
 
 
 def _after_calibration(done: Reconstruction, best: str) -> list[str]:
@@ -196,14 +196,14 @@ def _rmse(value: Any, unit: str) -> str:
 @in_style
 def reconstruction_figures(done: Reconstruction, participant: str, name: str) -> list[Figure]:
     """One panel a state: the mean of what was measured with its spread, and what the models reconstruct."""
-    curves = shown_curves(done, participant)
+    curves = pick_curves(done, participant)
     return [
         _figure(done, participant, curves[curves["state"].isin([channel.name for channel in part])], f"{name}-{k + 1}")
         for k, part in enumerate(sheets(list(done.states), MOST_PANELS, name).values())
     ]
 
 
-def shown_curves(done: Reconstruction, participant: str) -> pd.DataFrame:
+def pick_curves(done: Reconstruction, participant: str) -> pd.DataFrame:
     """Curves of one person, of the models that are drawn: linear, the recommended one, SHRED."""
     shown = {"linear", done.recommended, "shred"}
     return done.curves[(done.curves["participant"] == participant) & done.curves["model"].isin(shown)]
@@ -214,7 +214,7 @@ def states_key(models: list[str]) -> list[Artist]:
     from matplotlib.patches import Patch
 
     looks = {model: RECONSTRUCTED[model.removesuffix(", calibrated")] for model in models}
-    return [Patch(color=MEASURED.colour, alpha=0.2, label="measured, mean ± sd"), *lines_of(looks)]
+    return [Patch(color=MEASURED.colour, alpha=0.2, label="measured, mean ± sd"), *legend_lines(looks)]
 
 
 def _figure(done: Reconstruction, participant: str, numbers: pd.DataFrame, name: str) -> Figure:
@@ -257,7 +257,7 @@ def search_table(found: pd.DataFrame) -> Table:
     rows = tuple(
         (
             f"{row['sensors']}{' *' if k == chosen else ''}",
-            listed([label(name) for name in str(row["names"]).split(", ")]),
+            listing([label(name) for name in str(row["names"]).split(", ")]),
             number(float(row["loss"]) ** 0.5, 3),
             number(float(row["rmse_deg"]), 2),
             str(row["fits"]),
@@ -280,7 +280,7 @@ def search_sentences(found: pd.DataFrame) -> list[str]:
     """How many sensors are enough by a reconstruction's `search`, and what one more would bring."""
     chosen = enough_sensors(found)
     row = found.iloc[chosen]
-    names = listed([label(name) for name in str(row["names"]).split(", ")])
+    names = listing([label(name) for name in str(row["names"]).split(", ")])
     size = int(row["sensors"])
     if chosen + 1 < len(found):
         less = 1 - (float(found["loss"].iloc[chosen + 1]) / float(row["loss"])) ** 0.5
@@ -300,8 +300,8 @@ def write_reconstruction_report(done: Reconstruction, folder: Path) -> Path:
         "states": states_table(done),
         **({"search": search_table(done.search)} if done.search is not None else {}),
         "participants": participants_table(done),
-        "left_out": left_out_table(done.refusals, "left-out", f"Left out, n = {len(done.refusals)}."),
-        "findings": seen_table(done.findings, FINDINGS.format(len(done.findings)), "finding"),
+        "left_out": tabulate_refusals(done.refusals, "left-out", f"Left out, n = {len(done.refusals)}."),
+        "findings": tabulate_findings(done.findings, FINDINGS.format(len(done.findings)), "finding"),
         **provenance_tables(done.provenance),
     }
     save_tables(tables.values(), folder)

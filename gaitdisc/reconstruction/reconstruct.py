@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from gaitdisc.channel import Channel
 from gaitdisc.errors import StrideError
-from gaitdisc.reconstruction.calibration import calibrated, first_strides, rehearsed
+from gaitdisc.reconstruction.calibration import calibrate, first_strides, rehearse
 from gaitdisc.reconstruction.model_folder import SensingModel
 from gaitdisc.reconstruction.reconstruction import CALIBRATED, FLOORS
 from gaitdisc.reconstruction.state_errors import (
@@ -214,12 +214,12 @@ def _fitted(parts: Parts, what: Sensing, fits: Fits) -> tuple[list[Fitted], list
         done = fit_reconstructor(kind, what, training, check, fits.seed, fits.device)
         missed = done(check) - check.y
         alone = parts.rule != PERSON_OUT
-        half = half_widths(missed) if alone else crossed_widths(kind, what, parts, missed, fits.seed)
+        half = half_widths(missed) if alone else cross_widths(kind, what, parts, missed, fits.seed)
         fitted.append((done, half))
         predictions.append(_Prediction(kind, done(test), missed, half, done.n_fitted, done.seconds))
         if first is not None:
-            rehearsal = rehearsed(done, parts.check, fits.calibration)
-            states = calibrated(done, first.strides, rehearsal.penalty)(test)
+            rehearsal = rehearse(done, parts.check, fits.calibration)
+            states = calibrate(done, first.strides, rehearsal.penalty)(test)
             name = CALIBRATED.format(kind)
             half = half_widths(rehearsal.missed)
             predictions.append(_Prediction(name, states, rehearsal.missed, half, done.n_fitted, done.seconds))
@@ -256,9 +256,9 @@ FEWEST = 3  # people of whom one can be left out, one chosen by, one fitted
 STANDARD = "delay ridge"  # stands in for the others in how far the checked people are from typical
 
 
-def crossed_errors(kind: str, what: Sensing, parts: Parts, seed: int = 0) -> NDArray[np.float64]:
+def cross_errors(kind: str, what: Sensing, parts: Parts, seed: int = 0) -> NDArray[np.float64]:
     """Errors (window, state) on everybody fitted or checked, in five groups, each by a model of the others."""
-    people = people_of((*parts.check, *parts.training))
+    people = group_people((*parts.check, *parts.training))
     names = list(people)
     errors = []
     for group in range(min(FOLDS, len(names))):
@@ -270,7 +270,7 @@ def crossed_errors(kind: str, what: Sensing, parts: Parts, seed: int = 0) -> NDA
     return np.concatenate(errors)
 
 
-def crossed_widths(
+def cross_widths(
     kind: str, what: Sensing, parts: Parts, missed: NDArray[np.float64], seed: int = 0
 ) -> NDArray[np.float64]:
     """Half width of the 90 % interval for a person whom a model has not seen, (state,) [each state's unit].
@@ -283,17 +283,17 @@ def crossed_widths(
     Source: Barber, Candes, Ramdas and Tibshirani 2021, Predictive inference with the jackknife+ (CV+); here one
         interval for all, about what the model of everybody reconstructs.
     """
-    if len(people_of((*parts.check, *parts.training))) < FEWEST:
+    if len(group_people((*parts.check, *parts.training))) < FEWEST:
         return half_widths(missed)
     if kind in WITHOUT_NETWORK:
-        return half_widths(crossed_errors(kind, what, parts, seed))
+        return half_widths(cross_errors(kind, what, parts, seed))
     check = parts.checked()
     standard = fit_reconstructor(STANDARD, what, parts.fitted(), check, seed)
     one = half_widths(standard(check) - check.y)
-    return half_widths(missed) * half_widths(crossed_errors(STANDARD, what, parts, seed)) / one
+    return half_widths(missed) * half_widths(cross_errors(STANDARD, what, parts, seed)) / one
 
 
-def people_of(trials: Sequence[Samples]) -> dict[str, list[Samples]]:
+def group_people(trials: Sequence[Samples]) -> dict[str, list[Samples]]:
     """Trials of each person, by pseudonym."""
     found: dict[str, list[Samples]] = {}
     for trial in trials:

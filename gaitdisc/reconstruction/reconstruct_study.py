@@ -13,11 +13,11 @@ from gaitdisc.errors import GaitdiscError, SamplingError, SchemaError
 from gaitdisc.ingest.reading import read_trial
 from gaitdisc.ingest.storage import write_storage
 from gaitdisc.ingest.study import Study
-from gaitdisc.reconstruction.calibration import calibrated
+from gaitdisc.reconstruction.calibration import calibrate
 from gaitdisc.reconstruction.model_folder import load_model
 from gaitdisc.reconstruction.reconstruct import BASELINES, Fits, PersonReconstruction, reconstruct
 from gaitdisc.reconstruction.reconstruction import CALIBRATED, Reconstruction
-from gaitdisc.reconstruction.sensed_walks import STATES, SensedWalk, SensedWalks, sensed_walks
+from gaitdisc.reconstruction.sensed_walks import STATES, SensedWalk, SensedWalks, read_walks
 from gaitdisc.reconstruction.sensor_search import search_sensors
 from gaitdisc.reconstruction.state_errors import INTERVAL_LEVEL, coverage
 from gaitdisc.reconstruction.window_model import KINDS, ON_REQUEST, Sensing, fitting_device, sensing
@@ -25,14 +25,14 @@ from gaitdisc.reconstruction.windows import (
     RULES,
     Lags,
     Parts,
+    cut_windows,
     split_by_subject,
     split_by_trial,
     split_within,
-    windows_of,
 )
 from gaitdisc.recording import Recording, Samples
-from gaitdisc.saved.provenance import Refusal, made_now
-from gaitdisc.signals.butterworth import KINEMATICS_HZ, lowpassed
+from gaitdisc.saved.provenance import Refusal, provenance_now
+from gaitdisc.signals.butterworth import KINEMATICS_HZ, low_pass
 
 SECTION = "5.3.3, Table 5.2"
 SUBJECT, CONDITION = "subject", "condition"
@@ -78,7 +78,7 @@ def reconstruct_study(
     """Fit and test every kind of model for every participant."""
     settings = settings or ReconstructionSettings()
     settings = replace(settings, device=fitting_device(settings.kinds, settings.device))
-    walks = sensed_walks(study, sensors, settings.condition_read, settings.targets)
+    walks = read_walks(study, sensors, settings.condition_read, settings.targets)
     names = tuple(c.name for c in walks.channels if settings.targets == STATES or c.name not in sensors)
     what = sensing(names, tuple(sensors), settings.lags(walks.rate_hz), walks.rate_hz)
     channels = walks.named((*what.sensors, *what.states))
@@ -90,7 +90,7 @@ def reconstruct_study(
     refused: GaitdiscError | None = None
     for person in windows:
         try:
-            parts = parts_of(walks, windows, person, settings)
+            parts = partition(walks, windows, person, settings)
             done.append(reconstruct(person, parts, what, channels, fits))
         except GaitdiscError as error:
             refusals.append(Refusal(person, "", str(error)))
@@ -101,7 +101,7 @@ def reconstruct_study(
     return _result(study, walks, what, settings, done, refusals), done
 
 
-def parts_of(
+def partition(
     walks: SensedWalks, windows: dict[str, list[Samples]], person: str, settings: ReconstructionSettings
 ) -> Parts:
     """Windows to fit, to choose by and to test on, for one person."""
@@ -109,11 +109,11 @@ def parts_of(
     if settings.split == SUBJECT:
         return split_by_subject(list(windows.values()), list(windows).index(person))
     if settings.split == CONDITION:
-        return split_by_trial(windows[person], _tested(walks.people[person], person, settings.condition), reach_s)
+        return split_by_trial(windows[person], _test(walks.people[person], person, settings.condition), reach_s)
     return split_within(windows[person], settings.split, reach_s, settings.seed)
 
 
-def _tested(walks: Sequence[SensedWalk], person: str, condition: str) -> list[int]:
+def _test(walks: Sequence[SensedWalk], person: str, condition: str) -> list[int]:
     words = [walk.recording.condition for walk in walks]
     tested = [k for k, word in enumerate(words) if word == condition]
     if not tested or len(tested) == len(words):
@@ -160,7 +160,7 @@ def _result(
         curves=curves,
         refusals=tuple(refusals),
         findings=walks.findings,
-        provenance=made_now(used, settings.seed, walks.files, SECTION),
+        provenance=provenance_now(used, settings.seed, walks.files, SECTION),
     )
 
 
@@ -173,13 +173,13 @@ def search_study(study: Study, most: int, settings: ReconstructionSettings | Non
             f"{settings.targets} are to be reconstructed {settings.ahead_s:g} s ahead",
             "Search without --targets and --ahead. Then name the sensors with --sensors.",
         )
-    walks = sensed_walks(study, (), settings.condition_read)
+    walks = read_walks(study, (), settings.condition_read)
     names, lags = [channel.name for channel in walks.channels], settings.lags(walks.rate_hz)
     windows = {
-        person: [windows_of(walk.recording, names, names, lags, walk.phi) for walk in found]
+        person: [cut_windows(walk.recording, names, names, lags, walk.phi) for walk in found]
         for person, found in walks.people.items()
     }
-    return search_sensors([parts_of(walks, windows, person, settings) for person in windows], walks.channels, most)
+    return search_sensors([partition(walks, windows, person, settings) for person in windows], walks.channels, most)
 
 
 @dataclass(frozen=True, eq=False)
@@ -221,12 +221,12 @@ def reconstruct_recording(
     what = saved.reconstructor.sensing
     if calibration is not None:
         same = read_trial(calibration).stream("kinematics")
-        walk = lowpassed(same.selected([*what.sensors, *what.states]), cutoff_hz)
+        walk = low_pass(same.selected([*what.sensors, *what.states]), cutoff_hz)
         saved(walk)  # refuses another rate or unit
         strides = what.windows(walk, np.zeros(len(walk.time)))
-        saved = replace(saved, reconstructor=calibrated(saved.reconstructor, strides))
+        saved = replace(saved, reconstructor=calibrate(saved.reconstructor, strides))
     names = [name for name in (*what.sensors, *what.states) if name in kinematics.names or name in what.sensors]
-    filtered = lowpassed(kinematics.selected(names), cutoff_hz)
+    filtered = low_pass(kinematics.selected(names), cutoff_hz)
     states = saved(filtered, missing)
     known = np.isfinite(states.values).all(axis=1)
     if known.sum() < 2:

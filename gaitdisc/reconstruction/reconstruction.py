@@ -14,7 +14,7 @@ from gaitdisc.channel import Channel
 from gaitdisc.recording import Finding
 from gaitdisc.saved.kind import CSV, Kind, Saved
 from gaitdisc.saved.provenance import Provenance, Refusal
-from gaitdisc.words import html_of
+from gaitdisc.words import as_html
 
 NEAR = 1.02  # of the least error on the check part: a cheaper model that is within this is recommended instead
 WORTH = 0.1  # of the root mean squared error, which one more sensor must take off
@@ -114,7 +114,7 @@ class Reconstruction(Saved, file="reconstruction.json"):
             ("participants", ", ".join(self.participants)),
             ("recommended model", self.recommended),
         ]
-        return html_of(self.title or "Reconstruction", rows)
+        return as_html(self.title or "Reconstruction", rows)
 
 
 class OverPeople(NamedTuple):

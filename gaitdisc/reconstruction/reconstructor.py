@@ -16,7 +16,7 @@ from gaitdisc.ingest.table import frame_columns, has_times
 from gaitdisc.reconstruction.model_folder import SensingModel, load_model, save_model
 from gaitdisc.reconstruction.state_errors import half_widths
 from gaitdisc.reconstruction.window_model import Sensing, fit_reconstructor
-from gaitdisc.reconstruction.windows import SEAM_S, Lags, stacked, windows_of
+from gaitdisc.reconstruction.windows import SEAM_S, Lags, cut_windows, stacked
 from gaitdisc.recording import Recording, Samples
 from gaitdisc.recording.arrays import real_array
 from gaitdisc.saved.kind import Kind, Saved
@@ -201,7 +201,7 @@ class Reconstructor(Saved, file="model.json"):
         """
         what = self.model.reconstructor.sensing
         read = self._recording(x, what.sensors)
-        return windows_of(read, what.sensors, (), what.lags, np.asarray(percent, float))
+        return cut_windows(read, what.sensors, (), what.lags, np.asarray(percent, float))
 
     def get_params(self, deep: bool = True) -> dict[str, Any]:  # noqa: ARG002
         """Settings by name, for scikit-learn's `clone` and `Pipeline`.
@@ -357,7 +357,7 @@ def _check_rate(rate_hz: float, found_hz: float, what: str) -> None:
         )
 
 
-def _named(given: Any) -> tuple[str, ...]:
+def _list_names(given: Any) -> tuple[str, ...]:
     """Names of the columns of a table or a recording; none of an array."""
     if isinstance(given, Recording):
         return given.names
@@ -366,12 +366,12 @@ def _named(given: Any) -> tuple[str, ...]:
 
 
 def _names(given: Any, word: str) -> tuple[str, ...]:
-    return _named(given) or tuple(f"{word}_{n}" for n in range(1, _array(given, f"{word}s").shape[1] + 1))
+    return _list_names(given) or tuple(f"{word}_{n}" for n in range(1, _array(given, f"{word}s").shape[1] + 1))
 
 
 def _in_order(given: Any, sensors: tuple[str, ...]) -> Any:
     """Columns of the sensors or states by name, where both have names; else as given."""
-    names = _named(given)
+    names = _list_names(given)
     if not names or all(re.fullmatch(r"(sensor|state)_\d+", name) for name in sensors):
         return given
     absent = [name for name in sensors if name not in names]

@@ -12,18 +12,18 @@ from numpy.typing import NDArray
 from gaitdisc.channel import Channel
 from gaitdisc.errors import ChannelError, GaitdiscError, SamplingError, SchemaError, UnitError
 from gaitdisc.ingest.c3d import C3DReader
-from gaitdisc.ingest.public_words import PublicWords, of_trial, words_of
+from gaitdisc.ingest.public_words import PublicWords, list_words, of_trial
 from gaitdisc.ingest.study import Models, Participant, Study
 from gaitdisc.ingest.trial_sets import is_walk
-from gaitdisc.processing.contact_choice import chosen_contacts
+from gaitdisc.processing.contact_choice import choose_contacts
 from gaitdisc.processing.process import ReadWalk, StudyWalks, is_raw
 from gaitdisc.processing.processed_walks import public_trial
 from gaitdisc.processing.walk_pair import FORCE_HZ
 from gaitdisc.recording import Finding, Recording, Strides, Trial
-from gaitdisc.recording.strides import interpolated
+from gaitdisc.recording.strides import interpolate
 from gaitdisc.saved.provenance import Refusal
-from gaitdisc.signals.butterworth import lowpassed
-from gaitdisc.signals.emg import emg_findings, enveloped
+from gaitdisc.signals.butterworth import low_pass
+from gaitdisc.signals.emg import emg_findings, envelopes
 from gaitdisc.signals.strides import cut_strides
 
 EDGE_S = 0.3  # where a zero-lag filter lacks one side
@@ -77,7 +77,7 @@ class SensedWalks:
         return tuple(by_name[name] for name in names)
 
 
-def sensed_walks(study: Study, sensors: Sequence[str], condition: str = "", targets: str = STATES) -> SensedWalks:
+def read_walks(study: Study, sensors: Sequence[str], condition: str = "", targets: str = STATES) -> SensedWalks:
     """Read and process every walk of a study for reconstruction.
 
     sensors: channels of the kinematics that are read; they may be others than the 18 states
@@ -91,11 +91,11 @@ def sensed_walks(study: Study, sensors: Sequence[str], condition: str = "", targ
             if person.excluded:
                 refusals.append(Refusal(person.id, "", f"excluded in the study: {person.excluded}"))
                 continue
-            public = words_of(study, person, sensors)
+            public = list_words(study, person, sensors)
             for read in _walks(study, person, condition, reader, public, refusals):
                 trial = read.trial
                 try:
-                    walk, seen = _sensed(read, study, sensors, targets)
+                    walk, seen = _sense(read, study, sensors, targets)
                 except GaitdiscError as error:
                     reason = f"{trial.name}: {public.error(error)}"
                     refusals.append(Refusal(person.id, trial.condition, reason))
@@ -131,14 +131,14 @@ def _walks(
             continue
         try:
             read = own.read_walk(planned)
-            trial = of_trial(public, person, planned).known_channels(read.trial, streams)
+            trial = of_trial(public, person, planned).keep_known_channels(read.trial, streams)
             found.append(replace(read, trial=trial))
         except GaitdiscError as error:
             refusals.append(Refusal(person.id, planned.condition, str(public.error(error))))
     return found
 
 
-def _sensed(read: ReadWalk, study: Study, sensors: Sequence[str], targets: str) -> tuple[SensedWalk, list[Finding]]:
+def _sense(read: ReadWalk, study: Study, sensors: Sequence[str], targets: str) -> tuple[SensedWalk, list[Finding]]:
     trial = read.trial
     if targets != STATES:
         both, strides, seen = target_walk(trial, study, sensors, targets)
@@ -174,12 +174,12 @@ def target_walk(
     there = [key for key in SENSED if key in trial.streams] or [SENSED[0]]
     stream = next((key for key in there if set(sensors) <= set(trial.stream(key).names)), there[0])
     read = trial.stream(stream).selected(sensors)  # refuses, and names the nearest
-    read = lowpassed(read, filters.kinematics_hz, filters.order, filters.gap_s)
-    wanted, findings = _targets_of(trial, study, targets)
-    choice = chosen_contacts(trial, study.strides.detector, study.treadmill.direction if study.treadmill else "")
+    read = low_pass(read, filters.kinematics_hz, filters.order, filters.gap_s)
+    wanted, findings = _find_targets(trial, study, targets)
+    choice = choose_contacts(trial, study.strides.detector, study.treadmill.direction if study.treadmill else "")
     side = study.strides.side if study.strides.side in choice.contacts else next(iter(choice.contacts))
     strides = cut_strides(choice.contacts[side], None, study.strides.min_s, study.strides.max_s)
-    values = interpolated(wanted.time, wanted.values, read.time)
+    values = interpolate(wanted.time, wanted.values, read.time)
     if not np.isfinite(values).any():
         raise SamplingError(
             f"trial {trial.name}: {targets} and sensors must overlap in time",
@@ -205,7 +205,7 @@ def refuse_unknown_targets(targets: str) -> None:
         raise SchemaError("the kind of quantity is unknown", f"{targets!r} does not exist", f"Use: {known}.")
 
 
-def _targets_of(trial: Trial, study: Study, targets: str) -> tuple[Recording, list[Finding]]:
+def _find_targets(trial: Trial, study: Study, targets: str) -> tuple[Recording, list[Finding]]:
     key, quantities = TARGETS[targets]
     found = trial.stream(key).selected_by(lambda channel: channel.quantity in quantities)
     filters = study.filters
@@ -224,9 +224,9 @@ def _targets_of(trial: Trial, study: Study, targets: str) -> tuple[Recording, li
         for name, finding in dead.items()
     ]
     if key == "emg" and is_raw(found):
-        return enveloped(found, filters.emg_highpass_hz, filters.emg_lowpass_hz, filters.order), findings
+        return envelopes(found, filters.emg_highpass_hz, filters.emg_lowpass_hz, filters.order), findings
     cutoff_hz = {"emg": filters.emg_lowpass_hz, "forces": FORCE_HZ}.get(key, filters.kinematics_hz)
-    return lowpassed(found, cutoff_hz, filters.order, filters.gap_s), findings
+    return low_pass(found, cutoff_hz, filters.order, filters.gap_s), findings
 
 
 def _moving(walks: Sequence[SensedWalk], sensors: Sequence[str]) -> tuple[tuple[Channel, ...], list[Finding]]:

@@ -14,8 +14,8 @@ from numpy.typing import NDArray
 from gaitdisc.channel import Channel
 from gaitdisc.errors import ChannelError
 from gaitdisc.reconstruction.state_errors import angle_columns
-from gaitdisc.reconstruction.windows import Parts, thinned
-from gaitdisc.recording import Samples, scale_of
+from gaitdisc.reconstruction.windows import Parts, thin_windows
+from gaitdisc.recording import Samples, fit_scale
 
 PENALTIES = tuple(10.0**power for power in range(-7, 1))
 WHOLE_SEARCH = 3  # sensors; all sets of up to so many are tried, and beyond it one is added at a time
@@ -79,11 +79,11 @@ class _Products:
 
 
 def _products(parts: Parts, kept: Chosen, in_deg: bool) -> _Products:
-    training = thinned(parts.fitted(), MOST_WINDOWS)
-    x_scale, y_scale = scale_of(training.x), scale_of(training.y)
+    training = thin_windows(parts.fitted(), MOST_WINDOWS)
+    x_scale, y_scale = fit_scale(training.x), fit_scale(training.y)
 
     def of(samples: Samples) -> Part:
-        some = thinned(samples, MOST_WINDOWS)
+        some = thin_windows(samples, MOST_WINDOWS)
         x, y = x_scale.scaled(some.x), y_scale.scaled(some.y)
         return x.T @ x / len(x), x.T @ y / len(x), np.mean(y**2, axis=0)
 
@@ -103,11 +103,11 @@ def _errors(products: _Products, chosen: Chosen) -> tuple[NDArray[np.float64], N
     values, vectors = np.linalg.eigh(fitted[0])
     turned = vectors.T @ fitted[1]
     weights = [vectors @ (turned / (np.maximum(values, 0.0)[:, None] + penalty)) for penalty in PENALTIES]
-    losses = [_squared(checked, each) * products.weights[rest] for each in weights]
+    losses = [_square(checked, each) * products.weights[rest] for each in weights]
     best = int(np.argmin([each.sum() for each in losses]))
-    return losses[best], _squared(tested, weights[best]) * products.weights[rest]
+    return losses[best], _square(tested, weights[best]) * products.weights[rest]
 
 
-def _squared(part: Part, weights: NDArray[np.float64]) -> NDArray[np.float64]:
+def _square(part: Part, weights: NDArray[np.float64]) -> NDArray[np.float64]:
     x_x, x_y, y_y = part
     return y_y - 2 * np.sum(weights * x_y, axis=0) + np.sum(weights * (x_x @ weights), axis=0)

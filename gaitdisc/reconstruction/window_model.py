@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 
 from gaitdisc.errors import ChannelError, SchemaError, TrainingError
 from gaitdisc.model import Model
-from gaitdisc.reconstruction.windows import Lags, hidden, present, thinned, windows_of
+from gaitdisc.reconstruction.windows import Lags, cut_windows, hidden, present, thin_windows
 from gaitdisc.recording import Recording, Samples, Scale
 
 if TYPE_CHECKING:
@@ -122,7 +122,7 @@ class Sensing:
 
     def windows(self, recording: Recording, phi: NDArray[np.float64], missing: bool = False) -> Samples:
         """Windows of a recording of the same rate and units; phi (time,) [% stride]; missing readings if allowed."""
-        return windows_of(recording, self.sensors, self.states, self.lags, phi, missing)
+        return cut_windows(recording, self.sensors, self.states, self.lags, phi, missing)
 
 
 def sensing(all_states: tuple[str, ...], sensors: tuple[str, ...], lags: Lags, rate_hz: float) -> Sensing:
@@ -173,9 +173,9 @@ def fitting_device(kinds: Sequence[str], wanted: str) -> str:
     """
     if wanted in DEVICES and all(kind in WITHOUT_NETWORK for kind in kinds):
         return "cpu"
-    from gaitdisc.models.trainer import chosen_device
+    from gaitdisc.models.trainer import choose_device
 
-    return chosen_device(wanted).type
+    return choose_device(wanted).type
 
 
 def fit_reconstructor(
@@ -190,8 +190,8 @@ def fit_reconstructor(
         known = ", ".join((*KINDS, *ON_REQUEST))
         raise SchemaError("the kind of model is unknown", f"{kind!r} does not exist", f"Use: {known}.")
     device = fitting_device((kind,), device)
-    fit = _fit_of(kind, len(what.sensors), seed, device)
-    training, check = thinned(training, MOST_FITTED), thinned(check, MOST_FITTED)
+    fit = _find_fit(kind, len(what.sensors), seed, device)
+    training, check = thin_windows(training, MOST_FITTED), thin_windows(check, MOST_FITTED)
     if kind in STATIC:
         training, check = present(training, what.sensors), present(check, what.sensors)
     if kind == MASKED:
@@ -201,7 +201,7 @@ def fit_reconstructor(
     return WindowModel(kind, what, model, len(training), time.process_time() - begun, device)
 
 
-def _fit_of(kind: str, sensors: int, seed: int, device: str) -> Callable[[Samples, Samples], ScaledModel]:
+def _find_fit(kind: str, sensors: int, seed: int, device: str) -> Callable[[Samples, Samples], ScaledModel]:
     from gaitdisc.models.fourier_ridge import fit_fourier_ridge
 
     if kind in ("linear", "delay ridge"):
@@ -211,7 +211,7 @@ def _fit_of(kind: str, sensors: int, seed: int, device: str) -> Callable[[Sample
     from gaitdisc.models.trainer import train
     from gaitdisc.models.training_settings import TrainingSettings
 
-    build, missing = network_of(kind, sensors), kind == MASKED
+    build, missing = make_network(kind, sensors), kind == MASKED
     settings = TrainingSettings(epochs=20, batch=128, decays=(0.01,), seed=seed, device=device, missing_inputs=missing)
     if kind == OF_TEXT:
         text = TrainingSettings(
@@ -230,7 +230,7 @@ def _fit_of(kind: str, sensors: int, seed: int, device: str) -> Callable[[Sample
     return lambda training, check: train(training, build, settings, check=check).network
 
 
-def network_of(kind: str, sensors: int) -> Callable[[int, int], Any]:
+def make_network(kind: str, sensors: int) -> Callable[[int, int], Any]:
     """Return what makes the network of a kind, from its numbers of inputs and outputs."""
     from gaitdisc.models.shred import ShallowDecoder, Shred
 

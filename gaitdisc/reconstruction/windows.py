@@ -53,7 +53,7 @@ class Lags:
         return Lags(1, 1)
 
 
-def windows_of(
+def cut_windows(
     recording: Recording,
     sensors: Sequence[str],
     states: Sequence[str],
@@ -73,7 +73,7 @@ def windows_of(
     >>> from gaitdisc.channel import Channel
     >>> pair = (Channel("a", "signal", "V"), Channel("b", "signal", "V"))
     >>> r = Recording(np.arange(4) / 10, np.column_stack([np.arange(4), 10 * np.arange(4)]), pair)
-    >>> made = windows_of(r, ["a"], ["b"], Lags(2, 1), np.zeros(4))
+    >>> made = cut_windows(r, ["a"], ["b"], Lags(2, 1), np.zeros(4))
     >>> made.x.tolist(), made.y.ravel().tolist(), made.inputs
     ([[0.0, 1.0], [1.0, 2.0], [2.0, 3.0]], [10.0, 20.0, 30.0], ('a 0.10 s ago', 'a'))
     """
@@ -114,7 +114,7 @@ def stacked(samples: Sequence[Samples]) -> Samples:
     return replace(first, **joined, subject=first.subject if len(subjects) == 1 else f"{len(subjects)} people")
 
 
-def thinned(samples: Samples, most: int) -> Samples:
+def thin_windows(samples: Samples, most: int) -> Samples:
     """Keep every k-th window, as few as needed to have no more than so many: neighbours say nearly the same."""
     return samples.rows(slice(None, None, max(1, -(-len(samples) // most))))
 
@@ -265,7 +265,7 @@ def with_missing(recording: Recording, sensors: Sequence[str], share: float, run
     return recording.with_values(values)
 
 
-def filled(recording: Recording, sensors: Sequence[str], way: str, means: NDArray[np.float64]) -> Recording:
+def fill_readings(recording: Recording, sensors: Sequence[str], way: str, means: NDArray[np.float64]) -> Recording:
     """Fill missing readings by a word of `WAYS`, from training means (sensor,); `last` too, before a first reading."""
     refuse_unknown_way(way)
     values = recording.values.copy()

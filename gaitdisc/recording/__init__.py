@@ -5,7 +5,7 @@ This room imports the ground (errors, units, channel names, files) alone.
 
 from gaitdisc.recording.finding import Finding
 from gaitdisc.recording.recording import Recording, Source
-from gaitdisc.recording.samples import Samples, Scale, Trajectory, scale_of
+from gaitdisc.recording.samples import Samples, Scale, Trajectory, fit_scale
 from gaitdisc.recording.strides import PERCENT, Cycle, DroppedStride, Strides
 from gaitdisc.recording.trial import Event, Surface, Trial
 
@@ -23,5 +23,5 @@ __all__ = [
     "Surface",
     "Trajectory",
     "Trial",
-    "scale_of",
+    "fit_scale",
 ]

@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from gaitdisc.channel import Channel, nearest_word
 from gaitdisc.errors import ChannelError, SamplingError, ShapeError
 from gaitdisc.recording.arrays import Values, read_only
-from gaitdisc.words import html_of
+from gaitdisc.words import as_html
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -236,7 +236,7 @@ class Recording:
             rows.append((channel.name, f"{text} [{channel.unit}]"))
         if len(self.channels) > SHOWN:
             rows.append((f"and {len(self.channels) - SHOWN} more", ""))
-        return html_of("Recording", [row for row in rows if row[1] or row[0].startswith("and ")])
+        return as_html("Recording", [row for row in rows if row[1] or row[0].startswith("and ")])
 
     def to_pandas(self, units: bool = False) -> pd.DataFrame:
         """Table with one column per channel, indexed by time [s]; `attrs["units"]` has the units.

@@ -50,13 +50,13 @@ class Scale:
         return scaled * np.where(self.constant, 0.0, self.sd) + self.mean
 
 
-def scale_of(values: Values) -> Scale:
+def fit_scale(values: Values) -> Scale:
     """Scale of the columns of a training part.
 
     values (sample, column) [each column's unit]: finite, or NaN where a value is missing; a column that is missing
         throughout is constant
 
-    >>> scale = scale_of(np.array([[0.0, 7.0], [2.0, 7.0]]))
+    >>> scale = fit_scale(np.array([[0.0, 7.0], [2.0, 7.0]]))
     >>> scale.mean, scale.sd, scale.constant
     (array([1., 7.]), array([ 1., inf]), array([False,  True]))
     """
@@ -196,7 +196,7 @@ class Samples:
                     f"{len(self)}, the first at {self.time[row]:.3f} s",
                     "Mark these samples as not usable; the fit then excludes them.",
                 )
-        still = scale_of(self.y).constant
+        still = fit_scale(self.y).constant
         if still.any():
             column = int(np.argmax(still))
             raise TrainingError(

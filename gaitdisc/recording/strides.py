@@ -12,8 +12,8 @@ from gaitdisc.channel import Channel, vocabulary
 from gaitdisc.errors import ShapeError, StrideError
 from gaitdisc.recording.arrays import Values, read_only
 from gaitdisc.recording.recording import Recording
-from gaitdisc.recording.wrapping import in_one_turn, turn_of, unwrapped
-from gaitdisc.words import html_of
+from gaitdisc.recording.wrapping import find_turn, in_one_turn, unwrap
+from gaitdisc.words import as_html
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -99,7 +99,7 @@ class Strides:
             words = f"{lasting.min():.2f} to {lasting.max():.2f} s, mean {lasting.mean():.2f} s"
             rows.append(("duration", words))
         rows += [(f"dropped at {one.start:.2f} s", one.reason) for one in self.dropped[:4]]
-        return html_of("Strides", rows)
+        return as_html("Strides", rows)
 
     @property
     def duration_s(self) -> Values:
@@ -160,11 +160,11 @@ class Strides:
             channels = [vocabulary().by_name.get(str(name)) or Channel(str(name), "signal", "1") for name in names]
             recording = Recording(table["time"].to_numpy(float), table[names].to_numpy(float), tuple(channels))
         points = self.start[:, None] + self.duration_s[:, None] * PERCENT / 100.0
-        plain = unwrapped(recording)
-        curves = interpolated(recording.time, plain.values, points)
+        plain = unwrap(recording)
+        curves = interpolate(recording.time, plain.values, points)
         if plain is not recording:
             for column, channel in enumerate(recording.channels):
-                turn = turn_of(channel)
+                turn = find_turn(channel)
                 if turn is not None:
                     curves[:, :, column] = in_one_turn(curves[:, :, column], turn)
         return curves
@@ -181,7 +181,7 @@ class Strides:
         return Strides(self.start[inside], self.end[inside], self.side, self.detector, self.dropped)
 
 
-def interpolated(time: Values, values: Values, points: Values) -> Values:
+def interpolate(time: Values, values: Values, points: Values) -> Values:
     """Linear interpolation on an even time base that lets NaN through and does not extrapolate.
 
     time (time,) [s]: even
@@ -189,7 +189,7 @@ def interpolated(time: Values, values: Values, points: Values) -> Values:
     points , any shape [s]: where to read the values
     returns (*points.shape, channel)
 
-    >>> interpolated(np.arange(3.0), np.arange(3.0)[:, None] ** 2, np.array([0.5, 2.0, 3.0])).ravel()
+    >>> interpolate(np.arange(3.0), np.arange(3.0)[:, None] ** 2, np.array([0.5, 2.0, 3.0])).ravel()
     array([0.5, 4. , nan])
     """
     if len(time) < 2:  # no step, and nothing between

@@ -12,9 +12,9 @@ from gaitdisc.errors import ChannelError, SamplingError, ShapeError, UnitError
 from gaitdisc.recording.arrays import Values, frozen, read_only
 from gaitdisc.recording.finding import Finding
 from gaitdisc.recording.recording import Recording
-from gaitdisc.recording.strides import interpolated
-from gaitdisc.recording.wrapping import unwrapped, wrapped
-from gaitdisc.words import html_of
+from gaitdisc.recording.strides import interpolate
+from gaitdisc.recording.wrapping import unwrap, wrap_recording
+from gaitdisc.words import as_html
 
 
 class Limits(NamedTuple):
@@ -226,7 +226,7 @@ class Trial:
             for key, one in self.streams.items()
         ]
         rows += [("events", str(len(self.events)))] if self.events else []
-        return html_of(f"Trial {self.name}", [*rows, *((one.kind, one.what) for one in self.findings[:SHOWN])])
+        return as_html(f"Trial {self.name}", [*rows, *((one.kind, one.what) for one in self.findings[:SHOWN])])
 
     def stream(self, key: str) -> Recording:
         """Return one stream.
@@ -285,10 +285,10 @@ class Trial:
         time = start + np.arange(count) / rate_hz
         values = []
         for r in streams:  # a heading that comes round between two samples is read on the short way
-            between = interpolated(r.time, unwrapped(r).values, time)
+            between = interpolate(r.time, unwrap(r).values, time)
             unmarked = np.zeros(between.shape, bool)
-            values.append(wrapped(replace(r, time=time, values=between, suspect=unmarked), r).values)
-        marks = [interpolated(r.time, np.asarray(r.suspect, float), time) > 0 for r in streams]
+            values.append(wrap_recording(replace(r, time=time, values=between, suspect=unmarked), r).values)
+        marks = [interpolate(r.time, np.asarray(r.suspect, float), time) > 0 for r in streams]
         return Recording(
             time,
             values=np.hstack(values),

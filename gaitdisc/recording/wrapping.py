@@ -24,28 +24,28 @@ TURNS = {"deg": 360.0, "rad": 2 * np.pi}
 LEAST_LEAP = 0.75  # of a turn, from one sample to the next
 
 
-def turn_of(channel: Channel) -> float | None:
+def find_turn(channel: Channel) -> float | None:
     """One turn in the unit of a channel that may come round; None for every other channel.
 
-    >>> turn_of(Channel("pelvis_rotation", "angle", "deg")), turn_of(Channel("knee_angle_r", "angle", "deg", "r"))
+    >>> find_turn(Channel("pelvis_rotation", "angle", "deg")), find_turn(Channel("knee_angle_r", "angle", "deg", "r"))
     (360.0, None)
     """
     return TURNS.get(channel.unit) if channel.quantity == "angle" and HEADINGS.match(channel.name) else None
 
 
-def unwrapped(recording: Recording) -> Recording:
+def unwrap(recording: Recording) -> Recording:
     """Recording whose headings go on where they came round.
 
     recording: any channels; only headings (of pelvis, trunk, head, foot) that leap by 270 deg or more from one sample
         to the next, or by more than 180 deg over a gap, are changed
 
     >>> x = np.array([[170.0], [178.0], [-174.0]])
-    >>> unwrapped(Recording(np.arange(3) / 100, x, (Channel("pelvis_rotation", "angle", "deg"),))).values.ravel()
+    >>> unwrap(Recording(np.arange(3) / 100, x, (Channel("pelvis_rotation", "angle", "deg"),))).values.ravel()
     array([170., 178., 186.])
     """
     values = recording.values
     for column, channel in enumerate(recording.channels):
-        turn = turn_of(channel)
+        turn = find_turn(channel)
         if turn is None:
             continue
         known = np.flatnonzero(np.isfinite(recording.values[:, column]))
@@ -59,7 +59,7 @@ def unwrapped(recording: Recording) -> Recording:
     return recording if values is recording.values else replace(recording, values=values)
 
 
-def wrapped(recording: Recording, as_in: Recording) -> Recording:
+def wrap_recording(recording: Recording, as_in: Recording) -> Recording:
     """Recording whose headings come round again as those of another one do.
 
     as_in: before it was unwrapped; where its smallest value is not negative, headings run from 0 to 360 deg, else from
@@ -67,15 +67,15 @@ def wrapped(recording: Recording, as_in: Recording) -> Recording:
 
     >>> x = np.array([[170.0], [178.0], [-174.0]])
     >>> raw = Recording(np.arange(3) / 100, x, (Channel("pelvis_rotation", "angle", "deg"),))
-    >>> wrapped(unwrapped(raw), raw).values.ravel()
+    >>> wrap_recording(unwrap(raw), raw).values.ravel()
     array([ 170.,  178., -174.])
     """
-    plain = unwrapped(as_in)
+    plain = unwrap(as_in)
     if plain is as_in:
         return recording
     values = np.array(recording.values)
     for column, channel in enumerate(recording.channels):
-        turn = turn_of(channel)
+        turn = find_turn(channel)
         if turn is not None and not np.array_equal(plain.values[:, column], as_in.values[:, column], equal_nan=True):
             low = 0.0 if np.nanmin(as_in.values[:, column]) >= 0 else -turn / 2
             values[:, column] = (values[:, column] - low) % turn + low

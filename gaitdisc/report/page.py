@@ -72,13 +72,13 @@ def write_markdown(blocks: Sequence[Block[Figure]], folder: Path) -> Path:
     return write_whole(folder / "tables.md", text + "\n")
 
 
-def drawn_side_by_side(draw: Callable[..., Result], each: Sequence[tuple[Any, ...]], alone: int) -> list[Result]:
+def draw_side_by_side(draw: Callable[..., Result], each: Sequence[tuple[Any, ...]], alone: int) -> list[Result]:
     """Draw for each of many, in processes where there are more than so many.
 
     draw: can be sent to another process, as its arguments and what it gives
     alone: up to so many are drawn here, one after the other
 
-    >>> drawn_side_by_side(max, [(1, 2), (4, 3)], 2)
+    >>> draw_side_by_side(max, [(1, 2), (4, 3)], 2)
     [2, 4]
     """
     processes = min(os.cpu_count() or 1, MOST_PROCESSES, len(each))

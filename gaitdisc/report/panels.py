@@ -100,7 +100,7 @@ def legend(drawn: matplotlib.figure.Figure, handles: Sequence[Artist], down: flo
     drawn.legend(handles=list(handles), loc="upper center", ncols=len(handles), bbox_to_anchor=top)
 
 
-def lines_of(looks: Mapping[str, Look]) -> list[Artist]:
+def legend_lines(looks: Mapping[str, Look]) -> list[Artist]:
     """Handles of a legend that explains lines."""
     from matplotlib.lines import Line2D
 

@@ -11,7 +11,7 @@ from typing import Any
 from gaitdisc.errors import SchemaError
 from gaitdisc.saved.kind import KINDS, Kind, find_kind
 from gaitdisc.saved.provenance import code_sha256
-from gaitdisc.saved.unit_folder import OWN, file_sha256, read_sealed, sealed_text
+from gaitdisc.saved.unit_folder import OWN, file_sha256, read_sealed, seal_text
 from gaitdisc.whole_file import write_whole
 
 DRAWN = "drawn.json"  # in the folder of the report: what it was drawn of, and hashes of all its files
@@ -29,7 +29,7 @@ def draw_beside(kind: Kind[Any], folder: Path) -> dict[str, Path]:
     return {place.name: draw_saved(place)["report"] for place in places}
 
 
-def page_of(run_folder: Path, draw: Callable[[], Path]) -> Path:
+def find_page(run_folder: Path, draw: Callable[[], Path]) -> Path:
     """Page of a run that is saved: the one that stands there, or one that is drawn now.
 
     The page stands for as long as the run's files, this package's code and the report's own files are what they were;
@@ -45,7 +45,7 @@ def page_of(run_folder: Path, draw: Callable[[], Path]) -> Path:
         pass  # none stands there, or not as it was drawn
     page = draw()
     data = {"rests_on": rests_on, "page": page.relative_to(report).as_posix(), "sha256": _hashes(report)}
-    write_whole(report / DRAWN, sealed_text(data))
+    write_whole(report / DRAWN, seal_text(data))
     return page
 
 

@@ -65,20 +65,20 @@ def as_markdown(table: Table) -> str:
     )
 
 
-def seen_table(findings: Sequence[Finding], caption: str, what: str = "what") -> Table:
+def tabulate_findings(findings: Sequence[Finding], caption: str, what: str = "what") -> Table:
     """What was seen in the files, in the order given.
 
-    >>> seen_table([Finding("note", "unit", "a.c3d", "mm taken as m", "")], "Seen, n = 1.").rows
+    >>> tabulate_findings([Finding("note", "unit", "a.c3d", "mm taken as m", "")], "Seen, n = 1.").rows
     (('note', 'a.c3d', '', 'unit: mm taken as m', ''),)
     """
     rows = [(f.severity, f.file, f.channel, f"{f.kind}: {f.what}", f.spoils) for f in findings]
     return words_table("findings", caption, ("severity", "file", "channel", what, "spoils"), rows)
 
 
-def left_out_table(refusals: Sequence[Refusal], name: str, caption: str) -> Table:
+def tabulate_refusals(refusals: Sequence[Refusal], name: str, caption: str) -> Table:
     """Everybody and everything left out, with the reason.
 
-    >>> left_out_table([Refusal("P01", "", "no file")], "left-out", "Left out, n = 1.").rows
+    >>> tabulate_refusals([Refusal("P01", "", "no file")], "left-out", "Left out, n = 1.").rows
     (('P01', 'all', 'no file'),)
     """
     rows = [(refusal.participant, refusal.condition or "all", refusal.reason) for refusal in refusals]
@@ -87,7 +87,7 @@ def left_out_table(refusals: Sequence[Refusal], name: str, caption: str) -> Tabl
 
 def refusals_table(run: StudyRun) -> Table:
     """Everybody and everything left out, with the reason."""
-    return left_out_table(run.refusals, "refusals", f"Participants and walks left out, n = {len(run.refusals)}.")
+    return tabulate_refusals(run.refusals, "refusals", f"Participants and walks left out, n = {len(run.refusals)}.")
 
 
 def findings_table(run: StudyRun) -> Table:
@@ -113,26 +113,26 @@ def provenance_tables(made: Provenance) -> dict[str, Table]:
     files = sorted(made.files.items())
     return {
         "settings": words_table(
-            "settings", "Settings, including all defaults.", ("setting", "value"), flattened(made.settings)
+            "settings", "Settings, including all defaults.", ("setting", "value"), flatten(made.settings)
         ),
         "versions": words_table("versions", "Circumstances.", ("what", "value"), provenance_rows(made)),
         "files": words_table("files", f"Files read, n = {len(files)}, with their SHA-256.", ("file", "SHA-256"), files),
     }
 
 
-def flattened(settings: Mapping[str, Any], prefix: str = "") -> list[tuple[str, str]]:
+def flatten(settings: Mapping[str, Any], prefix: str = "") -> list[tuple[str, str]]:
     """Settings as rows of dotted name and value; of files the name alone, without the folders of this machine.
 
-    >>> flattened({"seed": 1, "filters": {"cutoff_hz": 6.0}})
+    >>> flatten({"seed": 1, "filters": {"cutoff_hz": 6.0}})
     [('seed', '1'), ('filters.cutoff_hz', '6.0')]
     """
     rows: list[tuple[str, str]] = []
     for key, value in settings.items():
         name = f"{prefix}{key}"
         if isinstance(value, Mapping):
-            rows.extend(flattened(value, f"{name}."))
+            rows.extend(flatten(value, f"{name}."))
         elif isinstance(value, list | tuple) and any(isinstance(item, Mapping) for item in value):
-            rows.extend(flattened({str(number + 1): item for number, item in enumerate(value)}, f"{name}."))
+            rows.extend(flatten({str(number + 1): item for number, item in enumerate(value)}, f"{name}."))
         elif isinstance(value, list | tuple):
             items = [re.split(r"[\\/]", str(item))[-1] if key == "files" else str(item) for item in value]
             rows.append((name, ", ".join(items)))

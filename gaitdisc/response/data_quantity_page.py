@@ -12,7 +12,7 @@ from gaitdisc.report.panels import MODELS, Room, in_style, legend, panels
 from gaitdisc.report.table import Table
 from gaitdisc.response.participant_response import DataQuantity, ResponseRun
 from gaitdisc.response.participants_result import WHOLE
-from gaitdisc.response.r2_tables import LOWEST, held_out_text, models_key
+from gaitdisc.response.r2_tables import LOWEST, models_key, tail_words
 from gaitdisc.words import counted, label, number
 
 if TYPE_CHECKING:
@@ -46,7 +46,7 @@ def quantity_figure(run: ResponseRun) -> Figure | None:
     caption = (
         f"R² [1] of the second derivative, median over variables, on the held-out device walk ({run.exo}) against the "
         f"length of the training part (its {' or '.join(parts)} seconds), n = "
-        f"{counted(len(run.quantities), 'participant')}; split: last {held_out_text(run)} s of each walk held out for "
+        f"{counted(len(run.quantities), 'participant')}; split: last {tail_words(run)} s of each walk held out for "
         f"all lengths. Thick: median over participants; thin: each participant; networks only.{edge} After Fig. 4.4 "
         "of the dissertation."
     )

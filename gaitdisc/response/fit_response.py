@@ -64,8 +64,8 @@ def fit_response(
         nominal walking, too.
     """
     _check_pair(nominal, exo)
-    held_nominal, held_exo = (held_out_part(walk, settings)[1] for walk in (nominal, exo))
-    on_nominal, on_exo = (held_out_samples(held, settings) for held in (held_nominal, held_exo))
+    held_nominal, held_exo = (split_held_out(walk, settings)[1] for walk in (nominal, exo))
+    on_nominal, on_exo = (pick_held_out(held, settings) for held in (held_nominal, held_exo))
     parts = training_samples(nominal, exo, settings)
     fitted = fit_kinds(*parts, settings, progress or _log_tenths())
     null = [
@@ -74,7 +74,7 @@ def fit_response(
         if null_r2 and variable in null_r2
     ]
     predicted = {name: model(on_exo.x) for name, model in fitted["network"].on_exo().items()}
-    bands = response_bands(fitted["network"], refitted_network, *parts, on_exo) if banded else {}
+    bands = response_bands(fitted["network"], refit_network, *parts, on_exo) if banded else {}
     return ParticipantResponse(
         participant=exo.subject or nominal.subject,
         inputs=on_exo.inputs,
@@ -110,7 +110,7 @@ def _log_tenths() -> Callable[[float], None]:
 
 def training_samples(nominal: Trajectory, exo: Trajectory, settings: ResponseSettings) -> tuple[Samples, Samples]:
     """Samples of the training parts of both walks; the held-out parts are not looked at."""
-    first, second = (gait_samples(held_out_part(walk, settings)[0], settings.outputs)[0] for walk in (nominal, exo))
+    first, second = (gait_samples(split_held_out(walk, settings)[0], settings.outputs)[0] for walk in (nominal, exo))
     return first, second
 
 
@@ -126,13 +126,13 @@ def fit_kinds(
     return {"network": networks, "ridge": ridge, "linear": linear}
 
 
-def held_out_part(walk: Trajectory, settings: ResponseSettings) -> tuple[Trajectory, Trajectory]:
+def split_held_out(walk: Trajectory, settings: ResponseSettings) -> tuple[Trajectory, Trajectory]:
     """Training part and held-out part of a walk."""
     length = settings.held_out_s or settings.held_out_share * len(walk.time) / walk.rate_hz
     return walk.split(length)
 
 
-def held_out_samples(held_out: Trajectory, settings: ResponseSettings) -> Samples:
+def pick_held_out(held_out: Trajectory, settings: ResponseSettings) -> Samples:
     """Samples of a held-out part that models are scored on."""
     samples, dropped = gait_samples(held_out, settings.outputs)
     if len(samples) < LEAST_HELD_OUT:
@@ -203,7 +203,7 @@ def response_bands(
         return {}
     members: dict[str, list[Member]] = {name: [] for name in MODELS}
     for number in range(BLOCKS):
-        (rest_nominal, left_nominal), (rest, left) = (parted(each, number) for each in (nominal, exo))
+        (rest_nominal, left_nominal), (rest, left) = (part(each, number) for each in (nominal, exo))
         f, y = refit(models.nominal.model, rest_nominal), refit(models.exo.model, rest)
         g = refit(models.discrepancy.model, rest.with_outputs(rest.y - f(rest.x)))
         for name, model, block in (("nominal", f, left_nominal), ("augmented", augment(f, g), left), ("exo", y, left)):
@@ -211,7 +211,7 @@ def response_bands(
     return {name: _bounds(each, _part(held.phi)) for name, each in members.items()}
 
 
-def parted(samples: Samples, number: int) -> tuple[Samples, Samples]:
+def part(samples: Samples, number: int) -> tuple[Samples, Samples]:
     """Samples without one of the blocks and what lies within 0.3 s of it, and that block."""
     cuts = np.linspace(0, len(samples), BLOCKS + 1).astype(int)
     block = samples.rows(slice(cuts[number], cuts[number + 1]))
@@ -219,10 +219,10 @@ def parted(samples: Samples, number: int) -> tuple[Samples, Samples]:
     return samples.rows(apart), block
 
 
-def covered(measured: NDArray[np.float64], band: NDArray[np.float64]) -> NDArray[np.float64]:
+def coverage(measured: NDArray[np.float64], band: NDArray[np.float64]) -> NDArray[np.float64]:
     """Share of samples inside the band, (output,).
 
-    >>> covered(np.array([[1.0], [3.0]]), np.array([[[0.0], [0.0]], [[2.0], [2.0]]]))
+    >>> coverage(np.array([[1.0], [3.0]]), np.array([[[0.0], [0.0]], [[2.0], [2.0]]]))
     array([0.5])
     """
     return np.mean((band[0] <= measured) & (measured <= band[1]), axis=0)
@@ -324,13 +324,13 @@ def fit_network(
     return Fit(done.network, done.decay, len(done.losses), done.n_training, done.n_inner, done.seconds)
 
 
-def refitted_network(model: Model, samples: Samples) -> Model:
+def refit_network(model: Model, samples: Samples) -> Model:
     """Return a network whose last layer is solved for other samples."""
     from gaitdisc.models.trained_network import TrainedNetwork
-    from gaitdisc.models.trainer import resolved
+    from gaitdisc.models.trainer import resolve
 
     assert isinstance(model, TrainedNetwork)  # fit_network makes nothing else
-    return resolved(model, samples)
+    return resolve(model, samples)
 
 
 def fit_linear(samples: Samples, harmonics: int = 8) -> Fit:

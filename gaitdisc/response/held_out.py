@@ -8,7 +8,7 @@ import numpy as np
 import pandas as pd
 from numpy.typing import NDArray
 
-from gaitdisc.channel import side_of
+from gaitdisc.channel import find_side
 from gaitdisc.recording import PERCENT
 from gaitdisc.recording.arrays import mean_where_known
 from gaitdisc.report.figure import Figure
@@ -29,16 +29,16 @@ MOST_VECTOR_POINTS = 6_000  # faint strides beyond this are drawn as pixels, or 
 
 
 @in_style
-def held_out_figures(response: ParticipantResponse, name: str) -> list[Figure]:
+def draw_held_out(response: ParticipantResponse, name: str) -> list[Figure]:
     """Measured against predicted in the last seconds of the held-out device walk, one panel an output."""
-    numbers = held_out_numbers(response)
+    numbers = tabulate_held_out(response)
     if not len(numbers):
         return []
     parts = sheets(response.outputs, 12, f"held-out-{name}")
     return [_figure(response, numbers[numbers["variable"].isin(part)], sheet) for sheet, part in parts.items()]
 
 
-def held_out_numbers(response: ParticipantResponse) -> pd.DataFrame:
+def tabulate_held_out(response: ParticipantResponse) -> pd.DataFrame:
     """Measured and predicted second derivatives of the last `WINDOW_S` seconds, a band where there is one."""
     held = response.held_out
     shown = held.time >= (held.time[-1] - WINDOW_S if len(held.time) else 0.0)
@@ -63,7 +63,7 @@ def _figure(response: ParticipantResponse, numbers: pd.DataFrame, name: str) -> 
         nominal, augmented = (float(r2[column].loc[str(variable)]) for column in r2)
         known = np.isfinite(nominal) and np.isfinite(augmented)
         title = label(str(variable)) + (f": R² {number(nominal)} → {number(augmented)}" if known else "")
-        axes.set_title(title, loc="left", color=SIDES[side_of(str(variable))].colour)
+        axes.set_title(title, loc="left", color=SIDES[find_side(str(variable))].colour)
         up = upwards(str(variable))
         axes.set_ylabel(f"[{unit_text(str(rows['unit'].iloc[0]))}]" + (f"\n↑ {up}" if up else ""))
         axes.set_xlim(rows["time_s"].iloc[0], rows["time_s"].iloc[-1])
@@ -194,7 +194,7 @@ def _residual_figure(response: ParticipantResponse, numbers: pd.DataFrame, name:
         grid[row][0].set_ylabel(f"[{unit_text(str(of_variable['unit'].iloc[0]))}]")
         up = f" (up: towards {towards})" if (towards := upwards(str(variable))) else ""
         title = f"{label(str(variable))}{up}"
-        grid[row][0].set_title(title, loc="left", color=SIDES[side_of(str(variable))].colour)
+        grid[row][0].set_title(title, loc="left", color=SIDES[find_side(str(variable))].colour)
     for column, model in enumerate(models):
         x = grid[0][column].get_position()
         drawn.text(

@@ -17,8 +17,8 @@ from gaitdisc.response.data_quantity_page import length_sentences, length_table,
 from gaitdisc.response.pair_tests import direction_found
 from gaitdisc.response.participant_response import ResponseRun
 from gaitdisc.response.participants_result import OverParticipants
-from gaitdisc.response.r2_tables import held_out_text, models_key
-from gaitdisc.words import MODEL_WORDS, counted, label, listed, number
+from gaitdisc.response.r2_tables import models_key, tail_words
+from gaitdisc.words import MODEL_WORDS, counted, label, listing, number
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -104,7 +104,7 @@ def reduction_figure(run: ResponseRun) -> Figure | None:
         "Residual (measured minus predicted second derivative) averaged over the held-out strides of the device walk "
         f"({run.exo}): 1 − its size / its size under the Nominal model, measured from peak to peak and as root mean "
         f"square over the stride; n = {counted(reductions['participant'].nunique(), 'participant')}; split: last "
-        f"{held_out_text(run)} s held out. Marks: participants; values below {number(LOWEST, 0)} % are at the edge. "
+        f"{tail_words(run)} s held out. Marks: participants; values below {number(LOWEST, 0)} % are at the edge. "
         "After Fig. 4.3 of the dissertation, which gives one number: 52.8 %, hip, one participant, without the measure."
     )
     return Figure("reduction", caption, " ".join(reduction_sentences(run)), reductions, drawn)
@@ -120,7 +120,7 @@ def reduction_table(run: ResponseRun) -> Table | None:
         own = reductions[reductions["variable"] == variable].groupby("model")
         cells = []
         for measure, model in product(MEASURES, OFFSETS):
-            found = _tested(tests, measure, variable, model)
+            found = _test_reduction(tests, measure, variable, model)
             if found is None:
                 cells.append(number(100 * float(own[f"{measure}_reduction"].median()[model]), 0))
             else:
@@ -169,14 +169,14 @@ def _draw(axes: Axes, over: OverParticipants, variable: str, measure: str, place
         values = 100 * rows.loc[rows["model"] == model, f"{measure}_reduction"].dropna().to_numpy()
         axes.plot(np.maximum(values, LOWEST), np.full(len(values), y), look.mark, color=look.colour, ms=2.6, mew=0,
                   alpha=0.6)  # fmt: skip
-        found = _tested(over.reduction_tests, measure, variable, model)
+        found = _test_reduction(over.reduction_tests, measure, variable, model)
         if found is not None:
             middle, low, high = (max(float(found[key]), LOWEST) for key in ENDS)
             axes.hlines(y, low, high, color=look.colour, linewidth=1.4)
             axes.plot([middle], [y], "|", color="#111111", ms=8, mew=1.6)
 
 
-def _tested(tests: pd.DataFrame, measure: str, variable: str, model: str) -> pd.Series | None:
+def _test_reduction(tests: pd.DataFrame, measure: str, variable: str, model: str) -> pd.Series | None:
     """Test of one reduction, with its shift and interval in percent; None where it was not tested."""
     chosen = (tests["measure"] == measure) & (tests["variable"] == variable) & (tests["second"] == model)
     found = tests[chosen & tests["shift"].notna()]
@@ -228,7 +228,7 @@ def baseline_sentences(run: ResponseRun) -> list[str]:
                 parts.append(f"{words} (in {which})")
         network = f"The {MODEL_WORDS[str(model)]} network"
         said.append(
-            f"{network} does not significantly exceed {listed(parts)}."
+            f"{network} does not significantly exceed {listing(parts)}."
             if parts
             else f"{network} exceeds every baseline in all variables."
         )

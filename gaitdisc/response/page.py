@@ -7,33 +7,33 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 
 from gaitdisc.processing.curves_figure import curves_figures
-from gaitdisc.processing.page import save_cycle_tables, saved_cycle_blocks, write_cycles_page
+from gaitdisc.processing.page import save_cycle_blocks, save_cycle_tables, write_cycles_page
 from gaitdisc.processing.pooled_cycles import WALK
 from gaitdisc.report.figure import Figure, SavedFigure, file_names, largest_inline, save_figures
-from gaitdisc.report.page import drawn_side_by_side, save_block, write_page
+from gaitdisc.report.page import draw_side_by_side, save_block, write_page
 from gaitdisc.report.table import (
     Table,
     findings_table,
-    flattened,
+    flatten,
     provenance_tables,
     refusals_table,
     save_table,
     save_tables,
 )
-from gaitdisc.response.held_out import held_out_figures, residual_figures
+from gaitdisc.response.held_out import draw_held_out, residual_figures
 from gaitdisc.response.over_participants_page import over_blocks
 from gaitdisc.response.pair_tests import comparison_figures, comparison_sentences, comparison_tables
 from gaitdisc.response.participant_response import RESPONSE, ResponseRun
 from gaitdisc.response.r2_tables import (
-    held_out_text,
     not_computed,
     participants_table,
     r2_figures,
     r2_table,
     study_r2_table,
+    tail_words,
 )
 from gaitdisc.response.sentences import participant_sentences, study_sentences
-from gaitdisc.response.walks_page import dropped_table, fits_table, strides_figure, walks_table
+from gaitdisc.response.walks_page import fits_table, strides_figure, tabulate_dropped, walks_table
 
 FIGURES_A_PERSON = 5
 MOST_OPEN = 2  # with more participants than this, the first screen is brief and their sections are folded
@@ -70,11 +70,11 @@ def write_report(run: ResponseRun, folder: Path) -> Path:
         responses = tuple(response for response in run.responses if response.participant == person)
         own = replace(run, units={WALK.file: walks, RESPONSE.file: responses})
         alone.append((own, person, name, folder, limit))
-    sections = drawn_side_by_side(_section, alone, MOST_OPEN)  # drawing takes seconds a participant
+    sections = draw_side_by_side(_section, alone, MOST_OPEN)  # drawing takes seconds a participant
     overview = save_figures(r2_figures(run) if run.responses else [], folder)
     compared = save_figures(comparison_figures(run), folder)
     pair_tables = comparison_tables(run)
-    blocks = [*(save_block(block, folder) for block in over_blocks(run)), *saved_cycle_blocks(run, folder)]
+    blocks = [*(save_block(block, folder) for block in over_blocks(run)), *save_cycle_blocks(run, folder)]
     tables = {
         "refusals": refusals_table(run),
         "walks": walks_table(run),
@@ -106,12 +106,12 @@ def _section(run: ResponseRun, person: str, name: str, folder: Path, limit: int)
     response = next(iter(run.responses), None)
     strides = strides_figure(run, person, name)
     drawn: dict[str, list[Figure]] = {
-        "held_out": held_out_figures(response, name) if response else [],
+        "held_out": draw_held_out(response, name) if response else [],
         "residual": residual_figures(response, name) if response else [],
         "curves": curves_figures(run, person, name),
         "strides": [strides] if strides else [],
     }
-    r2, dropped = (r2_table(response, name) if response else None), dropped_table(run, person, name)
+    r2, dropped = (r2_table(response, name) if response else None), tabulate_dropped(run, person, name)
     save_tables((table for table in (r2, dropped) if table is not None), folder)
     return Section(
         participant=person,
@@ -126,7 +126,7 @@ def _section(run: ResponseRun, person: str, name: str, folder: Path, limit: int)
 
 def method_sentences(run: ResponseRun) -> list[str]:
     """State, where angles come from markers, models, discrepancy, judgement, filters, a sentence each."""
-    held_out, markers = held_out_text(run), []
+    held_out, markers = tail_words(run), []
     computed = sum(any(finding.kind == "marker set" for finding in walk.findings) for walk in run.walks)
     if computed:
         walks = "the one walk" if len(run.walks) == 1 else f"{computed} of {len(run.walks)} walks"
@@ -157,7 +157,7 @@ def _filter_sentence(run: ResponseRun) -> str:
     settings = run.provenance.settings
     filters = settings.get("filters")
     if not isinstance(filters, Mapping) or not {"kinematics_hz", "order"} <= set(filters):
-        rows = [(k, v) for k, v in flattened(settings) if any(word in k.lower() for word in _FILTER_WORDS)]
+        rows = [(k, v) for k, v in flatten(settings) if any(word in k.lower() for word in _FILTER_WORDS)]
         said = ", ".join(f"{key} = {value}" for key, value in rows)
         return f"Filters in the settings: {said}." if said else "The settings of the run do not name a filter."
     order, cutoff = int(filters["order"]), float(filters["kinematics_hz"])

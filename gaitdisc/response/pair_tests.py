@@ -15,8 +15,8 @@ from gaitdisc.report.panels import MODELS, Room, draw_box, in_style, legend, pan
 from gaitdisc.report.table import Table
 from gaitdisc.response.participant_response import ResponseRun
 from gaitdisc.response.participants_result import FAMILIES, PAIRS, PairTests
-from gaitdisc.response.r2_tables import held_out_text, lowest_drawn, models_key, r2_numbers, variables
-from gaitdisc.words import MODEL_WORDS, counted, label, listed, number
+from gaitdisc.response.r2_tables import lowest_drawn, models_key, r2_numbers, tail_words, variables
+from gaitdisc.words import MODEL_WORDS, counted, label, listing, number
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -58,8 +58,8 @@ def comparison_sentences(run: ResponseRun) -> list[str]:
         *(_verdict(tests, first, second) for first, second in PAIRS[:3]),
         "A non-significant difference does not show equality: the interval of the shift says how large it may be.",
         _floor(tests),
-        _left_over(tests),
-        f"For {every} of the three pairs, {listed(said)} show a difference (families; the first is used).",
+        _say_unexplained(tests),
+        f"For {every} of the three pairs, {listing(said)} show a difference (families; the first is used).",
     ]
 
 
@@ -168,7 +168,7 @@ def _verdict(tests: PairTests, first: str, second: str) -> str:
     if not parts:
         return f"{start}: there is no significant difference in any of {counted(len(tested), 'variable')}."
     largest = tested["shift"].abs().max()
-    return f"{start}: it explains {listed(parts)}; the largest shift of R² is {number(float(largest), 3)}."
+    return f"{start}: it explains {listing(parts)}; the largest shift of R² is {number(float(largest), 3)}."
 
 
 def _floor(tests: PairTests) -> str:
@@ -184,7 +184,7 @@ def _floor(tests: PairTests) -> str:
     )
 
 
-def _left_over(tests: PairTests) -> str:
+def _say_unexplained(tests: PairTests) -> str:
     rows = tests.of_pair("exo", "perfect")
     left = 1 - rows["median_first"].dropna()
     if not len(left):
@@ -254,7 +254,7 @@ def _figure(run: ResponseRun, tests: PairTests, numbers: pd.DataFrame, name: str
     below = f" {counted(hidden, 'value')} below {number(low)} {'is' if hidden == 1 else 'are'} cut off."
     caption = (
         f"R² [1] of the second derivative of each variable on the held-out device walk ({run.exo}) over participants, "
-        f"n = {counted(tests.participants, 'participant')}; split: last {held_out_text(run)} s of the walk held out. "
+        f"n = {counted(tests.participants, 'participant')}; split: last {tail_words(run)} s of the walk held out. "
         "Boxes: quartiles, thick line: median, whiskers: range, marks: participants; networks only. A bar joins two "
         "models that differ: exact two-sided Wilcoxon signed-rank test, Holm-Sidak over the variables of the pair, "
         f"alpha = {tests.alpha:g}.{below if hidden else ''} After Fig. 4.2 of the dissertation."

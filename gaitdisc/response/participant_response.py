@@ -15,10 +15,10 @@ from gaitdisc.errors import SchemaError, ShapeError
 from gaitdisc.processing.pooled_cycles import CYCLES, WALK, PooledCycles, WalkSummary
 from gaitdisc.recording import PERCENT
 from gaitdisc.response.participants_result import OVER, TESTS, OverParticipants, PairTests, table_of_people
-from gaitdisc.saved.kind import CSV, Kind, keyed_arrays
+from gaitdisc.saved.kind import CSV, Kind, pick_arrays
 from gaitdisc.saved.study_run import StudyRun, load_run_as, save_whole_run
 from gaitdisc.saved.unit_folder import Arrays, lies_on_disk, may_lie_on_disk
-from gaitdisc.words import html_of
+from gaitdisc.words import as_html
 
 QUESTIONS = ("modalities", "sensitivity")  # answered in folders beside a run
 MODELS = ("nominal", "augmented", "exo")
@@ -130,12 +130,12 @@ class DataQuantity:
         return chosen.pivot_table(index="length_s", columns="model", values="r2", aggfunc="median")
 
 
-def _held_out(arrays: Arrays) -> HeldOut:
-    predicted, bands = keyed_arrays(arrays, "predicted_"), keyed_arrays(arrays, "band_")
+def _find_held_out(arrays: Arrays) -> HeldOut:
+    predicted, bands = pick_arrays(arrays, "predicted_"), pick_arrays(arrays, "band_")
     return HeldOut(arrays["time"], arrays["phi"], arrays["measured"], predicted, bands)
 
 
-def _predicted(response: ParticipantResponse) -> dict[str, NDArray[np.float64]]:
+def _predict(response: ParticipantResponse) -> dict[str, NDArray[np.float64]]:
     held = response.held_out
     every = {"predicted": held.predicted, "band": held.bands, "residual": response.residuals}
     own = {f"{word}_{model}": values for word, of in every.items() for model, values in of.items()}
@@ -147,8 +147,8 @@ RESPONSE = Kind(
     "response.json",
     ("participant", "inputs", "outputs", "units", "held_out_s"),
     {"r2": CSV("r2.csv", R2_COLUMNS), "fits": CSV("fits.csv", FIT_COLUMNS)},
-    {"held_out": _held_out, "residuals": partial(keyed_arrays, prefix="residual_")},
-    _predicted,
+    {"held_out": _find_held_out, "residuals": partial(pick_arrays, prefix="residual_")},
+    _predict,
     unit=lambda response: response.participant,
 )
 QUANTITY = Kind(
@@ -236,7 +236,7 @@ class ResponseRun(StudyRun):
         table = table[(table["kind"] == "network") & (table["walk"] == "exo")]
         middle = table.groupby("model", sort=False)["r2"].median()
         rows += [(f"median R² of {model}", f"{value:.2f}") for model, value in middle.items()]
-        return html_of(self.title or "Response run", rows)
+        return as_html(self.title or "Response run", rows)
 
 
 def load_run(folder: Path) -> ResponseRun:

@@ -97,7 +97,7 @@ def sample_counts(response: ParticipantResponse, walk: str = "exo") -> str:
     return f"{low}" if low == high else f"{low}-{high}"
 
 
-def held_out_text(run: ResponseRun) -> str:
+def tail_words(run: ResponseRun) -> str:
     """Length of the held-out part in words [s]: one number, the few that there are, or their range."""
     seconds = sorted({f"{response.held_out_s:.4g}" for response in run.responses}, key=float)
     return " or ".join(seconds) if len(seconds) < 4 else f"{seconds[0]} to {seconds[-1]}"
@@ -230,7 +230,7 @@ def _caption(run: ResponseRun, low: float, null: bool) -> str:
     start = f" The axis starts at {number(low, 1)}." if low > 0 else ""
     return (
         f"R² [1] of the second derivative of each variable on the held-out device walk ({run.exo}), "
-        f"n = {counted(people, 'participant')}, {samples}; split: last {held_out_text(run)} s of the walk held "
+        f"n = {counted(people, 'participant')}, {samples}; split: last {tail_words(run)} s of the walk held "
         f"out. {marks}; {noise}.{start}{edge}"
     )
 
@@ -268,7 +268,7 @@ def study_r2_table(run: ResponseRun) -> Table:
     caption = (
         f"R² [1] of the second derivative of each variable on held-out walking, median [quartiles] over participants, "
         f"n = {counted(len(people), 'participant')} (column n: those who have the variable); split: last "
-        f"{held_out_text(run)} s of each walk held out."
+        f"{tail_words(run)} s of each walk held out."
     )
     return _table_of_r2("r2-study", caption, ("variable", "n"), rows, long)
 
@@ -284,7 +284,7 @@ def participants_table(run: ResponseRun) -> Table:
     caption = (
         "R² [1] on held-out walking, median over variables of each participant, n = "
         f"{counted(len(people), 'participant')} (column n: held-out samples of the device walk); split: last "
-        f"{held_out_text(run)} s of each walk held out, used by no model."
+        f"{tail_words(run)} s of each walk held out, used by no model."
     )
     return _table_of_r2("participants", caption, ("participant", "n"), rows, numbers)
 

@@ -8,8 +8,8 @@ import numpy as np
 import pandas as pd
 
 from gaitdisc.response.participant_response import ParticipantResponse, ResponseRun
-from gaitdisc.response.r2_tables import R2_TABLE, held_out_text, participant_medians, r2_by_variable, sample_counts
-from gaitdisc.words import MODEL_WORDS, counted, label, listed, number, plain
+from gaitdisc.response.r2_tables import R2_TABLE, participant_medians, r2_by_variable, sample_counts, tail_words
+from gaitdisc.words import MODEL_WORDS, counted, label, listing, number, plain
 
 if TYPE_CHECKING:
     import rich.table
@@ -26,7 +26,7 @@ _SHORT = {"nominal": "Nominal", "augmented": "Augm.", "exo": "Exo", "": "null"}
 def study_sentences(run: ResponseRun) -> list[str]:
     """What the study as a whole says: who was analysed, and what the models explain over participants."""
     refused = sorted({refusal.participant for refusal in run.refusals})
-    left_out = f"; left out entirely or in part: {listed(refused)} (see “Left out”)" if refused else ""
+    left_out = f"; left out entirely or in part: {listing(refused)} (see “Left out”)" if refused else ""
     if not run.responses:
         if refused:
             return [f"No participant could be analysed{left_out}. There are no results."]
@@ -97,7 +97,7 @@ def _verdict(table: pd.DataFrame, middle: pd.Series) -> str:
     if median >= MARGIN:
         return (
             f"The Discrepancy model helps: R² rises by {number(median)} (median of the differences; "
-            f"{better}){_closed(middle)}."
+            f"{better}){_say_closed(middle)}."
         )
     if median <= -MARGIN:
         return (
@@ -110,7 +110,7 @@ def _verdict(table: pd.DataFrame, middle: pd.Series) -> str:
     )
 
 
-def _closed(middle: pd.Series) -> str:
+def _say_closed(middle: pd.Series) -> str:
     nominal, augmented, exo = (float(middle[column]) for column in _ON_EXO.values())
     if not np.isfinite(exo) or exo - nominal < 0.01:
         return ""
@@ -127,11 +127,11 @@ def _ridge(middle: pd.Series) -> str:
     ridge = {model: value for model, value in ridge.items() if np.isfinite(value)}
     if not ridge:
         return ""
-    said = listed([f"{MODEL_WORDS[model]} {number(value)}" for model, value in ridge.items()])
+    said = listing([f"{MODEL_WORDS[model]} {number(value)}" for model, value in ridge.items()])
     start = f"Ridge regression with phase harmonics on the same samples, without any network, reaches {said}"
     wins = [model for model, value in ridge.items() if value - middle[_ON_EXO[model]] >= MARGIN]
     if wins:
-        beaten = listed([f"{MODEL_WORDS[m]} ({number(ridge[m])} against {number(middle[_ON_EXO[m]])})" for m in wins])
+        beaten = listing([f"{MODEL_WORDS[m]} ({number(ridge[m])} against {number(middle[_ON_EXO[m]])})" for m in wins])
         return f"{start}: ridge exceeds the network for {beaten}, so the network has no advantage there."
     if "augmented" not in ridge or not np.isfinite(middle["augmented_on_exo"]):
         return f"{start}."
@@ -148,7 +148,7 @@ def _null(table: pd.DataFrame, middle: pd.Series) -> str:
     start = f"Band-limited noise alone would reach {number(null)}"
     below = [MODEL_WORDS[m] for m, column in _ON_EXO.items() if middle[column] <= null + MARGIN]
     if below:
-        return f"{start}; the {listed(below)} {'model does' if len(below) == 1 else 'models do'} not exceed it."
+        return f"{start}; the {listing(below)} {'model does' if len(below) == 1 else 'models do'} not exceed it."
     lost = [str(v) for v in table.index[table["augmented_on_exo"] <= table["null_on_exo"] + MARGIN]]
     if not lost:
         return f"{start}."
@@ -190,20 +190,20 @@ def r2_text(run: ResponseRun) -> rich.table.Table:
         for refusal in run.refusals:
             table.add_row(plain(refusal.participant), plain(refusal.condition or "all"), plain(refusal.reason))
         return table
-    about = f"last {held_out_text(run)} s of each walk held out; null: band-limited noise alone"
+    about = f"last {tail_words(run)} s of each walk held out; null: band-limited noise alone"
     if len(run.responses) == 1:
         [response] = run.responses
         title = (
             f"{response.participant}: R² on the held-out device walk, n = {sample_counts(response)} samples; {about}"
         )
-        return _printed(r2_by_variable(response), title)
+        return _print(r2_by_variable(response), title)
     people = counted(len(run.responses), "participant")
-    return _printed(
+    return _print(
         participant_medians(run), f"R² on the held-out device walk, median over variables, n = {people}; {about}"
     )
 
 
-def _printed(values: pd.DataFrame, caption: str) -> rich.table.Table:
+def _print(values: pd.DataFrame, caption: str) -> rich.table.Table:
     table = _empty(caption)
     table.add_column(plain(str(values.index.name)), vertical="bottom", no_wrap=True)
     for column in _SHOWN:

@@ -12,7 +12,7 @@ from gaitdisc.report.page import write_page
 from gaitdisc.report.panels import MODELS, Room, in_style, legend, panels
 from gaitdisc.report.table import Table, save_table, save_tables
 from gaitdisc.response.variants import VariantRun
-from gaitdisc.words import MODEL_WORDS, counted, label, listed, number
+from gaitdisc.words import MODEL_WORDS, counted, label, listing, number
 
 ALL = "all inputs"
 GROUPS = {"angles": "joint angles predicted", "EMG": "EMG predicted"}
@@ -72,7 +72,7 @@ def modalities_figure(run: VariantRun) -> Figure | None:
 
 def falls(run: VariantRun) -> pd.DataFrame:
     """Variables (`angles` or `EMG`), family left out, network, participant, median fall of R2 over the variables."""
-    table = _grouped(run)
+    table = _group(run)
     table = table[table["kind"] == "network"]
     keys = ["variables", "model", "participant", "variable"]
     whole = table[table["variant"] == ALL].set_index(keys)["r2"]
@@ -82,7 +82,7 @@ def falls(run: VariantRun) -> pd.DataFrame:
     return grouped.median().reset_index().rename(columns={"variant": "without"})
 
 
-def _grouped(run: VariantRun) -> pd.DataFrame:
+def _group(run: VariantRun) -> pd.DataFrame:
     """R2 of every participant, with the group of each variable: `angles` or `EMG`."""
     table = run.r2_table()
     return table.assign(variables=np.where(table["variable"].str.startswith("emg_"), "EMG", "angles"))
@@ -115,7 +115,7 @@ def modalities_sentences(run: VariantRun) -> tuple[str, ...]:
             continue
         middle = own.groupby("without", sort=False)["fall"].median().sort_values(ascending=False, kind="stable")
         most = [f"{family_words(str(name))} ({number(fall, 3)})" for name, fall in middle.head(3).items()]
-        said.append(f"Among {words}, the Augmented model loses most R² (medians) without {listed(most)}.")
+        said.append(f"Among {words}, the Augmented model loses most R² (medians) without {listing(most)}.")
     said.append(
         "A fall shows information that the other inputs cannot replace. Joint angles and EMG of one walk are "
         "correlated, so an input family may be informative even if R² does not fall without it. The falls of two "
@@ -142,7 +142,7 @@ def setting_medians(run: VariantRun) -> pd.DataFrame:
         ("augmented", "ridge"): "ridge_augmented",
         ("nominal", "null"): "null",
     }
-    table = _grouped(run)
+    table = _group(run)
     table["column"] = [columns.get(key, "") for key in zip(table["model"], table["kind"], strict=True)]
     people = table.pivot_table(
         "r2", ["variant", "variables", "participant"], "column", aggfunc="median", sort=False

@@ -9,7 +9,7 @@ from functools import partial
 import numpy as np
 import pandas as pd
 
-from gaitdisc.channel import side_of
+from gaitdisc.channel import find_side
 from gaitdisc.errors import SamplingError, TrainingError
 from gaitdisc.model import Model
 from gaitdisc.processing.samples import PHASE
@@ -19,9 +19,9 @@ from gaitdisc.response.fit_response import (
     fit_linear,
     fit_network,
     fit_response,
-    held_out_part,
-    held_out_samples,
+    pick_held_out,
     report_share,
+    split_held_out,
     training_samples,
 )
 from gaitdisc.response.over_participants import FEWEST, by_participant, compare_columns
@@ -62,7 +62,7 @@ def input_families(inputs: Sequence[str]) -> dict[str, tuple[str, ...]]:
         "EMG velocities": emg & fast,
     }
     for name, channel in channels.items():
-        sideless = channel.removesuffix(f"_{side_of(channel)}") if side_of(channel) else channel
+        sideless = channel.removesuffix(f"_{find_side(channel)}") if find_side(channel) else channel
         groups.setdefault(sideless, set()).add(name)
     found: dict[str, tuple[str, ...]] = {}
     for family, members in groups.items():
@@ -86,7 +86,7 @@ def fit_without(
     """
     progress = progress or (lambda _: None)
     training = training_samples(nominal, exo, settings)
-    held = held_out_samples(held_out_part(exo, settings)[1], settings)
+    held = pick_held_out(split_held_out(exo, settings)[1], settings)
     families = {ALL: (), **input_families(held.inputs)}
     kinds: dict[str, Callable[[Samples], Model]] = {
         "network": lambda samples: fit_network(samples, settings.training).model,
@@ -187,7 +187,7 @@ def fit_data_quantity(
     left_away = dict.fromkeys(too_long, f"the training part is {whole_s:.1f} s long")
     fitted: dict[float, ParticipantResponse] = {}
     for number, length in enumerate(wanted if whole else [*wanted, whole_s]):
-        less = [shortened(walk, settings, length, part) for walk in (nominal, exo)]
+        less = [shorten_walk(walk, settings, length, part) for walk in (nominal, exo)]
         report = partial(report_share, progress, number, len(wanted) + 1)
         try:
             fitted[length] = fit_response(less[0], less[1], settings, progress=report)
@@ -207,12 +207,12 @@ def fit_data_quantity(
 
 def first_share(walk: Trajectory, settings: ResponseSettings, share: float) -> Trajectory:
     """Walk of whose training part the first so much is used."""
-    return walk if share == 1 else shortened(walk, settings, share * _training_s(walk, settings), "first")
+    return walk if share == 1 else shorten_walk(walk, settings, share * _training_s(walk, settings), "first")
 
 
-def shortened(walk: Trajectory, settings: ResponseSettings, length_s: float, part: str) -> Trajectory:
+def shorten_walk(walk: Trajectory, settings: ResponseSettings, length_s: float, part: str) -> Trajectory:
     """Walk whose training part keeps `length_s` [s] usable; the held-out part is untouched."""
-    training, _ = held_out_part(walk, settings)
+    training, _ = split_held_out(walk, settings)
     count, keep = len(training.time), round(length_s * walk.rate_hz)
     good = np.flatnonzero(np.isfinite(training.phi) & training.usable.all(axis=1))
     if not len(good):
@@ -226,5 +226,5 @@ def shortened(walk: Trajectory, settings: ResponseSettings, length_s: float, par
 
 
 def _training_s(walk: Trajectory, settings: ResponseSettings) -> float:
-    training = held_out_part(walk, settings)[0]
+    training = split_held_out(walk, settings)[0]
     return len(training.time) / training.rate_hz

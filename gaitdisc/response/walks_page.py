@@ -9,13 +9,13 @@ from typing import TYPE_CHECKING
 import numpy as np
 import pandas as pd
 
-from gaitdisc.processing.curves_figure import WALKS, walk_of
+from gaitdisc.processing.curves_figure import WALKS, find_walk
 from gaitdisc.report.figure import Figure
 from gaitdisc.report.panels import DROPPED, KEPT, SIDES, Room, in_style, legend, panels
 from gaitdisc.report.table import Table
 from gaitdisc.response.participant_response import FIT_COLUMNS, ResponseRun
 from gaitdisc.response.participants_result import table_of_people
-from gaitdisc.words import LIGHTS, MODEL_WORDS, SIDE_WORDS, counted, listed
+from gaitdisc.words import LIGHTS, MODEL_WORDS, SIDE_WORDS, counted, listing
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -26,7 +26,7 @@ _HEIGHTS = {"r": 1.0, "l": 0.0, "": 0.5}
 
 def stride_numbers(run: ResponseRun, participant: str) -> pd.DataFrame:
     """Every stride with its duration in order of time, and a letter for the kind of reason that dropped it."""
-    walks = [walk_of(run, participant, walk) for walk in WALKS]
+    walks = [find_walk(run, participant, walk) for walk in WALKS]
     tables = [
         walk.strides.assign(participant=walk.subject, condition=walk.condition) for walk in walks if walk is not None
     ]
@@ -85,7 +85,7 @@ def strides_figure(run: ResponseRun, participant: str, name: str) -> Figure | No
         f"{rows['duration_s'].median():.2f} s"
         for condition, rows in groups
     ]
-    alt = f"Strides of {participant}. {listed(parts)}."
+    alt = f"Strides of {participant}. {listing(parts)}."
     return Figure(f"strides-{name}", _caption(participant, numbers), alt, numbers, drawn)
 
 
@@ -169,7 +169,7 @@ def walks_table(run: ResponseRun) -> Table:
     return Table("walks", caption, columns, tuple(rows), pd.DataFrame(records))
 
 
-def dropped_table(run: ResponseRun, participant: str, name: str) -> Table | None:
+def tabulate_dropped(run: ResponseRun, participant: str, name: str) -> Table | None:
     """Dropped strides of a participant counted by kind of reason, or None where none was dropped."""
     strides = stride_numbers(run, participant)
     dropped = strides[~strides["kept"].astype(bool)]

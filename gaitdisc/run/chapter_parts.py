@@ -56,10 +56,10 @@ PARTS = (
 CHAPTERS = tuple(dict.fromkeys(part.chapter for part in PARTS))
 
 
-def parts_of(chapter: int, name: str = "") -> tuple[Part, ...]:
+def list_parts(chapter: int, name: str = "") -> tuple[Part, ...]:
     """Parts of a chapter, or the one of that name.
 
-    >>> [part.name for part in parts_of(4)]
+    >>> [part.name for part in list_parts(4)]
     ['ankle_exo', 'bands', 'outcomes']
     """
     if chapter not in CHAPTERS:

@@ -17,7 +17,7 @@ from gaitdisc.errors import SchemaError, TrainingError
 from gaitdisc.own_files import claim_folder
 from gaitdisc.run.chapter_parts import OUT, Part, studies_folder
 from gaitdisc.saved.provenance import code_sha256
-from gaitdisc.saved.unit_folder import read_sealed, sealed_text
+from gaitdisc.saved.unit_folder import read_sealed, seal_text
 from gaitdisc.whole_file import write_whole
 from gaitdisc.write_lock import write_lock
 
@@ -34,7 +34,7 @@ class Made(NamedTuple):
     kept: bool
 
 
-def lack_of(part: Part, data: Path | None) -> SchemaError | None:
+def find_lack(part: Part, data: Path | None) -> SchemaError | None:
     """The refusal of a part that cannot be computed on this machine; None where it can."""
     needs = f"{part.name} of chapter {part.chapter} needs"
     libraries = [name for name in part.libraries if find_spec(name) is None]
@@ -52,7 +52,7 @@ def run_part(
     part: Part, out: Path, quick: bool, data: Path | None, ticked: Callable[[float], None] = lambda _: None
 ) -> Made:
     """Compute a part in `out/<part>`, or keep it where the same code has computed it there; a stopped one goes on."""
-    lack = lack_of(part, data)
+    lack = find_lack(part, data)
     if lack is not None:
         raise lack
     folder = out / part.name
@@ -64,10 +64,10 @@ def run_part(
         return Made(folder, True)
     claim_folder(folder, NAME, PRINTED, mended=(NAME,))
     with write_lock(folder, run=True):
-        write_whole(folder / NAME, sealed_text({**begun, "seconds": None}))
+        write_whole(folder / NAME, seal_text({**begun, "seconds": None}))
         started = time.perf_counter()
         write_whole(folder / PRINTED, _study(part, folder, quick, data, ticked))
-        write_whole(folder / NAME, sealed_text({**begun, "seconds": round(time.perf_counter() - started, 1)}))
+        write_whole(folder / NAME, seal_text({**begun, "seconds": round(time.perf_counter() - started, 1)}))
     return Made(folder, False)
 
 

@@ -13,7 +13,7 @@ from gaitdisc.channel import schema_folder
 from gaitdisc.comparison.mismatch import Mismatch
 from gaitdisc.discovery.result import Discovery
 from gaitdisc.errors import SchemaError
-from gaitdisc.kinematics.marker_set import shipped_marker_sets
+from gaitdisc.kinematics.marker_set import read_marker_sets
 from gaitdisc.processing.pooled_cycles import PooledCycles
 from gaitdisc.reconstruction.reconstruction import Reconstruction
 from gaitdisc.recording import Finding
@@ -117,7 +117,7 @@ class Cited(NamedTuple):
     entry: str
 
 
-def citations_of(folder: Path) -> list[Cited]:
+def list_citations(folder: Path) -> list[Cited]:
     """Literature of the methods that the result in a folder used, in the order of the table."""
     if (folder / CHAPTER).is_file():
         part = read_sealed(folder / CHAPTER).get("part")
@@ -129,7 +129,7 @@ def citations_of(folder: Path) -> list[Cited]:
             )
         used = {"this program", *OF_PARTS[part]}
     else:
-        used = {"this program", *methods_of(find_kind(folder, drawn=True).load(folder))}
+        used = {"this program", *list_methods(find_kind(folder, drawn=True).load(folder))}
     by_key: dict[str, list[str]] = {}
     for method, keys in MENTIONED.items():
         for key in keys if method in used else ():
@@ -137,7 +137,7 @@ def citations_of(folder: Path) -> list[Cited]:
     return [Cited(key, tuple(words), entries()[key]) for key, words in by_key.items()]
 
 
-def methods_of(result: Any) -> Iterator[str]:
+def list_methods(result: Any) -> Iterator[str]:
     """Methods, in words of `MENTIONED`, that a result used."""
     if isinstance(result, ResponseRun):
         yield from _of_run(result)
@@ -200,7 +200,7 @@ def _of_markers(findings: Iterable[Finding], hip: str | None) -> Iterator[str]:
     if "marker set" not in by_kind:
         return
     yield from ("segments from markers", "joint angles")
-    named = shipped_marker_sets().get(by_kind["marker set"].partition(":")[0])
+    named = read_marker_sets().get(by_kind["marker set"].partition(":")[0])
     first = hip or (named.joint_centres["hip"][0] if named else "")
     if first == "davis" and "hip" not in by_kind:
         yield "hip centres after Davis"

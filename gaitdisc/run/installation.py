@@ -12,7 +12,7 @@ import numpy as np
 
 from gaitdisc.channel import vocabulary
 from gaitdisc.recording import Recording
-from gaitdisc.saved.provenance import installed_versions
+from gaitdisc.saved.provenance import list_versions
 
 EXTRAS = {
     "torch": "models of chapters 4 and 5",
@@ -36,7 +36,7 @@ class Check:
 
 def checks() -> Iterator[Check]:
     """Everything that is looked at, one after the other; nothing is changed on this machine."""
-    for name, number in installed_versions().items():
+    for name, number in list_versions().items():
         absent = number == "absent" and name not in EXTRAS
         yield Check(name, "wrong" if absent else "absent" if number == "absent" else "ok", number)
     for name, words in EXTRAS.items():

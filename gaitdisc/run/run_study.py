@@ -10,18 +10,18 @@ from typing import TYPE_CHECKING
 
 from gaitdisc.errors import GaitdiscError, ReadError
 from gaitdisc.ingest.study import Participant, Study
-from gaitdisc.ingest.trial_sets import not_compared, refused_participant
+from gaitdisc.ingest.trial_sets import not_compared, why_refused
 from gaitdisc.models.training_settings import TrainingSettings
 from gaitdisc.processing.pooled_cycles import CYCLES, WALK, PooledCycles, WalkSummary
 from gaitdisc.processing.process import Walk
-from gaitdisc.processing.processed_walks import computed_cycles, cycles_key, response_key, unit_keys
+from gaitdisc.processing.processed_walks import compute_cycles, cycles_key, response_key, unit_keys
 from gaitdisc.response.participant_response import QUANTITY, RESPONSE, ParticipantResponse, ResponseRun
 from gaitdisc.response.participants_result import OVER, TESTS
-from gaitdisc.run.workers import StudyProgress, Workers, computed_units
+from gaitdisc.run.workers import StudyProgress, Workers, compute_units
 from gaitdisc.saved.kind import Kind
-from gaitdisc.saved.provenance import Refusal, made_now
-from gaitdisc.saved.study_run import created_before, save_run
-from gaitdisc.saved.unit_folder import damaged_units, unit_name
+from gaitdisc.saved.provenance import Refusal, provenance_now
+from gaitdisc.saved.study_run import keep_creation, save_run
+from gaitdisc.saved.unit_folder import damage_lines, unit_name
 from gaitdisc.write_lock import write_lock
 
 if TYPE_CHECKING:
@@ -57,39 +57,39 @@ class ParticipantUnit:
     unfitted: str = ""
 
 
-def computed_unit(study: Study, participant: Participant, folder: Path, progress: Progress) -> ParticipantUnit:
+def compute_unit(study: Study, participant: Participant, folder: Path, progress: Progress) -> ParticipantUnit:
     """Compute one participant, or load what an earlier run computed from the same files and settings.
 
     What is given back was loaded in either case, so that a run that went on has the numbers of one never stopped,
     to the last bit, and arrays stay on disk. A refusal stops this participant and nobody else.
     """
-    refused = refused_participant(study, participant)
+    refused = why_refused(study, participant)
     if refused:
         return ParticipantUnit(refusals=(Refusal(participant.id, "", refused),))
     lacking = not_compared(study, participant)
     if lacking:
-        return pooled_unit(study, participant, folder, lacking)
-    unit = _compared_unit(study, participant, folder, progress)
+        return pool_unit(study, participant, folder, lacking)
+    unit = _compare_unit(study, participant, folder, progress)
     if unit.response is None and any(refusal.condition for refusal in unit.refusals):
-        from gaitdisc.processing.pooled import pooled_instead
+        from gaitdisc.processing.pooled import can_pool
 
-        pooled = pooled_unit(study, participant, folder, unit.refusals[0].reason)
-        if pooled_instead(pooled.cycles):
+        pooled = pool_unit(study, participant, folder, unit.refusals[0].reason)
+        if can_pool(pooled.cycles):
             return pooled
     return unit
 
 
-def pooled_unit(study: Study, participant: Participant, folder: Path, unfitted: str) -> ParticipantUnit:
+def pool_unit(study: Study, participant: Participant, folder: Path, unfitted: str) -> ParticipantUnit:
     """Pool the cycles of one participant over trials, or load what an earlier run pooled."""
-    cycles = computed_cycles(study, participant, folder)
+    cycles = compute_cycles(study, participant, folder)
     refusals = tuple(refusal for one in cycles for refusal in one.refusals)
     why = unfitted if study.conditions.device is not None else ""
     return ParticipantUnit((), None, refusals, cycles_key(study, participant), cycles, why)
 
 
-def _compared_unit(study: Study, participant: Participant, folder: Path, progress: Progress) -> ParticipantUnit:
+def _compare_unit(study: Study, participant: Participant, folder: Path, progress: Progress) -> ParticipantUnit:
     keys = unit_keys(study, participant)
-    stored = _stored(participant, keys, folder)
+    stored = _find_stored(participant, keys, folder)
     if stored is not None:
         return stored
     from gaitdisc.processing.processed_walks import (
@@ -108,11 +108,13 @@ def _compared_unit(study: Study, participant: Participant, folder: Path, progres
             errors[""] = error
         else:
             RESPONSE.save(response, folder / "responses" / participant.id, response_key(keys))
-            return _stored(participant, keys, folder) or ParticipantUnit(_loaded(walks, participant, folder), response)
+            return _find_stored(participant, keys, folder) or ParticipantUnit(
+                _load(walks, participant, folder), response
+            )
     refusals = tuple(Refusal(participant.id, word, str(error)) for word, error in errors.items())
     if not any(isinstance(error, ReadError) for error in errors.values()):  # that may be readable another time
         REFUSED.save(Refused(refusals, tuple(walks)), folder / "refused" / participant.id, response_key(keys))
-    return ParticipantUnit(_loaded(walks, participant, folder), None, refusals, response_key(keys))
+    return ParticipantUnit(_load(walks, participant, folder), None, refusals, response_key(keys))
 
 
 def response_settings(study: Study) -> ResponseSettings:
@@ -126,17 +128,17 @@ def response_settings(study: Study) -> ResponseSettings:
 def _fitted(
     study: Study, participant: Participant, walks: Mapping[str, Walk], progress: Progress
 ) -> ParticipantResponse:
-    from gaitdisc.processing.filter_null import filter_null_of
+    from gaitdisc.processing.filter_null import make_filter_null
     from gaitdisc.response.fit_response import fit_response
 
     nominal, exo = (walks[word] for word in study.conditions.both)
     settings = response_settings(study)
-    null = filter_null_of(exo, study.filters)
+    null = make_filter_null(exo, study.filters)
     response = fit_response(nominal.trajectory, exo.trajectory, settings, null, progress, banded=True)
     return replace(response, participant=participant.id)
 
 
-def _stored(participant: Participant, keys: Mapping[str, str], folder: Path) -> ParticipantUnit | None:
+def _find_stored(participant: Participant, keys: Mapping[str, str], folder: Path) -> ParticipantUnit | None:
     """Whole unit of an earlier run, if all of it rests on the same files and settings."""
     key = response_key(keys)
     refused = REFUSED.kept(folder / "refused" / participant.id, key)
@@ -151,7 +153,7 @@ def _stored(participant: Participant, keys: Mapping[str, str], folder: Path) -> 
     return ParticipantUnit(whole, response, refused.refusals if refused else (), key)
 
 
-def _loaded(walks: Mapping[str, Walk], participant: Participant, folder: Path) -> tuple[WalkSummary, ...]:
+def _load(walks: Mapping[str, Walk], participant: Participant, folder: Path) -> tuple[WalkSummary, ...]:
     return tuple(WALK.load(_walk_folder(folder, participant, word)) for word in walks)
 
 
@@ -176,10 +178,10 @@ def run_study(
     returns: also saved in the folder; refusals are part of it
     """
     with write_lock(folder, run=True):
-        renewed = damaged_units(folder)
-        compute = partial(computed_unit, study, folder=folder.absolute())
+        renewed = damage_lines(folder)
+        compute = partial(compute_unit, study, folder=folder.absolute())
         people, where = study.participants, workers or Workers()
-        units = list(computed_units(where, compute, people, progress, lambda one: ParticipantUnit(refusals=(one,))))
+        units = list(compute_units(where, compute, people, progress, lambda one: ParticipantUnit(refusals=(one,))))
         responses = tuple(unit.response for unit in units if unit.response is not None)
         fitted = [(unit.response.participant, unit.key) for unit in units if unit.response is not None]
         stored = (QUANTITY.kept(folder / "quantities" / name, key) for name, key in fitted)
@@ -197,7 +199,7 @@ def run_study(
             nominal=study.conditions.nominal,
             exo=study.conditions.device or "",
             refusals=tuple(refusal for unit in units for refusal in unit.refusals),
-            provenance=made_now(settings, study.models.seed, files, SECTION if tests else POOLED),
+            provenance=provenance_now(settings, study.models.seed, files, SECTION if tests else POOLED),
             units={
                 WALK.file: tuple(walk for unit in units for walk in unit.walks),
                 RESPONSE.file: responses,
@@ -211,6 +213,6 @@ def run_study(
             ),
             renewed=renewed,
         )
-        run = created_before(run, folder)
+        run = keep_creation(run, folder)
         save_run(run, folder)
     return run

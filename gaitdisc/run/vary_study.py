@@ -14,12 +14,12 @@ import pandas as pd
 
 from gaitdisc.errors import GaitdiscError, SchemaError
 from gaitdisc.ingest.c3d import C3DReader
-from gaitdisc.ingest.public_words import words_of
+from gaitdisc.ingest.public_words import list_words
 from gaitdisc.ingest.reading import read_planned_trial
 from gaitdisc.ingest.study import Participant, Study
-from gaitdisc.processing.filter_null import filter_null_of
+from gaitdisc.processing.filter_null import make_filter_null
 from gaitdisc.processing.process import ReadWalk, StudyWalks
-from gaitdisc.processing.processed_walks import processed_walks, response_key, unit_keys
+from gaitdisc.processing.processed_walks import process_walks, response_key, unit_keys
 from gaitdisc.recording import Trajectory
 from gaitdisc.response.fit_response import fit_response, report_share
 from gaitdisc.response.over_participants import compare_participants
@@ -36,7 +36,7 @@ from gaitdisc.response.vary import (
     settings_around,
 )
 from gaitdisc.run.run_study import response_settings, run_study
-from gaitdisc.run.workers import StudyProgress, Workers, computed_units
+from gaitdisc.run.workers import StudyProgress, Workers, compute_units
 from gaitdisc.saved.provenance import Refusal
 from gaitdisc.saved.study_run import save_run
 from gaitdisc.write_lock import write_lock
@@ -55,8 +55,8 @@ def vary_study(
     """
     if question not in QUESTIONS:
         raise SchemaError(f"questions are {', '.join(QUESTIONS)}", f"found {question!r}", "Use one of these.")
-    compute = partial(computed_variants, study, folder=folder.absolute(), question=question)
-    with _varied(study, folder, compute, workers, progress) as (run, people):
+    compute = partial(compute_variants, study, folder=folder.absolute(), question=question)
+    with _vary(study, folder, compute, workers, progress) as (run, people):
         lengths = [response.held_out_s for response in run.responses] or [0.0]
         tests = compare_variants(people, question)
         held_out_s = (min(lengths), max(lengths))
@@ -79,8 +79,8 @@ def ablate_study(
 
     lengths_s: of the training part [s]; its whole length is always added. Who had to be refused is in `refusals`.
     """
-    compute = partial(computed_quantity, study, folder=folder.absolute(), lengths_s=lengths_s, part=part)
-    with _varied(study, folder, compute, workers, progress) as (run, quantities):
+    compute = partial(compute_quantity, study, folder=folder.absolute(), lengths_s=lengths_s, part=part)
+    with _vary(study, folder, compute, workers, progress) as (run, quantities):
         over = compare_participants(run.responses, quantities, study.models.seed)
         ablated = run.with_units(QUANTITY, quantities).with_units(OVER, (over,))
         save_run(ablated, folder)
@@ -88,7 +88,7 @@ def ablate_study(
 
 
 @contextmanager
-def _varied(
+def _vary(
     study: Study,
     folder: Path,
     compute: Callable[..., Unit | Refusal],
@@ -100,12 +100,12 @@ def _varied(
     run = run_study(study, folder, workers)
     with write_lock(folder, run=True):
         people = [study.participant(response.participant) for response in run.responses]
-        found = list(computed_units(workers, compute, people, progress, lambda refusal: refusal))
+        found = list(compute_units(workers, compute, people, progress, lambda refusal: refusal))
         run = replace(run, refusals=(*run.refusals, *(each for each in found if isinstance(each, Refusal))))
         yield run, tuple(each for each in found if not isinstance(each, Refusal))
 
 
-def computed_variants(
+def compute_variants(
     study: Study, participant: Participant, folder: Path, question: str, progress: Progress
 ) -> Variants | Refusal:
     """Compute one participant's variants, or load what was computed from the same files and settings."""
@@ -125,7 +125,7 @@ def computed_variants(
     return found
 
 
-def computed_quantity(
+def compute_quantity(
     study: Study,
     participant: Participant,
     folder: Path,
@@ -152,7 +152,7 @@ def computed_quantity(
 
 def _fitted(study: Study, participant: Participant, fit: Callable[[Trajectory, Trajectory], Unit]) -> Unit | Refusal:
     """What is fitted to both walks of a participant, or why it cannot be."""
-    walks, refusals = processed_walks(study, participant)
+    walks, refusals = process_walks(study, participant)
     if refusals:
         return refusals[0]
     nominal, exo = (walks[word].trajectory for word in study.conditions.both)
@@ -163,7 +163,7 @@ def _fitted(study: Study, participant: Participant, fit: Callable[[Trajectory, T
 
 
 def _sensitivity(study: Study, participant: Participant, progress: Progress) -> Variants | Refusal:
-    public = words_of(study, participant)
+    public = list_words(study, participant)
     try:
         with C3DReader() as reader:
             planned = {word: participant.trials_of(word)[0] for word in study.conditions.both}
@@ -191,7 +191,7 @@ def _under(study: Study, trials: Mapping[str, ReadWalk], setting: Setting, progr
     filtered = study.model_copy(update={"filters": study.filters.model_copy(update=cut_offs)})
     nominal, exo = (trials[word].processed(filtered) for word in study.conditions.both)
     fits = response_settings(study)
-    null = filter_null_of(exo, filtered.filters)
+    null = make_filter_null(exo, filtered.filters)
     less = [first_share(walk.trajectory, fits, setting.share) for walk in (nominal, exo)]
     found = fit_response(less[0], less[1], fits, null, progress).r2
     return found[found["walk"] == "exo"]

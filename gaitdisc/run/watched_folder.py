@@ -6,7 +6,7 @@ import time
 from collections.abc import Callable, Iterator
 from pathlib import Path
 
-from gaitdisc.ingest.new_study import recording_files, stamp_of
+from gaitdisc.ingest.new_study import read_stamp, recording_files
 
 STILL_S = 5.0
 LOOKS = 5  # in the time for which a file has to stand still
@@ -39,7 +39,7 @@ class WatchedFolder:
         for file in recording_files(self._folder):
             if self._without in (self._folder / file).resolve().parents:
                 continue
-            stamp = stamp_of(self._folder / file)
+            stamp = read_stamp(self._folder / file)
             same = before.get(file, (None, now))
             self._seen[file] = (stamp, same[1] if same[0] == stamp else now)
         return {file: stamp for file, (stamp, since) in self._seen.items() if stamp[0] and now - since >= self._still_s}

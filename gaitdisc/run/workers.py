@@ -66,7 +66,7 @@ class Workers:
         return self.jobs == 1 and not self.cluster
 
 
-def computed_units(
+def compute_units(
     workers: Workers,
     compute: Callable[..., Unit],
     people: Sequence[Participant],
@@ -85,7 +85,7 @@ def computed_units(
             yield compute(participant=person, progress=partial(progress, person.id))
             progress(person.id, 1.0)
         return
-    for person, unit in computed_side_by_side(workers, partial(_without_progress, compute), people):
+    for person, unit in compute_side_by_side(workers, partial(_without_progress, compute), people):
         progress(person.id, 1.0)
         yield lost(Refusal(person.id, "", unit.reason)) if isinstance(unit, Lost) else unit
 
@@ -95,7 +95,7 @@ def _without_progress(compute: Callable[..., Unit], person: Participant) -> Unit
     return compute(participant=person, progress=lambda _: None)
 
 
-def computed_side_by_side(
+def compute_side_by_side(
     workers: Workers, compute: Callable[[Person], Unit], people: Sequence[Person]
 ) -> Iterator[tuple[Person, Unit | Lost]]:
     """Compute one unit a person on other processes or machines, and give them back in order as they are ready.
@@ -103,7 +103,7 @@ def computed_side_by_side(
     returns (person, unit): `Lost` in the place of a unit whose process on this machine was killed each time
     """
     if not workers.cluster:
-        yield from computed_in_processes(workers.jobs, compute, people)
+        yield from compute_in_processes(workers.jobs, compute, people)
         return
     from joblib import Parallel, delayed
 
@@ -139,7 +139,7 @@ def _cluster(address: str) -> Iterator[None]:
         client.close()
 
 
-def computed_in_processes(
+def compute_in_processes(
     jobs: int, compute: Callable[[Person], Unit], people: Sequence[Person]
 ) -> Iterator[tuple[Person, Unit | Lost]]:
     """Compute one unit a person in processes of one thread each, and give them back in order as they are ready.

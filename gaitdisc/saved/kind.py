@@ -11,10 +11,10 @@ from typing import TYPE_CHECKING, Any, ClassVar, Generic, NamedTuple, TypeVar, g
 
 from gaitdisc.channel import list_names
 from gaitdisc.errors import SchemaError
-from gaitdisc.own_files import claim_folder, guarded
+from gaitdisc.own_files import claim_folder, guard
 from gaitdisc.recording import Finding
-from gaitdisc.saved.unit_folder import NO_KEY, Arrays, Keyed, load_unit, save_unit, stored_finding, with_words
-from gaitdisc.whole_file import written_together
+from gaitdisc.saved.unit_folder import NO_KEY, Arrays, Keyed, load_finding, load_unit, save_unit, with_words
+from gaitdisc.whole_file import write_together
 
 if TYPE_CHECKING:
     import numpy as np
@@ -84,7 +84,7 @@ class Kind(Generic[T]):
         wanted = {csv.file: csv.columns for csv in self.tables.values() if csv.columns is not None}
         data, tables, arrays = load_unit(folder, self.file, wanted, self.words)
         hints = _hints(self.noun)
-        found = {name: _typed(hints[name], data[name]) for name in self.keys if name in hints and name in data}
+        found = {name: _type(hints[name], data[name]) for name in self.keys if name in hints and name in data}
         found |= {name: self._table(csv, tables) for name, csv in self.tables.items()}
         found |= {name: arrays.later(made) if self.later else made(arrays) for name, made in self.arrays.items()}
         return Keyed(self.noun(**found), data.get("key", ""))
@@ -129,7 +129,7 @@ class Saved:
         returns: the folder
         """
         place = Path(folder)
-        with guarded(".save", overwrite=overwrite), written_together():
+        with guard(".save", overwrite=overwrite), write_together():
             claim_folder(place)
             load_word(KINDS[self._file]).save(self, place)
         return place
@@ -176,7 +176,7 @@ def check_columns(noun: object, columns: Mapping[str, Sequence[str]], needing: s
             )
 
 
-def keyed_arrays(arrays: Arrays, prefix: str) -> dict[str, NDArray[np.float64]]:
+def pick_arrays(arrays: Arrays, prefix: str) -> dict[str, NDArray[np.float64]]:
     """Arrays whose names begin with a prefix, by what follows it."""
     return {key.removeprefix(prefix): values for key, values in arrays.items() if key.startswith(prefix)}
 
@@ -192,12 +192,12 @@ def plain(value: Any, reasons: str = "") -> Any:
     return value
 
 
-def _typed(hint: Any, value: Any) -> Any:
+def _type(hint: Any, value: Any) -> Any:
     """A field as it is annotated, of what JSON held of it."""
     if get_origin(hint) is tuple:
-        return tuple(_typed(get_args(hint)[0], one) for one in value)
+        return tuple(_type(get_args(hint)[0], one) for one in value)
     if hint is Finding:
-        return stored_finding(value)
+        return load_finding(value)
     if is_dataclass(hint) and isinstance(hint, type):
         return hint(**value)
     if get_origin(hint) is Mapping and isinstance(value, list):

@@ -21,7 +21,7 @@ DISTRIBUTIONS = ("numpy", "scipy", "torch", "pandas", "ezc3d")
 class Provenance:
     """Settings and circumstances of a result.
 
-    >>> Provenance({}, 0, {}, installed_versions(), "4.2", "2026-01-01T00:00:00+00:00").seed
+    >>> Provenance({}, 0, {}, list_versions(), "4.2", "2026-01-01T00:00:00+00:00").seed
     0
     """
 
@@ -33,17 +33,17 @@ class Provenance:
     created: str  # date and time, ISO 8601 with zone
 
 
-def made_now(settings: Mapping[str, Any], seed: int, files: Mapping[str, str], section: str) -> Provenance:
+def provenance_now(settings: Mapping[str, Any], seed: int, files: Mapping[str, str], section: str) -> Provenance:
     """Return what a result rests on that is computed now, by what is installed here.
 
-    >>> made_now({}, 0, {}, "4.2").created[-6:]
+    >>> provenance_now({}, 0, {}, "4.2").created[-6:]
     '+00:00'
     """
     created = datetime.now(UTC).isoformat(timespec="seconds")
-    return Provenance(settings, seed, files, installed_versions(), section, created)
+    return Provenance(settings, seed, files, list_versions(), section, created)
 
 
-def installed_versions() -> dict[str, str]:
+def list_versions() -> dict[str, str]:
     """Versions of this package, of Python and of the libraries that compute the numbers."""
     own = f"{__version__} (code {code_sha256()[:12]})"
     versions = {"gaitdisc": own, "python": platform.python_version()}

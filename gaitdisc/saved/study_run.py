@@ -17,8 +17,8 @@ from gaitdisc.errors import SchemaError
 from gaitdisc.own_files import claim_folder
 from gaitdisc.saved.kind import Kind, Saved, load_word
 from gaitdisc.saved.provenance import Provenance, Refusal
-from gaitdisc.saved.unit_folder import FORMAT, read_json, read_sealed, sealed_text
-from gaitdisc.whole_file import write_whole, written_together
+from gaitdisc.saved.unit_folder import FORMAT, read_json, read_sealed, seal_text
+from gaitdisc.whole_file import write_together, write_whole
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -89,14 +89,14 @@ def claim_run(folder: Path) -> None:
     claim_folder(folder, "run.json", "report/report.html", command="gaitdisc run", mended=places)
 
 
-@written_together()
+@write_together()
 def save_run(run: StudyRun, folder: Path) -> None:
     """Save what a run is, beside the units that were saved as they were computed."""
     for place, kind in _kinds().items():
         if kind.unit is None:
             for one in run.of(kind):
                 kind.save(one, folder / place)
-    write_whole(folder / "run.json", sealed_text(_described(run)))
+    write_whole(folder / "run.json", seal_text(_describe(run)))
 
 
 def save_whole_run(run: StudyRun, folder: Path) -> None:
@@ -108,7 +108,7 @@ def save_whole_run(run: StudyRun, folder: Path) -> None:
     save_run(run, folder)
 
 
-def created_before(run: R, folder: Path) -> R:
+def keep_creation(run: R, folder: Path) -> R:
     """The run with the time of the one saved there, where it repeats that one: nothing was computed anew."""
     if run.renewed or not (folder / "run.json").is_file():
         return run
@@ -118,14 +118,14 @@ def created_before(run: R, folder: Path) -> R:
         return run
     repeated = replace(run, provenance=replace(run.provenance, created=created))
     saved = (folder / "run.json").read_text(encoding="utf-8")
-    return repeated if sealed_text(_described(repeated)) == saved else run
+    return repeated if seal_text(_describe(repeated)) == saved else run
 
 
 def _kinds() -> dict[str, Kind[Any]]:
     return {place: load_word(word) for place, word in UNITS.items()}
 
 
-def _described(run: StudyRun) -> dict[str, Any]:
+def _describe(run: StudyRun) -> dict[str, Any]:
     """What run.json says of a run."""
     units = {
         place: len(run.of(kind)) > 0 if kind.unit is None else [kind.unit(one) for one in run.of(kind)]

@@ -2,7 +2,7 @@
 
 Whatever is read back is covered: the numbers in the JSON file by `own_sha256`, every table and array by `sha256`. What
 was changed, by a hand or by a disk, is refused by `load_unit`; who can compute it again does so, and says it
-(`damaged_units`). Arrays stay on the disk until they are looked at.
+(`damage_lines`). Arrays stay on the disk until they are looked at.
 """
 
 from __future__ import annotations
@@ -26,7 +26,7 @@ from gaitdisc.errors import SchemaError
 from gaitdisc.own_files import content_sha256, file_sha256, note_inputs
 from gaitdisc.recording import Finding
 from gaitdisc.spreadsheet import read_csv, write_csv
-from gaitdisc.whole_file import whole_file, write_whole, written_so_far, written_together
+from gaitdisc.whole_file import find_written, whole_file, write_together, write_whole
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -103,7 +103,7 @@ def lies_on_disk(thing: object, field: str) -> bool:
     return isinstance(vars(thing)[field], OnDisk)
 
 
-def damaged(path: Path, what: str, do: str = AGAIN) -> DamagedError:
+def damage(path: Path, what: str, do: str = AGAIN) -> DamagedError:
     """Return the refusal of a file that is not as it was saved."""
     error = DamagedError(
         "every file of a results folder must be as it was saved", f"{path.parent.name}/{path.name} is {what}", do
@@ -115,7 +115,7 @@ def damaged(path: Path, what: str, do: str = AGAIN) -> DamagedError:
 def of_another_format(path: Path, found: object, ours: int) -> DamagedError:
     """Return the refusal of a file that another version of gaitdisc wrote."""
     do = f"Another version wrote it. Install that version to read it, or compute it again with {__version__}."
-    return damaged(path, f"of format {str(found)[:20]}, not {ours}", do)
+    return damage(path, f"of format {str(found)[:20]}, not {ours}", do)
 
 
 class _Field:
@@ -139,43 +139,43 @@ def _arrays(path: Path, sha256: str) -> Arrays:
     try:
         content = path.read_bytes()
         if hashlib.sha256(content).hexdigest() != sha256:
-            raise damaged(path, CHANGED)
+            raise damage(path, CHANGED)
         with np.load(io.BytesIO(content), allow_pickle=False) as stored:
             return {key: stored[key] for key in stored.files}
     except FileNotFoundError:
-        raise damaged(path, "missing") from None
+        raise damage(path, "missing") from None
     except (OSError, ValueError, EOFError, zipfile.BadZipFile) as error:
-        raise damaged(path, f"not readable ({error})") from error
+        raise damage(path, f"not readable ({error})") from error
 
 
 OWN = "own_sha256"
 
 
 def read_sealed(path: Path) -> dict[str, Any]:
-    """Read a JSON file that `sealed_text` made, if it is as it was written."""
+    """Read a JSON file that `seal_text` made, if it is as it was written."""
     if not path.is_file():
-        raise damaged(path, "missing")
+        raise damage(path, "missing")
     try:
         data = json.loads(path.read_text(encoding="utf-8"))
         own = data.pop(OWN, None) if isinstance(data, dict) else None
         found = content_sha256(data) if own is not None else None
     except RecursionError:
-        raise damaged(path, "not readable as JSON (nested too deeply)") from None
+        raise damage(path, "not readable as JSON (nested too deeply)") from None
     except (OSError, ValueError) as error:
-        raise damaged(path, f"not readable as JSON ({error})") from error
+        raise damage(path, f"not readable as JSON ({error})") from error
     if not isinstance(data, dict):
-        raise damaged(path, "not a JSON object")
+        raise damage(path, "not a JSON object")
     if own is None:
-        raise damaged(path, f"without its own hash: an older version of gaitdisc wrote it, or {OWN} was removed")
+        raise damage(path, f"without its own hash: an older version of gaitdisc wrote it, or {OWN} was removed")
     if found != own:
-        raise damaged(path, CHANGED)
+        raise damage(path, CHANGED)
     return data
 
 
-def sealed_text(data: Mapping[str, Any]) -> str:
+def seal_text(data: Mapping[str, Any]) -> str:
     """Write JSON with a hash of its own, which covers everything else in it.
 
-    >>> sealed_text({"rate_hz": 100.0}) != sealed_text({"rate_hz": 999.0})
+    >>> seal_text({"rate_hz": 100.0}) != seal_text({"rate_hz": 999.0})
     True
     """
     as_read = json.loads(json.dumps(data))
@@ -188,13 +188,13 @@ def check_files(folder: Path, hashes: Mapping[str, str]) -> None:
     for file, wanted in hashes.items():
         path = folder / file
         if not path.is_file():
-            raise damaged(path, "missing")
+            raise damage(path, "missing")
         try:
             found = file_sha256(path)
         except OSError as error:
-            raise damaged(path, f"not readable ({error.strerror})") from error
+            raise damage(path, f"not readable ({error.strerror})") from error
         if found != wanted:
-            raise damaged(path, CHANGED)
+            raise damage(path, CHANGED)
 
 
 FORMAT = 1
@@ -217,7 +217,7 @@ class Keyed(NamedTuple, Generic[T]):
     key: str
 
 
-@written_together()
+@write_together()
 def save_unit(
     folder: Path,
     name: str,
@@ -233,8 +233,8 @@ def save_unit(
         files.append("arrays.npz")
         with whole_file(folder / "arrays.npz") as part, part.open("wb") as stream:
             np.savez_compressed(stream, **arrays)  # type: ignore[arg-type]
-    hashes = {file: file_sha256(written_so_far(folder / file)) for file in files}
-    write_whole(folder / name, sealed_text({"format": FORMAT, **data, "sha256": hashes}))
+    hashes = {file: file_sha256(find_written(folder / file)) for file in files}
+    write_whole(folder / name, seal_text({"format": FORMAT, **data, "sha256": hashes}))
 
 
 def load_unit(
@@ -248,17 +248,17 @@ def load_unit(
         try:
             tables[file] = read_csv(folder / file, words).rename(columns=EARLIER)
         except (OSError, ValueError) as error:  # what pandas cannot parse is a ValueError
-            raise damaged(folder / file, f"not readable as a table ({error})") from error
+            raise damage(folder / file, f"not readable as a table ({error})") from error
     for file, wanted in (columns or {}).items():
         if file not in tables:
-            raise damaged(folder / file, f"not among the files that {name} names")
+            raise damage(folder / file, f"not among the files that {name} names")
         absent = [column for column in wanted if column not in tables[file]]
         if absent:
-            raise damaged(folder / file, f"without the columns {', '.join(absent)}")
+            raise damage(folder / file, f"without the columns {', '.join(absent)}")
     return Unit(data, tables, StoredArrays(folder / "arrays.npz", data["sha256"].get("arrays.npz", "")))
 
 
-def damaged_units(folder: Path) -> tuple[str, ...]:
+def damage_lines(folder: Path) -> tuple[str, ...]:
     """Say which units below a folder are not as saved: a line a kind of damage, with the files; nothing is changed."""
     kinds: dict[str, list[str]] = {}
     for path in sorted(folder.rglob("*.json")):
@@ -279,11 +279,11 @@ def with_words(table: pd.DataFrame, column: str) -> pd.DataFrame:
     return table
 
 
-def stored_finding(row: Mapping[str, Any]) -> Finding:
+def load_finding(row: Mapping[str, Any]) -> Finding:
     """Return a finding as it was before JSON made lists of its spans.
 
     >>> gap = {"severity": "warning", "kind": "gap", "file": "a.mot", "what": "0.1 s", "spoils": ""}
-    >>> stored_finding(gap | {"spans": [[1.0, 1.1]]}).spans
+    >>> load_finding(gap | {"spans": [[1.0, 1.1]]}).spans
     ((1.0, 1.1),)
     """
     return Finding(**{**row, "spans": tuple(tuple(span) for span in row["spans"])})
@@ -296,7 +296,7 @@ def read_json(path: Path) -> dict[str, Any]:
         raise of_another_format(path, data.get("format"), FORMAT)
     wrong = next(iter(_validator(path.stem).iter_errors(data)), None)
     if wrong is not None:
-        raise damaged(path, f"not in the expected form at {wrong.json_path}: {wrong.message[:200]}")
+        raise damage(path, f"not in the expected form at {wrong.json_path}: {wrong.message[:200]}")
     return data
 
 

@@ -17,8 +17,8 @@ from scipy.signal import butter, sosfiltfilt
 from gaitdisc.errors import SamplingError
 from gaitdisc.recording import Finding, Recording
 from gaitdisc.recording.arrays import runs, spans_s
-from gaitdisc.recording.wrapping import unwrapped, wrapped
-from gaitdisc.signals.gaps import MAX_SPLINE_S, filled
+from gaitdisc.recording.wrapping import unwrap, wrap_recording
+from gaitdisc.signals.gaps import MAX_SPLINE_S, fill_gaps
 from gaitdisc.words import counted
 
 KINEMATICS_HZ = 6.0
@@ -40,7 +40,7 @@ def effective_cutoff_hz(cutoff_hz: float, rate_hz: float, order: int = 4, kind: 
     return rate_hz / math.pi * math.atan(w * math.tan(math.pi * cutoff_hz / rate_hz))
 
 
-def lowpassed(
+def low_pass(
     recording: Recording, cutoff_hz: float = KINEMATICS_HZ, order: int = 4, max_gap_s: float = MAX_SPLINE_S
 ) -> Recording:
     """Recording without what is faster than the cut-off; zero lag.
@@ -49,20 +49,20 @@ def lowpassed(
     them is filtered run by run. 1.8 periods of the cut-off at both ends of each run are marked suspect. A heading that
     passes 180 deg is filtered as it goes on, and comes round again afterwards.
     """
-    return _filtered(recording, cutoff_hz, order, "lowpass", max_gap_s)
+    return _filter(recording, cutoff_hz, order, "lowpass", max_gap_s)
 
 
-def highpassed(
+def high_pass(
     recording: Recording, cutoff_hz: float = 40.0, order: int = 4, max_gap_s: float = MAX_SPLINE_S
 ) -> Recording:
-    """Recording without what is slower than the cut-off; zero lag; otherwise as `lowpassed`."""
-    return _filtered(recording, cutoff_hz, order, "highpass", max_gap_s)
+    """Recording without what is slower than the cut-off; zero lag; otherwise as `low_pass`."""
+    return _filter(recording, cutoff_hz, order, "highpass", max_gap_s)
 
 
-def needed_samples(cutoff_hz: float, rate_hz: float, order: int = 4) -> int:
+def count_needed(cutoff_hz: float, rate_hz: float, order: int = 4) -> int:
     """Shortest run that is filtered: longer than the padding, which is one period of the cut-off.
 
-    >>> needed_samples(6.0, 100.0)
+    >>> count_needed(6.0, 100.0)
     18
     """
     return max(math.ceil(rate_hz / cutoff_hz), 3 * (order + 1)) + 1
@@ -75,8 +75,8 @@ def short_run_findings(
 
     max_gap_s: longest gap that is bridged [s]
     """
-    bridged = filled(recording, None, max_gap_s)
-    need, file = needed_samples(cutoff_hz, recording.rate_hz, order), recording.source.file
+    bridged = fill_gaps(recording, None, max_gap_s)
+    need, file = count_needed(cutoff_hz, recording.rate_hz, order), recording.source.file
     findings = []
     for column, channel in enumerate(recording.channels):
         short = np.zeros(len(recording.time), bool)
@@ -91,7 +91,7 @@ def short_run_findings(
     return findings
 
 
-def _filtered(recording: Recording, cutoff_hz: float, order: int, kind: str, max_gap_s: float) -> Recording:
+def _filter(recording: Recording, cutoff_hz: float, order: int, kind: str, max_gap_s: float) -> Recording:
     if not isinstance(cutoff_hz, int | float | np.number):
         raise SamplingError(
             f"the cut-off of a {kind} filter must be one number [Hz]",
@@ -100,7 +100,7 @@ def _filtered(recording: Recording, cutoff_hz: float, order: int, kind: str, max
         )
     rate = recording.rate_hz
     file = recording.source.file or "the recording"
-    need = needed_samples(cutoff_hz, rate, order) if cutoff_hz > 0 and rate > 0 else 2
+    need = count_needed(cutoff_hz, rate, order) if cutoff_hz > 0 and rate > 0 else 2
     if len(recording.time) < need:
         raise SamplingError(
             f"a {kind} filter of {cutoff_hz:g} Hz needs at least {need} samples",
@@ -114,7 +114,7 @@ def _filtered(recording: Recording, cutoff_hz: float, order: int, kind: str, max
             "Lower the cut-off in [filters], or export the raw signal at its full rate.",
         )
     sections = np.asarray(butter(order, cutoff_hz, kind, fs=rate, output="sos"))
-    bridged = filled(unwrapped(recording), None, max_gap_s)
+    bridged = fill_gaps(unwrap(recording), None, max_gap_s)
     edge = math.ceil(EDGE_PERIODS / cutoff_hz * rate)
     values = np.full(recording.values.shape, np.nan)
     marks = np.array(bridged.suspect)
@@ -133,4 +133,4 @@ def _filtered(recording: Recording, cutoff_hz: float, order: int, kind: str, max
         marks[start : start + edge, columns] = True
         marks[max(start, end - edge) : end, columns] = True
     smooth = recording.with_values(values, marks)
-    return wrapped(smooth, recording) if kind == "lowpass" else smooth
+    return wrap_recording(smooth, recording) if kind == "lowpass" else smooth

@@ -14,7 +14,7 @@ from scipy.stats import theilslopes
 
 from gaitdisc.recording import Finding, Recording
 from gaitdisc.recording.arrays import Span, Values, runs, spans_s
-from gaitdisc.recording.wrapping import unwrapped
+from gaitdisc.recording.wrapping import unwrap
 from gaitdisc.signals.contacts import RISE_N, loaded
 from gaitdisc.signals.gaps import gap_findings
 from gaitdisc.signals.series import robust_sd
@@ -50,7 +50,7 @@ def channel_findings(recording: Recording) -> list[Finding]:
         only
     """
     findings = gap_findings(recording)
-    recording = unwrapped(recording)
+    recording = unwrap(recording)
     for column, channel in enumerate(recording.channels):
         x = recording.values[:, column]
         if not np.isfinite(x).any() or channel.quantity == "emg":
@@ -61,7 +61,7 @@ def channel_findings(recording: Recording) -> list[Finding]:
             findings.append(Finding("note", "flat", recording.source.file, what, spoils, channel.name))
             continue
         rests = channel.quantity in REST_QUANTITIES
-        stops = clipped(x, rests)
+        stops = mark_clips(x, rests)
         values = " and ".join(f"{value:.4g}" for value in np.unique(x[stops]))
         jumps = np.zeros(len(x), bool) if rests else jumping(x)
         for kind, marks, happens, lost in (
@@ -76,13 +76,13 @@ def channel_findings(recording: Recording) -> list[Finding]:
     return findings
 
 
-def clipped(x: Values, rests_at_zero: bool = False) -> NDArray[np.bool_]:
+def mark_clips(x: Values, rests_at_zero: bool = False) -> NDArray[np.bool_]:
     """Mark where the largest or the smallest value is met, if it is met too often to be chance.
 
     x (time,): one channel
 
     >>> t = np.arange(1000) / 100
-    >>> bool(clipped(np.sin(6 * t)).any()), bool(clipped(np.minimum(np.sin(6 * t), 0.9)).any())
+    >>> bool(mark_clips(np.sin(6 * t)).any()), bool(mark_clips(np.minimum(np.sin(6 * t), 0.9)).any())
     (False, True)
     """
     marks = np.zeros(len(x), bool)

@@ -20,10 +20,10 @@ from scipy.signal import find_peaks
 from gaitdisc.errors import ChannelError, StrideError
 from gaitdisc.recording import Recording
 from gaitdisc.recording.arrays import Span, Values
-from gaitdisc.signals.butterworth import lowpassed
+from gaitdisc.signals.butterworth import low_pass
 from gaitdisc.signals.contacts import Contacts
 from gaitdisc.signals.direction import Direction, marker_position, pelvis_position, walking_direction
-from gaitdisc.signals.gaps import filled, without_spikes
+from gaitdisc.signals.gaps import fill_gaps, without_spikes
 from gaitdisc.signals.strides import MIN_S, stride_period
 
 FEWEST_SWING = 0.5  # of the usual excursion of the heel
@@ -50,7 +50,7 @@ def marker_contacts(
     """
     direction = direction or walking_direction(markers, heels, pelvis)
     needed = {f"{name}.{axis}" for name in [*heels.values(), *pelvis] for axis in "xyz"}
-    bridged = filled(without_spikes(markers.selected([name for name in markers.names if name in needed])))
+    bridged = fill_gaps(without_spikes(markers.selected([name for name in markers.names if name in needed])))
     centre = pelvis_position(bridged, pelvis)
     found = {}
     for side, heel in heels.items():
@@ -152,7 +152,7 @@ def _cycles(kinematics: Recording, name: str) -> tuple[Values, float]:
             f"{regularity:.2f}",
             "Check whether the trial is walking and whether the angle is in deg.",
         )
-    slow = lowpassed(hip, CYCLE_CUTOFF / period).values[:, 0]
+    slow = low_pass(hip, CYCLE_CUTOFF / period).values[:, 0]
     slow_reach = float(np.subtract(*np.nanpercentile(slow, [95, 5])))
     whole = np.where(np.isfinite(slow), slow, np.nanmin(slow))
     peaks, _ = find_peaks(whole, prominence=slow_reach / 3, distance=max(1, round(0.5 * period * hip.rate_hz)))
@@ -215,7 +215,7 @@ def marker_foot_off(
         direction.
     """
     needed = {f"{name}.{axis}" for name in (toe, *pelvis) for axis in "xyz"}
-    bridged = filled(markers.selected([name for name in markers.names if name in needed]))
+    bridged = fill_gaps(markers.selected([name for name in markers.names if name in needed]))
     swung = marker_position(bridged, toe) - pelvis_position(bridged, pelvis)
     return _lowest_in(windows, markers.time, lambda middle: direction.ahead(swung, middle))
 
@@ -232,7 +232,7 @@ def angle_foot_off(kinematics: Recording, ankle: str, windows: Sequence[Span]) -
 
 def _smooth(kinematics: Recording, name: str) -> tuple[Values, Values]:
     """Times of one angle, and the angle without what is faster than a step."""
-    smooth = lowpassed(kinematics.selected([name]), min(SMOOTH_HZ, 0.4 * kinematics.rate_hz))
+    smooth = low_pass(kinematics.selected([name]), min(SMOOTH_HZ, 0.4 * kinematics.rate_hz))
     return smooth.time, smooth.values[:, 0]
 
 

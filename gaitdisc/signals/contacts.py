@@ -126,8 +126,8 @@ class Contacts:
         back = np.abs(apart).argmin(axis=0)
         rows = np.flatnonzero((back[nearest] == np.arange(len(self))) & (np.abs(apart).min(axis=1) <= within_s))
         columns = nearest[rows]
-        missed = _covered(np.delete(self.time, rows), other, within_s)
-        extra = _covered(np.delete(other.time, columns), self, within_s)
+        missed = _select_covered(np.delete(self.time, rows), other, within_s)
+        extra = _select_covered(np.delete(other.time, columns), self, within_s)
         return Agreement(apart[rows, columns], missed, extra)
 
 
@@ -187,7 +187,7 @@ def order_findings(right: Contacts, left: Contacts, file: str = "") -> list[Find
     return findings
 
 
-def _covered(times: Values, other: Contacts, within_s: float) -> Values:
+def _select_covered(times: Values, other: Contacts, within_s: float) -> Values:
     return times[(times >= other.time[0] - within_s) & (times <= other.time[-1] + within_s)]
 
 
@@ -217,10 +217,10 @@ def event_contacts(trial: Trial) -> dict[str, Contacts]:
     return found
 
 
-def rise_of(body_weight_n: float | None) -> float:
+def find_rise(body_weight_n: float | None) -> float:
     """Force above which a foot is on the ground [N]: 50 N, or a tenth of a light body's weight, at least 20 N.
 
-    >>> rise_of(None), rise_of(64 * 9.81), round(rise_of(30 * 9.81), 2), rise_of(15 * 9.81)
+    >>> find_rise(None), find_rise(64 * 9.81), round(find_rise(30 * 9.81), 2), find_rise(15 * 9.81)
     (50.0, 50.0, 29.43, 20.0)
     """
     if body_weight_n is None:
@@ -261,7 +261,7 @@ def force_contacts(
 ) -> dict[str, Contacts]:
     """Contacts of both feet from one vertical force a foot: a split belt, or force assigned to a foot.
 
-    Contact is where the force rises above 50 N, or less under a light body (`rise_of`), to a fraction
+    Contact is where the force rises above 50 N, or less under a light body (`find_rise`), to a fraction
     of a sample, after the foot has been off (`loaded`). A loading that the recording begins with gives no contact.
 
     forces: channels of quantity `vertical_force` [N]
@@ -338,7 +338,7 @@ def _contacts(forces: Recording, name: str, body_weight_n: float | None) -> tupl
     known = force[np.isfinite(force)]
     downwards = len(known) > 0 and -known.min() > known.max()
     upward = -force if downwards else force
-    rise = rise_of(body_weight_n)
+    rise = find_rise(body_weight_n)
     spans = loaded(upward, forces.rate_hz, rise)
     on = []
     for start in spans[spans[:, 0] > 0, 0]:

@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 from gaitdisc.errors import SamplingError
 from gaitdisc.recording import Recording, Strides, Trajectory
 from gaitdisc.recording.arrays import Values
-from gaitdisc.recording.wrapping import unwrapped
+from gaitdisc.recording.wrapping import unwrap
 from gaitdisc.units import rate_unit
 
 FIRST = (1 / 12, -8 / 12, 0.0, 8 / 12, -1 / 12)  # times 1 / step
@@ -24,7 +24,7 @@ SECOND = (-1 / 12, 16 / 12, -30 / 12, 16 / 12, -1 / 12)  # times 1 / step^2
 REACH = len(FIRST) // 2
 
 
-def differentiated(values: Values, rate_hz: float, order: int = 1) -> Values:
+def derivative(values: Values, rate_hz: float, order: int = 1) -> Values:
     """First or second time derivative by five-point central differences.
 
     values (time, channel) [unit]: filtered; the difference quotient passes on what noise is left
@@ -34,7 +34,7 @@ def differentiated(values: Values, rate_hz: float, order: int = 1) -> Values:
         and (w/rate)^4 / 90 of a sine of angular frequency w.
 
     >>> t = np.arange(7) / 10
-    >>> differentiated(t[:, None] ** 2, 10.0, order=2).round(6).ravel()
+    >>> derivative(t[:, None] ** 2, 10.0, order=2).round(6).ravel()
     array([nan, nan,  2.,  2.,  2., nan, nan])
     """
     if order not in (1, 2):
@@ -52,11 +52,11 @@ def differentiated(values: Values, rate_hz: float, order: int = 1) -> Values:
     return np.where(np.isfinite(values), derivative, np.nan)
 
 
-def differentiated_recording(recording: Recording, order: int = 1) -> Recording:
+def differentiate_recording(recording: Recording, order: int = 1) -> Recording:
     """Recording of the time derivative of every channel, per second; suspect where one of the five samples is."""
     channels = tuple(replace(c, unit=rate_unit(c.unit, order)) for c in recording.channels)
-    values = differentiated(unwrapped(recording).values, recording.rate_hz, order)
-    return replace(recording, values=values, channels=channels, suspect=_widened(np.asarray(recording.suspect)))
+    values = derivative(unwrap(recording).values, recording.rate_hz, order)
+    return replace(recording, values=values, channels=channels, suspect=_widen(np.asarray(recording.suspect)))
 
 
 def trajectory(filtered: Recording, strides: Strides) -> Trajectory:
@@ -68,16 +68,16 @@ def trajectory(filtered: Recording, strides: Strides) -> Trajectory:
     Source: Ebers (2023), Eqs. 4.1-4.4. Differs: the operator, which the text does not state, and the marks.
     """
     x, rate = filtered.values, filtered.rate_hz
-    goes_on = unwrapped(filtered).values
-    xdot, xddot = differentiated(goes_on, rate, 1), differentiated(goes_on, rate, 2)
-    usable = np.isfinite(x) & np.isfinite(xdot) & np.isfinite(xddot) & ~_widened(np.asarray(filtered.suspect))
+    goes_on = unwrap(filtered).values
+    xdot, xddot = derivative(goes_on, rate, 1), derivative(goes_on, rate, 2)
+    usable = np.isfinite(x) & np.isfinite(xdot) & np.isfinite(xddot) & ~_widen(np.asarray(filtered.suspect))
     phi = strides.phi(filtered.time)
     return Trajectory(
         filtered.time, x, xdot, xddot, phi, filtered.channels, usable, filtered.subject, filtered.condition
     )
 
 
-def _widened(marks: NDArray[np.bool_]) -> NDArray[np.bool_]:
+def _widen(marks: NDArray[np.bool_]) -> NDArray[np.bool_]:
     wide = marks.copy()
     for shift in range(1, REACH + 1):
         wide[shift:] |= marks[:-shift]

@@ -92,7 +92,7 @@ def walking_direction(markers: Recording, heels: Mapping[str, str], pelvis: Sequ
         mean = headings.mean(axis=0)
         size = float(np.linalg.norm(mean))
         forward = mean / size if size > 1e-9 else headings[0]  # there and back has no mean
-        how = f"forward ({_shown(forward)}) follows the path of the pelvis, which turns by {turned:.0f} deg"
+        how = f"forward ({_show(forward)}) follows the path of the pelvis, which turns by {turned:.0f} deg"
         return Direction(forward, up, how, headings)
     return _from_swings(swings, up, level, markers.source.file)
 
@@ -132,18 +132,18 @@ def _from_swings(swings: Sequence[Values], up: Values, level: list[int], file: s
         )
     forward = np.zeros(3)
     forward[level] = line * np.sign(skew)
-    how = f"forward ({_shown(forward)}) inferred: heels move faster that way (skewness {abs(skew):.2f})"
+    how = f"forward ({_show(forward)}) inferred: heels move faster that way (skewness {abs(skew):.2f})"
     return Direction(forward, up, how)
 
 
-def _shown(forward: Values) -> str:
+def _show(forward: Values) -> str:
     return ", ".join(f"{part:+.2f}" for part in forward)
 
 
-def given_direction(forward: Sequence[float], up: Sequence[float] = (0.0, 0.0, 1.0)) -> Direction:
+def state_direction(forward: Sequence[float], up: Sequence[float] = (0.0, 0.0, 1.0)) -> Direction:
     """Direction that the laboratory states.
 
-    >>> given_direction((0, -2, 0)).forward.tolist()
+    >>> state_direction((0, -2, 0)).forward.tolist()
     [0.0, -1.0, 0.0]
     """
     along, above = np.asarray(forward, float), np.asarray(up, float)

@@ -22,7 +22,7 @@ from gaitdisc.errors import ChannelError, SamplingError
 from gaitdisc.recording import Finding, Recording, Strides
 from gaitdisc.recording.arrays import Values, spans_s
 from gaitdisc.recording.trial import Limits
-from gaitdisc.signals.butterworth import highpassed, lowpassed
+from gaitdisc.signals.butterworth import high_pass, low_pass
 from gaitdisc.signals.series import robust_sd
 
 HIGHPASS_HZ = 40.0
@@ -49,7 +49,7 @@ _CALF = re.compile(r"emg_(gas|gasmed|gaslat|gm|gl|sol)_([rl])")
 _SHIN = re.compile(r"emg_(ta)_([rl])")
 
 
-def enveloped(
+def envelopes(
     emg: Recording, highpass_hz: float = HIGHPASS_HZ, lowpass_hz: float = ENVELOPE_HZ, order: int = 4
 ) -> Recording:
     """EMG envelope of every channel, at the rate of the recording; raw EMG only, as digitised [V]."""
@@ -77,8 +77,8 @@ def enveloped(
                 f"{channel.unit}, none below zero",
                 "The signal is rectified or an envelope. State this in [emg], or export the raw signal.",
             )
-    fast = highpassed(emg, highpass_hz, order)
-    return lowpassed(fast.with_values(np.abs(fast.values)), lowpass_hz, order)
+    fast = high_pass(emg, highpass_hz, order)
+    return low_pass(fast.with_values(np.abs(fast.values)), lowpass_hz, order)
 
 
 @dataclass(frozen=True)
@@ -205,8 +205,8 @@ def burst_ratio(x: Values, rate_hz: float) -> float:
     if np.isfinite(x).sum() < rate_hz:
         return 0.0
     raw = Recording(np.arange(len(x)) / rate_hz, x[:, None], (Channel("emg", "emg", "V"),))
-    fast = highpassed(raw)
-    envelope = lowpassed(fast.with_values(np.abs(fast.values)), ENVELOPE_HZ)
+    fast = high_pass(raw)
+    envelope = low_pass(fast.with_values(np.abs(fast.values)), ENVELOPE_HZ)
     trusted = envelope.values[~np.asarray(envelope.suspect)]
     return float(np.percentile(trusted, 99) / np.median(trusted)) if len(trusted) else 0.0
 

@@ -9,7 +9,7 @@ from scipy.interpolate import CubicSpline
 
 from gaitdisc.recording import PERCENT, Finding, Recording, Strides
 from gaitdisc.recording.arrays import Values, runs, spans_s
-from gaitdisc.recording.wrapping import unwrapped, wrapped
+from gaitdisc.recording.wrapping import unwrap, wrap_recording
 from gaitdisc.signals.series import robust_sd
 from gaitdisc.words import counted
 
@@ -20,7 +20,7 @@ SUPPORT_S = 0.2  # what a spline sees on either side of a gap
 FEWEST_TEMPLATE_STRIDES = 5
 
 
-def filled(
+def fill_gaps(
     recording: Recording,
     strides: Strides | None = None,
     max_spline_s: float = MAX_SPLINE_S,
@@ -36,7 +36,7 @@ def filled(
     strides: strides of one leg, for the template; at least 5 of them must be without a gap in the channel
     max_spline_s, max_template_s: longest gap for the spline and for the template [s]
     """
-    given, recording = recording, unwrapped(recording)
+    given, recording = recording, unwrap(recording)
     values, marks = np.array(recording.values), np.zeros(recording.values.shape, bool)
     rate = recording.rate_hz
     phi = None if strides is None else strides.phi(recording.time)
@@ -63,7 +63,7 @@ def filled(
             else:
                 values[start:end, column] = put
                 marks[start:end, column] = True
-    return wrapped(recording.with_values(values, marks), given)
+    return wrap_recording(recording.with_values(values, marks), given)
 
 
 def gap_findings(recording: Recording) -> list[Finding]:
@@ -142,7 +142,7 @@ def spikes(recording: Recording) -> NDArray[np.bool_]:
     [200]
     """
     marks = np.zeros(recording.values.shape, bool)
-    plain = unwrapped(recording)
+    plain = unwrap(recording)
     for column, channel in enumerate(recording.channels):
         x = np.where(np.isfinite(plain.values[:, column]), plain.values[:, column], np.nan)
         known = np.isfinite(x)
@@ -167,7 +167,7 @@ def spikes(recording: Recording) -> NDArray[np.bool_]:
 
 
 def without_spikes(recording: Recording) -> Recording:
-    """Recording in which spikes are gaps: bridged and marked suspect where short (`filled`), else left out."""
+    """Recording in which spikes are gaps: bridged and marked suspect where short (`fill_gaps`), else left out."""
     marks = spikes(recording)
     return recording.with_values(np.where(marks, np.nan, recording.values)) if marks.any() else recording
 

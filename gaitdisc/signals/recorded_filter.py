@@ -56,7 +56,7 @@ class RecordedFilter:
     signal: float
 
 
-def recorded_filter(
+def find_filter(
     trials: Sequence[Values], rate_hz: float, like: Sequence[Values] | None = None
 ) -> RecordedFilter | None:
     """Find the zero-lag low-pass that a channel went through.
@@ -70,10 +70,10 @@ def recorded_filter(
     >>> from scipy.signal import butter, sosfiltfilt
     >>> raw = np.sin(2 * np.pi * np.arange(4000) / 100) + np.random.default_rng(0).normal(0, 0.05, 4000)
     >>> low = sosfiltfilt(butter(2, 6.0, fs=100.0, output="sos"), raw)
-    >>> bool(abs(recorded_filter([low], 100.0).cutoff_hz - 6.0) < 0.5), recorded_filter([raw], 100.0)
+    >>> bool(abs(find_filter([low], 100.0).cutoff_hz - 6.0) < 0.5), find_filter([raw], 100.0)
     (True, None)
     """
-    spectrum = spectrum_of(trials)
+    spectrum = mean_spectrum(trials)
     if spectrum is None or not _may_be_filtered(spectrum, trials):
         return None
     # the lines beyond the last one that is surely signal, without those next to half the rate
@@ -81,7 +81,7 @@ def recorded_filter(
     above = spectrum.lines(slice(int(surely[-1]) + 1, len(spectrum.power) - 3))
     if len(above.frequency) < FEWEST_LINES:
         return None
-    model = spectrum_of(like) if like is not None else None
+    model = mean_spectrum(like) if like is not None else None
     shape = np.ones(len(above.power)) if model is None else np.interp(above.frequency, model.frequency, model.power)
     fits = [_Fit(above, shape / shape[0], order) for order in (ORDER, OTHER)]
     found, other = (max(fit.best((begin,)) for begin in BEGINNINGS) for fit in fits)
@@ -96,7 +96,7 @@ def recorded_filter(
     return RecordedFilter(cutoff * rate_hz, gained, likelihood, found[2])
 
 
-def spectrum_of(trials: Sequence[Values]) -> Spectrum | None:
+def mean_spectrum(trials: Sequence[Values]) -> Spectrum | None:
     """Power spectrum of a channel, averaged over windows that overlap by half; None where all trials are too short.
 
     trials each (sample,): NaN where nothing was measured: a window takes the longest stretch without any
@@ -164,7 +164,7 @@ class _Fit:
 
     def _misfit(self, values: Values) -> tuple[float, Values]:
         """Minus the log likelihood and its slopes."""
-        passed, steeper = self._passed(values[4:])
+        passed, steeper = self._passband(values[4:])
         decay = np.exp(values[2]) * self.beyond
         noise, signal = np.exp(values[0]) * passed, np.exp(values[1] - decay) * self.shape * passed
         floor = np.exp(values[3])
@@ -174,7 +174,7 @@ class _Fit:
         slopes += [] if steeper is None else [(noise + signal) * steeper]
         return float(np.sum(np.log(expected) + self.power / expected)), np.array([over @ one for one in slopes])
 
-    def _passed(self, cutoff: Values) -> tuple[Values, Values | None]:
+    def _passband(self, cutoff: Values) -> tuple[Values, Values | None]:
         """What the filter passes of the power, and by which share that grows with the logarithm of the cut-off."""
         if not len(cutoff):
             return np.ones(len(self.power)), None

@@ -174,7 +174,7 @@ def late_change(recording: Recording, strides: Strides, seed: int = 0) -> LateCh
         )
     scores = _components(curves)
     statistic, split, dependence = _largest(scores[None])
-    null = _simulated(scores.shape, dependence[0], seed)
+    null = _simulate(scores.shape, dependence[0], seed)
     p = (1 + int(np.sum(null >= statistic[0]))) / (1 + len(null))
     after = np.arange(len(scores)) >= split[0]
     moved = scores[after].mean(axis=0) - scores[~after].mean(axis=0)
@@ -256,7 +256,7 @@ def _largest(scores: Values) -> tuple[Values, NDArray[np.intp], Values]:
     return statistic[np.arange(count), top], splits[top], dependence
 
 
-def _simulated(shape: tuple[int, ...], dependence: Values, seed: int) -> Values:
+def _simulate(shape: tuple[int, ...], dependence: Values, seed: int) -> Values:
     """Largest statistics of stationary autoregressive series of the same length and dependence."""
     rng = np.random.default_rng(seed)
     n, k = shape

@@ -10,7 +10,7 @@ from gaitdisc.errors import StrideError
 from gaitdisc.recording import DroppedStride, Recording, Strides
 from gaitdisc.recording.arrays import Values, runs
 from gaitdisc.signals.contacts import Contacts
-from gaitdisc.signals.gaps import filled
+from gaitdisc.signals.gaps import fill_gaps
 from gaitdisc.signals.series import robust_sd
 from gaitdisc.words import counted
 
@@ -94,7 +94,7 @@ def gap_reasons(start: np.ndarray, end: np.ndarray, recording: Recording) -> lis
     start, end (stride,) [s]: initial contacts
     recording: channels without any value do not count; gaps of up to 0.1 s are bridged
     """
-    missing = ~np.isfinite(filled(recording).values)
+    missing = ~np.isfinite(fill_gaps(recording).values)
     columns = np.flatnonzero(~missing.all(axis=0))
     step = 1.0 / recording.rate_hz
     reasons = []
@@ -136,7 +136,7 @@ class Walking:
     knee_deg: float  # excursion of the knee that bends more, 5th to 95th percentile; NaN without a knee
 
 
-def measured_walking(kinematics: Recording, strides: Strides) -> Walking:
+def measure_walking(kinematics: Recording, strides: Strides) -> Walking:
     """Measure how steadily somebody walks.
 
     kinematics: with hip and knee flexion [deg]
@@ -173,7 +173,7 @@ def verify_walking(
     least_coverage: share of the trial that strides must cover; 0 for walks over ground that begin and end within the
         trial
     """
-    found = measured_walking(kinematics, strides)
+    found = measure_walking(kinematics, strides)
     fails = []
     if found.strides < fewest:
         fails.append(f"{counted(found.strides, 'stride')}, but {fewest} are needed")

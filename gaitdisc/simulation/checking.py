@@ -10,7 +10,7 @@ from functools import lru_cache
 
 from gaitdisc.channel import nearest_word
 from gaitdisc.errors import SimulationError
-from gaitdisc.simulation.expression import RESERVED, Operation, Tree, delays, names, parsed, unknown_name
+from gaitdisc.simulation.expression import RESERVED, Operation, Tree, delays, names, parse, unknown_name
 from gaitdisc.simulation.parts import Input, Parts, Sensor, Term
 
 MOST_PARTS = 500  # states, inputs, parameters, ports, definitions and effects together
@@ -56,7 +56,7 @@ def _check_size(simulation: Parts) -> None:
 
 def _check_names(simulation: Parts) -> None:
     owner: dict[str, str] = {}
-    for section, name in _named(simulation):
+    for section, name in _name(simulation):
         if not _NAME.match(name) or name in _KEYWORDS:
             raise SimulationError(
                 "a name must be a letter followed by letters, digits and _ (at most 64), and not a Python keyword",
@@ -87,7 +87,7 @@ def _check_names(simulation: Parts) -> None:
         )
 
 
-def _named(simulation: Parts) -> Iterator[tuple[str, str]]:
+def _name(simulation: Parts) -> Iterator[tuple[str, str]]:
     for section in ("states", "inputs", "parameters", "ports"):
         for part in getattr(simulation, section):
             yield section, part.name
@@ -154,7 +154,7 @@ def check_expression(text: str, known: tuple[str, ...], simulation: Parts) -> Tr
 
     simulation: whose states and inputs may be delayed, by its parameters
     """
-    tree, named, late = _parts_of(text)
+    tree, named, late = _parse_parts(text)
     unknown = next((name for name in named if name not in known), None)
     if unknown is not None:
         raise unknown_name(text, unknown, known)
@@ -181,9 +181,9 @@ def check_expression(text: str, known: tuple[str, ...], simulation: Parts) -> Tr
 
 
 @lru_cache(maxsize=4096)  # a search checks the same equations with each explanation that it tries
-def _parts_of(text: str) -> tuple[Tree, tuple[str, ...], tuple[Operation, ...]]:
+def _parse_parts(text: str) -> tuple[Tree, tuple[str, ...], tuple[Operation, ...]]:
     """Tree of an expression, the names in it, each once, and its calls of delay."""
-    tree = parsed(text)
+    tree = parse(text)
     return tree, tuple(dict.fromkeys(names(tree))), tuple(delays(tree))
 
 
@@ -204,7 +204,7 @@ def _check_place(term: Term, ports: Iterable[str], states: Iterable[str], place:
 
 def _check_ports(simulation: Parts) -> None:
     lines = (*simulation.definitions, *simulation.equations)
-    used = {name for _, text in lines for name in _parts_of(text)[1]}
+    used = {name for _, text in lines for name in _parse_parts(text)[1]}
     for port in simulation.ports:
         if port.name not in used:
             raise SimulationError(

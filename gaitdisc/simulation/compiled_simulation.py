@@ -10,7 +10,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from gaitdisc.errors import ShapeError
 from gaitdisc.recording.arrays import read_only
-from gaitdisc.simulation.program import Program, at_points, compiled_program, leaf_columns
+from gaitdisc.simulation.program import Program, at_points, compile_program, leaf_columns
 from gaitdisc.simulation.simulation import Simulation
 
 SUBSTEPS = 5  # Runge-Kutta steps for each sample
@@ -135,9 +135,9 @@ class Compiled:
         """
         x, values = np.asarray(x, float), self.defaults if values is None else np.asarray(values, float)
         columns = leaf_columns(np.broadcast_to(np.asarray(t, float), len(x)), x, u, values)
-        return self._rates_of(x, at_points(self.right_hand_side, columns, late, len(x)).T, values)
+        return self._derivatives(x, at_points(self.right_hand_side, columns, late, len(x)).T, values)
 
-    def _rates_of(
+    def _derivatives(
         self,
         x: NDArray[np.float64],  # noqa: ARG002
         given: NDArray[np.float64],
@@ -222,7 +222,7 @@ class Compiled:
         """Seconds of each delay of a program, (row, delay)."""
         if not program.delays:
             return np.empty((len(values), 0))
-        wanted = compiled_program([seconds for _, seconds in program.delays], self.parameters)
+        wanted = compile_program([seconds for _, seconds in program.delays], self.parameters)
         return np.ascontiguousarray(at_points(wanted, list(values.T), None, len(values)).T)
 
     def _delays(self, program: Program) -> NDArray[np.int64]:

@@ -6,15 +6,15 @@ import numpy as np
 from numpy.typing import NDArray
 
 from gaitdisc.errors import SimulationError
-from gaitdisc.simulation.expression import Name, Tree, delays, names, parsed, written
-from gaitdisc.simulation.program import at_points, compiled_program
+from gaitdisc.simulation.expression import Name, Tree, delays, names, parse, written
+from gaitdisc.simulation.program import at_points, compile_program
 from gaitdisc.simulation.python_simulation import PythonSimulation
 from gaitdisc.simulation.simulation import Simulation
 
 LONGEST_S = 86_400.0  # of a delay, where no trial says how long: no trial lasts a day
 
 
-def delayed_in_series(
+def delay_series(
     signal: NDArray[np.float64], seconds: NDArray[np.float64], rate: float, wraps: bool = False
 ) -> NDArray[np.float64]:
     """Signal some seconds ago, linear between its samples and held at the first.
@@ -24,7 +24,7 @@ def delayed_in_series(
     rate: samples a second [Hz]
     wraps: whether it goes from just below 1 to 0 without passing what lies between
 
-    >>> delayed_in_series(np.arange(4.0), np.array(0.15), 10.0).tolist()
+    >>> delay_series(np.arange(4.0), np.array(0.15), 10.0).tolist()
     [0.0, 0.0, 0.5, 1.5]
     """
     at = np.clip(np.arange(len(signal)) - seconds * rate, 0, len(signal) - 1)
@@ -50,12 +50,12 @@ def refuse_delays(simulation: Simulation | PythonSimulation, shortest_s: float =
         lines += [(("inputs", name), text) for name, text in simulation.replaced]
     for place, text in lines:
         try:
-            refuse_delays_of(parsed(text), values, inputs, shortest_s, trial)
+            refuse_own_delays(parse(text), values, inputs, shortest_s, trial)
         except SimulationError as error:
             raise error.at(*place) from None
 
 
-def refuse_delays_of(
+def refuse_own_delays(
     tree: Tree, values: dict[str, float], inputs: tuple[str, ...], shortest_s: float = LONGEST_S, trial: str = ""
 ) -> None:
     """Refuse such delays of one expression; those whose seconds have names without a value are passed over.
@@ -66,7 +66,7 @@ def refuse_delays_of(
         signal, ago = call.arguments
         if not set(names(ago)) <= set(values):
             continue
-        program = compiled_program([ago], tuple(values))
+        program = compile_program([ago], tuple(values))
         with np.errstate(all="ignore"):
             seconds = float(at_points(program, [np.array(one) for one in values.values()], None, 1)[0, 0])
         said = f"{written(call)[:60]!r} is {seconds:g} s" + (f" ({written(ago)[:40]})" if set(names(ago)) else "")

@@ -11,9 +11,9 @@ from numpy.typing import ArrayLike, NDArray
 
 from gaitdisc.errors import SimulationError
 from gaitdisc.simulation.checking import check_expression
-from gaitdisc.simulation.delays import delayed_in_series
+from gaitdisc.simulation.delays import delay_series
 from gaitdisc.simulation.expression import names as names_in
-from gaitdisc.simulation.program import Program, at_points, compiled_program, leaf_columns
+from gaitdisc.simulation.program import Program, at_points, compile_program, leaf_columns
 from gaitdisc.simulation.running import compile_simulation, simulation_scope
 from gaitdisc.simulation.simulation import Simulation
 
@@ -65,12 +65,12 @@ def evaluate_many(simulation: Simulation, expressions: Sequence[str], points: Po
             "the points have no rate",
             "Give Points(..., rate=...) with the samples of a single trial.",
         )
-    ago = compiled_program([seconds for _, seconds in program.delays], program.leaves)
+    ago = compile_program([seconds for _, seconds in program.delays], program.leaves)
     seconds = at_points(ago, columns, None, count)
     late = np.empty((count, len(program.delays)))
     for k, (signal, _) in enumerate(program.delays):
         wraps = any(each.wraps for each in simulation.inputs if each.name == signal)
-        late[:, k] = delayed_in_series(columns[program.leaves.index(signal)], seconds[k], points.rate, wraps)
+        late[:, k] = delay_series(columns[program.leaves.index(signal)], seconds[k], points.rate, wraps)
     return at_points(program, columns, late, count)
 
 
@@ -84,4 +84,4 @@ def _program_of(simulation: Simulation, expressions: tuple[str, ...], extras: tu
     for name in reversed([*scope]):  # definitions that stand in these, one in another: no other's delays matter
         if name in needed:
             needed.update(names_in(scope[name]))
-    return compiled_program(trees, names, (), {name: tree for name, tree in scope.items() if name in needed})
+    return compile_program(trees, names, (), {name: tree for name, tree in scope.items() if name in needed})

@@ -44,11 +44,11 @@ def on_even_time(
     findings: list[Finding] = []
     even = trial
     if rate is None:
-        rate, off = _jittered(trial.time, place, where)
+        rate, off = _find_even_clock(trial.time, place, where)
         worst = 100 * float(np.abs(off).max())
         if worst > 100 * EVEN:
             first = float(np.median(trial.time * rate - place))
-            even, what = _resampled(trial, np.asarray((place + first) / rate, np.float64), inputs)
+            even, what = _resample(trial, np.asarray((place + first) / rate, np.float64), inputs)
             what = f"trial {trial.name!r}: times deviate by up to {worst:.1f} % of a step from an even clock; {what}"
             findings.append(Finding("note", "clock", source, what, "nothing at this size"))
     count = int(place[-1]) + 1
@@ -59,7 +59,7 @@ def on_even_time(
         even = TrialColumns(even.name, even.time[0] + np.arange(count) / rate, driving, observed)
         what = f"trial {trial.name!r}: {missing} rows of {len(even.time)} are missing"
         findings.append(Finding("warning", "gap in time", source, what, "the missing period, which is excluded"))
-    return _bridged(even, inputs, rate, source, findings), rate, findings
+    return _bridge_inputs(even, inputs, rate, source, findings), rate, findings
 
 
 def clock_findings(trials: list[TrialColumns], rate: float, source: str) -> list[Finding]:
@@ -96,7 +96,7 @@ def _places(time: NDArray[np.float64], where: str) -> tuple[float | None, NDArra
     decimals = (d for d in range(9) if np.all(np.abs(time - np.round(time, d)) < 1e-12 * (1 + np.abs(time))))
     printed = 0.51 * 10.0 ** -next(decimals, 9)
     if off.max() <= max(EVEN * mean, min(2 * printed, 0.25 * mean)):
-        return _rounded(1.0 / mean), np.arange(len(time))
+        return _round_rate(1.0 / mean), np.arange(len(time))
     steps = np.diff(time)
     place = np.concatenate([[0], np.cumsum(np.maximum(np.rint(steps / np.median(steps)), 1).astype(np.intp))])
     if place[-1] > 2 * len(time):
@@ -104,14 +104,16 @@ def _places(time: NDArray[np.float64], where: str) -> tuple[float | None, NDArra
     return None, place
 
 
-def _jittered(time: NDArray[np.float64], place: NDArray[np.intp], where: str) -> tuple[float, NDArray[np.float64]]:
+def _find_even_clock(
+    time: NDArray[np.float64], place: NDArray[np.intp], where: str
+) -> tuple[float, NDArray[np.float64]]:
     """Rate of the even clock next to a jittering one, and how far each time lies beside it (sample,) [steps]."""
     slope, first = np.polyfit(place, time, 1)
     off = (time - first) / slope - place
     if np.abs(off).max() > JITTER:
         raise _uneven(time, where)
     rate = 1.0 / float(slope)
-    return _rounded(rate, JITTER * rate / len(time)), off
+    return _round_rate(rate, JITTER * rate / len(time)), off
 
 
 def _uneven(time: NDArray[np.float64], where: str) -> SamplingError:
@@ -125,7 +127,7 @@ def _uneven(time: NDArray[np.float64], where: str) -> SamplingError:
     )
 
 
-def _resampled(trial: TrialColumns, time: NDArray[np.float64], inputs: tuple[str, ...]) -> tuple[TrialColumns, str]:
+def _resample(trial: TrialColumns, time: NDArray[np.float64], inputs: tuple[str, ...]) -> tuple[TrialColumns, str]:
     """The trial at even times, and how: its samples moved, or its times alone where moving makes the channels rougher.
 
     A jittering clock is one of two things: the samples were taken at these times, or they were taken evenly and marked
@@ -169,7 +171,7 @@ def _roughness(values: NDArray[np.float64], like: NDArray[np.float64]) -> float:
     return float(np.sum(sums[0] / np.where(sums[1] > 0, sums[1], 1.0)))
 
 
-def _bridged(
+def _bridge_inputs(
     trial: TrialColumns, inputs: tuple[str, ...], rate: float, source: str, findings: list[Finding]
 ) -> TrialColumns:
     """Bridge gaps of inputs by straight lines, with a finding."""
@@ -195,6 +197,6 @@ def _bridged(
     return replace(trial, inputs=filled)
 
 
-def _rounded(rate: float, to: float = 1e-4) -> float:
+def _round_rate(rate: float, to: float = 1e-4) -> float:
     """A rate, whole where it is as good as that [Hz]."""
     return float(np.round(rate, 9)) if abs(rate - round(rate)) > to or rate < 0.5 else float(round(rate))

@@ -73,12 +73,12 @@ Tree = Number | Name | Operation
 
 
 @lru_cache(maxsize=4096)
-def parsed(text: str) -> Tree:
+def parse(text: str) -> Tree:
     """Tree of an expression.
 
     text: numbers, names, `+ - * / **`, parentheses, and the functions of a simulation file
 
-    >>> parsed("-k*x")
+    >>> parse("-k*x")
     Operation(symbol='*', arguments=(Operation(symbol='neg', arguments=(Name(name='k'),)), Name(name='x')))
     """
     if len(text) > LONGEST:
@@ -109,7 +109,7 @@ def parsed(text: str) -> Tree:
 def names(tree: Tree) -> Iterator[str]:
     """Names in an expression, each as often as it stands there.
 
-    >>> sorted(set(names(parsed("-k*max(0, x - x0) + k"))))
+    >>> sorted(set(names(parse("-k*max(0, x - x0) + k"))))
     ['k', 'x', 'x0']
     """
     return (each.name for each in _each_part(tree) if isinstance(each, Name))
@@ -118,7 +118,7 @@ def names(tree: Tree) -> Iterator[str]:
 def delays(tree: Tree) -> Iterator[Operation]:
     """Every `delay(signal, seconds)` of an expression.
 
-    >>> [each.arguments[0].name for each in delays(parsed("1 - 2*delay(v, 0.1)"))]
+    >>> [each.arguments[0].name for each in delays(parse("1 - 2*delay(v, 0.1)"))]
     ['v']
     """
     return (each for each in _each_part(tree) if isinstance(each, Operation) and each.symbol == "delay")
@@ -169,34 +169,34 @@ class _Conversion:
             return self._call(node, depth)
         kind = type(node.op) if isinstance(node, ast.BinOp | ast.UnaryOp) else type(node)
         found, remedy = _WORDS.get(kind, (f"{kind.__name__}, which is not arithmetic", f"Only {_ALLOWED}."))
-        raise self._refused(node, found, remedy)
+        raise self._refuse(node, found, remedy)
 
     def _number(self, node: ast.Constant) -> Number:
         if type(node.value) not in (int, float):
-            raise self._refused(node, f"{node.value!r}, which is not a number", "Write it as a decimal number.")
+            raise self._refuse(node, f"{node.value!r}, which is not a number", "Write it as a decimal number.")
         try:
             value = float(node.value)  # pyright: ignore[reportArgumentType]
         except OverflowError:
             value = math.inf
         if not math.isfinite(value):
-            raise self._refused(node, "a number above 1.8e308", "Write a finite number.")
+            raise self._refuse(node, "a number above 1.8e308", "Write a finite number.")
         return Number(value)
 
     def _call(self, node: ast.Call, depth: int) -> Operation:
         if not isinstance(node.func, ast.Name) or node.keywords:
-            raise self._refused(node, "a call of something other than a named function", f"Only {_ALLOWED}.")
+            raise self._refuse(node, "a call of something other than a named function", f"Only {_ALLOWED}.")
         name, count = node.func.id, len(node.args)
         if name not in FUNCTIONS:
             nearest = nearest_word(name, FUNCTIONS)
             hint = f"Did you mean {nearest!r}? " if nearest else ""
-            raise self._refused(node, f"the unknown function {name!r}", f"{hint}Only {_ALLOWED}.")
+            raise self._refuse(node, f"the unknown function {name!r}", f"{hint}Only {_ALLOWED}.")
         fewest, most = FUNCTIONS[name]
         if not fewest <= count <= most:
             wanted = f"{fewest}" if fewest == most else f"{fewest} to {most}"
-            raise self._refused(node, f"{name} with {count} arguments", f"Give {name} {wanted}.")
+            raise self._refuse(node, f"{name} with {count} arguments", f"Give {name} {wanted}.")
         return Operation(name, tuple(self.tree(argument, depth + 1) for argument in node.args))
 
-    def _refused(self, node: ast.expr, found: str, remedy: str) -> SimulationError:
+    def _refuse(self, node: ast.expr, found: str, remedy: str) -> SimulationError:
         return _refusal(self._text, self._start + node.col_offset, found, remedy)
 
 
@@ -221,12 +221,12 @@ def _too_large(text: str) -> SimulationError:
     )
 
 
-def substituted(tree: Tree, by: Mapping[str, Tree], signals: Collection[str] = ()) -> Tree:
+def substitute(tree: Tree, by: Mapping[str, Tree], signals: Collection[str] = ()) -> Tree:
     """Expression with other expressions in the place of names.
 
     A delayed signal that is replaced becomes its replacement that many seconds ago.
 
-    >>> written(substituted(parsed("k*tau + delay(tau, d)"), {"tau": parsed("g*tau")}, ["tau"]))
+    >>> written(substitute(parse("k*tau + delay(tau, d)"), {"tau": parse("g*tau")}, ["tau"]))
     'k*(g*tau) + g*delay(tau, d)'
     """
     if isinstance(tree, Name):
@@ -235,17 +235,17 @@ def substituted(tree: Tree, by: Mapping[str, Tree], signals: Collection[str] = (
         return tree
     if tree.symbol == "delay" and isinstance(tree.arguments[0], Name) and tree.arguments[0].name in by:
         signal, seconds = tree.arguments
-        return _ago(substituted(signal, by, signals), substituted(seconds, by, signals), signals)
-    return Operation(tree.symbol, tuple(substituted(argument, by, signals) for argument in tree.arguments))
+        return _ago(substitute(signal, by, signals), substitute(seconds, by, signals), signals)
+    return Operation(tree.symbol, tuple(substitute(argument, by, signals) for argument in tree.arguments))
 
 
 def written(tree: Tree) -> str:
     """Text of an expression, with no more parentheses than it needs.
 
-    >>> written(parsed("-(a + b)*(c**-(2)) - ((d))"))
+    >>> written(parse("-(a + b)*(c**-(2)) - ((d))"))
     '-(a + b)*c**-2 - d'
     """
-    return _written(tree)[0]
+    return _write_text(tree)[0]
 
 
 def _ago(tree: Tree, seconds: Tree, signals: Collection[str]) -> Tree:
@@ -262,7 +262,7 @@ def _ago(tree: Tree, seconds: Tree, signals: Collection[str]) -> Tree:
     return Operation(tree.symbol, tuple(_ago(argument, seconds, signals) for argument in tree.arguments))
 
 
-def _written(tree: Tree) -> tuple[str, int]:
+def _write_text(tree: Tree) -> tuple[str, int]:
     """Text, and how tightly it binds."""
     if isinstance(tree, Number):
         text = repr(tree.value).removesuffix(".0")
@@ -270,12 +270,12 @@ def _written(tree: Tree) -> tuple[str, int]:
     if isinstance(tree, Name):
         return tree.name, 5
     if tree.symbol not in _RANK:
-        return f"{tree.symbol}({', '.join(_written(argument)[0] for argument in tree.arguments)})", 5
+        return f"{tree.symbol}({', '.join(_write_text(argument)[0] for argument in tree.arguments)})", 5
     rank = _RANK[tree.symbol]
     if tree.symbol == "neg":
-        text, inner = _written(tree.arguments[0])
+        text, inner = _write_text(tree.arguments[0])
         return (f"-{text}" if inner > rank else f"-({text})"), rank
-    (left, left_rank), (right, right_rank) = map(_written, tree.arguments)
+    (left, left_rank), (right, right_rank) = map(_write_text, tree.arguments)
     if left_rank < rank or (tree.symbol == "**" and left_rank <= rank):
         left = f"({left})"
     if right_rank < (3 if tree.symbol == "**" else rank + 1):

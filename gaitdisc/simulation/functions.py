@@ -18,7 +18,7 @@ from gaitdisc.simulation.parts import Input, Parameter, Port, State, Term
 from gaitdisc.simulation.python_simulation import PythonSimulation, python_simulation
 from gaitdisc.simulation.running import compile_simulation
 from gaitdisc.simulation.simulation import Simulation
-from gaitdisc.simulation.traced import NotTraced, flat, traced_equations
+from gaitdisc.simulation.traced import NotTraced, flat, trace_equations
 
 TIME = "t"
 TRIED = 48  # points at which the equations have to give what the function gives
@@ -106,7 +106,7 @@ def simulation_from_function(
     )
     seen = tuple((observations or {}).items())
     try:
-        texts = [written(tree) for tree in traced_equations(taken.function, taken.arguments)]
+        texts = [written(tree) for tree in trace_equations(taken.function, taken.arguments)]
         if len(texts) != count or max(map(len, texts)) > LONGEST:
             raise NotTraced("its expressions are too long")
         equations = tuple(zip(taken.signals[:count], texts, strict=True))
@@ -152,7 +152,7 @@ class _Taken:
                 else f"{self.title} raised {type(raised).__name__}: {str(raised)[:200]}",
                 self.remedy,
             ) from raised
-        again = self._tried(found[-1][1])
+        again = self._try(found[-1][1])
         before = next(one for one in reversed(self.returned) if one)
         if not np.array_equal(again, before, equal_nan=True):
             raise SimulationError(
@@ -177,14 +177,14 @@ class _Taken:
     @cached_property
     def returned(self) -> list[list[float]]:
         """Derivatives at each point; none where it raises."""
-        return [self._tried(point) for point in self.points]
+        return [self._try(point) for point in self.points]
 
     @cached_property
     def raised(self) -> list[Exception]:
         """What it raised at the points where it did."""
         return []
 
-    def _tried(self, point: Mapping[str, float]) -> list[float]:
+    def _try(self, point: Mapping[str, float]) -> list[float]:
         try:
             return self.at(point)
         except Exception as error:  # whatever a user's function raises

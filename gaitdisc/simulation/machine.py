@@ -78,7 +78,7 @@ def integrate_block(program, drive, rows, plan, past, into):
     steps, substeps, lanes = plan
     found, ok = into
     width, n = starts.shape
-    registers, rates = _filled(program, rows, n + wraps.size, lanes), np.zeros((n, lanes))
+    registers, rates = _fill(program, rows, n + wraps.size, lanes), np.zeros((n, lanes))
     flat, out, there = registers.reshape(-1), rates.reshape(-1), np.uint64(width)
     execute(code[:setup], flat, out, there)
     main, timed = code[setup:], np.any(code[:, 2:] == 0)  # time is the first register
@@ -114,7 +114,7 @@ def integrate_block(program, drive, rows, plan, past, into):
 
 
 @compiled
-def _filled(program, rows, signals, lanes):
+def _fill(program, rows, signals, lanes):
     """Registers with parameters and constants in their places."""
     _, _, constants, delays, count = program
     values = rows[2]

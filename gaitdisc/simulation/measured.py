@@ -67,7 +67,7 @@ class Measured:
         return replace(self, drive=drive, observed=self.observed[which, :longest], trials=names)
 
 
-def measured_of_trials(
+def check_measured(
     trials: Sequence[TrialColumns],
     inputs: Sequence[str],
     channels: Sequence[str],

@@ -15,7 +15,7 @@ from gaitdisc.errors import ChannelError, GaitdiscError, MissingFileError, ReadE
 from gaitdisc.recording import Finding, Recording
 from gaitdisc.regular_file import LARGEST_TEXT_BYTES, check_regular
 from gaitdisc.simulation.even_time import TrialColumns
-from gaitdisc.simulation.measured import Measured, measured_of_trials
+from gaitdisc.simulation.measured import Measured, check_measured
 from gaitdisc.simulation.simulation import Simulation
 from gaitdisc.units import offset_words, unit_factor
 
@@ -33,10 +33,10 @@ def read_measured(path: Path | str, simulation: Simulation) -> Measured:
     under its own name) those are taken that the table has.
     """
     path = Path(path)
-    return measured_of_table(_table(path), simulation, path.name)
+    return measure_table(_table(path), simulation, path.name)
 
 
-def measured_of_table(table: pd.DataFrame, simulation: Simulation, source: str) -> Measured:
+def measure_table(table: pd.DataFrame, simulation: Simulation, source: str) -> Measured:
     """Trials of a table that is already read, as `read_measured` has them.
 
     table: columns `trial`, `time` [s], each input and each observed channel [the simulation's units]
@@ -58,10 +58,10 @@ def measured_of_table(table: pd.DataFrame, simulation: Simulation, source: str) 
         rows = np.flatnonzero(trial == name)
         own = {each: values[rows] for each, values in numbers.items()}
         parts.append(_columns(str(name), own["time"], own, inputs, channels))
-    return measured_of_trials(parts, inputs, channels, source, _left_out(simulation, columns, channels, source))
+    return check_measured(parts, inputs, channels, source, _report_left_out(simulation, columns, channels, source))
 
 
-def measured_of_recordings(recordings: Sequence[Recording], simulation: Simulation) -> Measured:
+def measure_recordings(recordings: Sequence[Recording], simulation: Simulation) -> Measured:
     """Trials of recordings, one each, converted to the simulation's units.
 
     recordings: with a channel for each input and each observation, at one rate
@@ -76,7 +76,7 @@ def measured_of_recordings(recordings: Sequence[Recording], simulation: Simulati
         for wanted in dict.fromkeys((*inputs, *channels)):
             if wanted not in recording.names:
                 raise _missing(wanted, recording.names, name)
-            values = _converted(recording, wanted, simulation, name, findings)
+            values = _convert(recording, wanted, simulation, name, findings)
             doubtful = int(np.count_nonzero(np.asarray(recording.suspect)[:, recording.names.index(wanted)]))
             if doubtful:
                 what = f"{doubtful} of {len(values)} samples are marked as unreliable"
@@ -85,7 +85,7 @@ def measured_of_recordings(recordings: Sequence[Recording], simulation: Simulati
                 )
             numbers[wanted] = values
         parts.append(_columns(name, np.array(recording.time), numbers, inputs, channels))
-    return measured_of_trials(parts, inputs, channels, parts[0].name, list(findings.values()))
+    return check_measured(parts, inputs, channels, parts[0].name, list(findings.values()))
 
 
 def _columns(
@@ -220,7 +220,9 @@ def _refuse_timeless(time: NDArray[np.float64], trial: NDArray[np.object_], file
         )
 
 
-def _left_out(simulation: Simulation, columns: Sequence[str], channels: tuple[str, ...], file: str) -> list[Finding]:
+def _report_left_out(
+    simulation: Simulation, columns: Sequence[str], channels: tuple[str, ...], file: str
+) -> list[Finding]:
     """Report states that are not measured, and columns that nothing uses; of both at once, one may be the other."""
     found = []
     absent = [name for name, _ in simulation.observations if name not in channels]
@@ -241,7 +243,7 @@ def _left_out(simulation: Simulation, columns: Sequence[str], channels: tuple[st
     return found
 
 
-def _converted(
+def _convert(
     recording: Recording, name: str, simulation: Simulation, file: str, findings: dict[str, Finding]
 ) -> NDArray[np.float64]:
     """Channel in the simulation's unit."""

@@ -46,7 +46,7 @@ class Program:
         return reads[: len(self.leaves) + len(self.delays)]
 
 
-def compiled_program(
+def compile_program(
     outputs: Sequence[Tree],
     leaves: Sequence[str],
     fixed: Sequence[str] = (),
@@ -57,8 +57,8 @@ def compiled_program(
     fixed: those of them that do not change during a run
     definitions: further names, in order, each in terms of leaves and of those before
 
-    >>> from gaitdisc.simulation.expression import parsed
-    >>> program = compiled_program([parsed("k*x + sin(k*x)")], ["x", "k"])
+    >>> from gaitdisc.simulation.expression import parse
+    >>> program = compile_program([parse("k*x + sin(k*x)")], ["x", "k"])
     >>> len(program.code)  # one product, one sine, one sum, one store
     4
     """
@@ -66,7 +66,7 @@ def compiled_program(
     for name, tree in (definitions or {}).items():
         graph.scope[name] = graph.node(tree)
     wanted = [graph.node(tree) for tree in outputs]
-    return _laid_out(graph, wanted, frozenset(fixed))
+    return _lay_out(graph, wanted, frozenset(fixed))
 
 
 class _Graph:
@@ -77,7 +77,7 @@ class _Graph:
         self.parts: list[tuple] = []  # ("leaf", name) | ("delay", signal, text) | ("constant", value) | (symbol, a, b)
         self.delays: dict[tuple[str, str], Tree] = {}
         self._numbers: dict[tuple, int] = {}
-        self.scope = {name: self._numbered(("leaf", name)) for name in leaves}
+        self.scope = {name: self._number_node(("leaf", name)) for name in leaves}
 
     def node(self, tree: Tree) -> int:
         if isinstance(tree, Number):
@@ -89,14 +89,14 @@ class _Graph:
         return self._operation(tree.symbol, [self.node(argument) for argument in tree.arguments])
 
     def constant(self, value: float) -> int:
-        return self._numbered(("constant", value, np.signbit(value)))
+        return self._number_node(("constant", value, np.signbit(value)))
 
     def _delayed(self, tree: Operation) -> int:
         signal, seconds = tree.arguments
         assert isinstance(signal, Name)  # checked with the simulation
         key = (signal.name, written(seconds))
         self.delays.setdefault(key, seconds)
-        return self._numbered(("delay", *key))
+        return self._number_node(("delay", *key))
 
     def _operation(self, symbol: str, arguments: list[int]) -> int:
         if symbol == "sign":
@@ -126,19 +126,19 @@ class _Graph:
 
     def _two(self, symbol: str, a: int, b: int | None = None) -> int:
         b = a if b is None else b
-        return self._numbered((symbol, *sorted((a, b))) if symbol in _COMMUTES else (symbol, a, b))
+        return self._number_node((symbol, *sorted((a, b))) if symbol in _COMMUTES else (symbol, a, b))
 
-    def _numbered(self, part: tuple) -> int:
+    def _number_node(self, part: tuple) -> int:
         if part not in self._numbers:
             self._numbers[part] = len(self.parts)
             self.parts.append(part)
         return self._numbers[part]
 
 
-def _laid_out(graph: _Graph, wanted: list[int], fixed: frozenset[str]) -> Program:
+def _lay_out(graph: _Graph, wanted: list[int], fixed: frozenset[str]) -> Program:
     """Registers and order: leaves, delays, constants, what is fixed, then the rest in registers used again."""
     parts = graph.parts
-    needed = _needed(parts, wanted)
+    needed = _list_needed(parts, wanted)
     delayed = {key: len(graph.leaves) + i for i, key in enumerate(graph.delays)}
     register = {graph.scope[name]: i for i, name in enumerate(graph.leaves)}
     constants: list[float] = []
@@ -169,7 +169,7 @@ def _laid_out(graph: _Graph, wanted: list[int], fixed: frozenset[str]) -> Progra
     return Program(graph.leaves, seconds, np.array(constants), code, setup, max(order.most, 1), outputs=len(wanted))
 
 
-def _needed(parts: list[tuple], wanted: list[int]) -> list[int]:
+def _list_needed(parts: list[tuple], wanted: list[int]) -> list[int]:
     seen, stack = set(wanted), list(wanted)
     while stack:
         part = parts[stack.pop()]

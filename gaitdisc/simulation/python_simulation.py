@@ -93,7 +93,7 @@ def any_equations(states: Sequence[State], parts: Sequence[Input | Parameter | P
     return tuple((state.name, named) for state in states)
 
 
-def called(
+def call(
     simulation: PythonSimulation, x: NDArray[np.float64], fed: NDArray[np.float64], values: NDArray[np.float64]
 ) -> NDArray[np.float64]:
     """Derivatives by the function, with what was added to the equations.

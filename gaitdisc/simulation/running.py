@@ -14,9 +14,9 @@ from numpy.typing import NDArray
 from gaitdisc.errors import SimulationError
 from gaitdisc.recording.arrays import read_only
 from gaitdisc.simulation.compiled_simulation import Compiled, Drive, Rows
-from gaitdisc.simulation.expression import Number, Operation, Tree, parsed
-from gaitdisc.simulation.program import compiled_program
-from gaitdisc.simulation.python_simulation import PythonSimulation, called
+from gaitdisc.simulation.expression import Number, Operation, Tree, parse
+from gaitdisc.simulation.program import compile_program
+from gaitdisc.simulation.python_simulation import PythonSimulation, call
 from gaitdisc.simulation.simulation import Simulation
 
 SLOW_HZ = 2.0  # samples a second, below which a time in milliseconds is likelier than a record so coarse
@@ -52,8 +52,8 @@ def compile_simulation(simulation: Simulation | PythonSimulation) -> Compiled:
     leaves = ("t", *states, *inputs, *parameters)
     defined = simulation_scope(simulation)
     equations = dict(simulation.equations)
-    wanted = [_with_effects(parsed(equations[name]), simulation, "equation", name) for name in states]
-    seen = [parsed(text) for _, text in simulation.observations]
+    wanted = [_with_effects(parse(equations[name]), simulation, "equation", name) for name in states]
+    seen = [parse(text) for _, text in simulation.observations]
     observed = tuple(name for name, _ in simulation.observations)
     return Compiled(
         simulation,
@@ -62,8 +62,8 @@ def compile_simulation(simulation: Simulation | PythonSimulation) -> Compiled:
         parameters=parameters,
         observed=observed,
         defaults=defaults,
-        right_hand_side=compiled_program(wanted, leaves, parameters, defined),
-        observation=compiled_program(seen, leaves, parameters, defined),
+        right_hand_side=compile_program(wanted, leaves, parameters, defined),
+        observation=compile_program(seen, leaves, parameters, defined),
     )
 
 
@@ -72,11 +72,11 @@ def simulation_scope(simulation: Simulation) -> dict[str, Tree]:
     scope = {}
     for port in simulation.ports:
         scope[port.name] = _with_effects(Number(0.0), simulation, "port", port.name)
-    return scope | {name: parsed(text) for name, text in simulation.definitions}
+    return scope | {name: parse(text) for name, text in simulation.definitions}
 
 
 def _with_effects(tree: Tree, simulation: Simulation, kind: str, place: str) -> Tree:
-    terms = [parsed(each.term) for each in simulation.effects if (each.kind, each.place) == (kind, place)]
+    terms = [parse(each.term) for each in simulation.effects if (each.kind, each.place) == (kind, place)]
     if terms and tree == Number(0.0):
         tree = terms.pop(0)
     for term in terms:
@@ -105,16 +105,16 @@ class PythonCompiled(Compiled):
             machine.execute(code, registers, feeds.reshape(-1), width)
             x = registers.reshape(-1, lanes)[1 : 1 + n].T
             x = np.where(np.abs(x) < machine.BOUND, x, np.nan)  # nobody's function is made for what has run away
-            rates.reshape(n, lanes)[:] = called(self.model, x, feeds.T, values).T
+            rates.reshape(n, lanes)[:] = call(self.model, x, feeds.T, values).T
 
         block = machine.integrate_block.py_func
         return lanes, FunctionType(block.__code__, {**vars(machine), "derive": derive})
 
-    def _rates_of(
+    def _derivatives(
         self, x: NDArray[np.float64], given: NDArray[np.float64], values: NDArray[np.float64]
     ) -> NDArray[np.float64]:
         """Derivatives by the function, which is fed with what the right-hand side gives."""
-        return called(self.model, x, given, np.broadcast_to(values, (len(x), len(self.parameters))))
+        return call(self.model, x, given, np.broadcast_to(values, (len(x), len(self.parameters))))
 
 
 @dataclass(frozen=True)

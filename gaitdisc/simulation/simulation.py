@@ -7,9 +7,9 @@ from dataclasses import dataclass, replace
 
 from gaitdisc.errors import SimulationError
 from gaitdisc.simulation.checking import check
-from gaitdisc.simulation.expression import parsed, substituted, written
+from gaitdisc.simulation.expression import parse, substitute, written
 from gaitdisc.simulation.parts import Parameter, Parts, Sensor, State, Term
-from gaitdisc.words import html_of
+from gaitdisc.words import as_html
 
 
 @dataclass(frozen=True)
@@ -85,7 +85,7 @@ class Simulation(Parts):
         rows = [(f"d{state}/dt", term) for state, term in self.equations]
         rows += [(each.name, f"{each.value:g} {each.unit}") for each in self.parameters]
         rows += [(f"at {each.place}", each.term) for each in self.effects]
-        return html_of(self.title, [*rows, *((f"observed {name}", term) for name, term in self.observations)])
+        return as_html(self.title, [*rows, *((f"observed {name}", term) for name, term in self.observations)])
 
     def values(self) -> dict[str, float]:
         """Parameters by name."""
@@ -248,11 +248,11 @@ class Simulation(Parts):
             If there is no such input, or the expression uses unknown names.
         """
         _refuse_unknown([name], "an input", [each.name for each in self.inputs])
-        by = {name: parsed(expression)}
+        by = {name: parse(expression)}
 
         def changed(text: str) -> str:
-            tree = parsed(text)
-            other = substituted(tree, by, self.signals)
+            tree = parse(text)
+            other = substitute(tree, by, self.signals)
             return text if other == tree else written(other)
 
         return replace(

@@ -16,7 +16,7 @@ from gaitdisc.simulation.parts import Input, Parameter, Port, Sensor, State, Ter
 from gaitdisc.simulation.python_simulation import any_equations
 from gaitdisc.simulation.simulation import Simulation
 from gaitdisc.simulation.unit_check import refuse_units
-from gaitdisc.toml_text import parsed_toml
+from gaitdisc.toml_text import parse_toml
 
 LARGEST = 256 * 1024  # bytes
 MODELS = (".xml", ".mjcf", ".osim")  # endings of what an engine reads
@@ -84,15 +84,15 @@ def read_simulation(path: Path | str) -> Simulation:
             f"{path.name} is not at byte {error.start}",
             "Save it as UTF-8.",
         ) from error
-    return simulation_of(text, path.name, path)
+    return parse_simulation(text, path.name, path)
 
 
-def simulation_of(text: str, file: str = "the simulation", source: Path | None = None) -> Simulation:
+def parse_simulation(text: str, file: str = "the simulation", source: Path | None = None) -> Simulation:
     """Simulation of the text of a TOML file."""
     if len(re.findall(r"^\s*\[", text, re.MULTILINE)) > MOST_TABLES:
         raise _not_toml(file, f"more than {MOST_TABLES} tables")
     try:
-        table = parsed_toml(text.replace("\r\n", "\n"))
+        table = parse_toml(text.replace("\r\n", "\n"))
     except ValueError as error:
         raise _not_toml(file, str(error)[:200] or type(error).__name__) from None
     try:
@@ -263,10 +263,10 @@ def _line(text: str, place: tuple[str, ...]) -> int | None:
     return here
 
 
-def bundled_names() -> tuple[str, ...]:
+def list_bundled() -> tuple[str, ...]:
     """Names of the simulations that come with the package.
 
-    >>> "lorenz" in bundled_names()
+    >>> "lorenz" in list_bundled()
     True
     """
     return tuple(sorted(path.stem for path in _FOLDER.glob("*.toml")))
@@ -291,12 +291,12 @@ def bundled(name: str) -> Simulation:
     >>> gd.bundled_simulation("pendulum").values()["length"]
     0.8
     """
-    if name not in bundled_names():
-        nearest = nearest_word(name, bundled_names())
+    if name not in list_bundled():
+        nearest = nearest_word(name, list_bundled())
         hint = f"Did you mean {nearest!r}? " if nearest else ""
         raise ReadError(
             "the simulation must be one that is included in the package",
             f"there is no {name!r}",
-            f"{hint}Known: {', '.join(bundled_names())}.",
+            f"{hint}Known: {', '.join(list_bundled())}.",
         )
     return read_simulation(_FOLDER / f"{name}.toml")

@@ -138,7 +138,7 @@ class Condition(Quantity):
         return self.ways[tree] is holds
 
 
-def traced_equations(function: Callable[..., Any], arguments: Callable[[Callable[[str], Quantity]], Any]) -> list[Tree]:
+def trace_equations(function: Callable[..., Any], arguments: Callable[[Callable[[str], Quantity]], Any]) -> list[Tree]:
     """Expressions of what a function returns.
 
     arguments: given what makes a quantity of a name, returns the function's arguments (a tuple) and keywords (a
@@ -263,7 +263,7 @@ def _chosen(condition: Any, one: Any, other: Any) -> Any:
     return Quantity(_either(held.tree, _tree(one), _tree(other)), held.ways, size, depth)
 
 
-def _selected(conditions: Sequence[Any], values: Sequence[Any], otherwise: Any = 0.0) -> Any:
+def _select(conditions: Sequence[Any], values: Sequence[Any], otherwise: Any = 0.0) -> Any:
     """`np.select` of single numbers."""
     for condition, value in reversed(list(zip(conditions, values, strict=True))):
         otherwise = _chosen(condition, value, otherwise)
@@ -274,7 +274,7 @@ def _called(symbol: str) -> Callable[..., Quantity]:
     return lambda *arguments: _operation(symbol, *arguments)
 
 
-def _clipped(x: Any, low: Any, high: Any) -> Quantity:
+def _clip(x: Any, low: Any, high: Any) -> Quantity:
     return _operation("min", _operation("max", x, low), high)
 
 
@@ -282,17 +282,17 @@ def _arcsine(x: Quantity) -> Quantity:
     return _operation("atan", x / _operation("sqrt", 1 - x * x))
 
 
-def _angle_of(y: Any, x: Any) -> Quantity:
+def _trace_angle(y: Any, x: Any) -> Quantity:
     """`atan2`, by the tangent of half the angle, which is infinite where x is negative and y is 0."""
     beyond = _operation("sqrt", x * x + y * y) + x
     return _chosen(beyond > 0, 2 * _operation("atan", y / beyond), math.pi * (0 - x > 0))
 
 
-def _interpolated(x: Quantity, at: Sequence[float], values: Sequence[float]) -> Quantity:
+def _interpolate(x: Quantity, at: Sequence[float], values: Sequence[float]) -> Quantity:
     """`np.interp`: the first value, and the rise over as much of each stretch as lies before x."""
     found = 0 * x + float(values[0])
     for low, high, rise in zip(at[:-1], at[1:], np.diff(values) / np.diff(at), strict=True):
-        found = found + float(rise) * (_clipped(x, float(low), float(high)) - float(low))
+        found = found + float(rise) * (_clip(x, float(low), float(high)) - float(low))
     return found
 
 
@@ -310,18 +310,18 @@ _ARITHMETIC: dict[str, Callable[..., Any]] = {
     **dict.fromkeys(("atan", "arctan"), _called("atan")),
     **dict.fromkeys(("asin", "arcsin"), _arcsine),
     **dict.fromkeys(("acos", "arccos"), lambda x: math.pi / 2 - _arcsine(x)),
-    **dict.fromkeys(("atan2", "arctan2"), _angle_of),
+    **dict.fromkeys(("atan2", "arctan2"), _trace_angle),
     "hypot": lambda a, b: _operation("sqrt", a * a + b * b),
     "square": lambda x: x * x,
     "sign": lambda x: (x > 0) - (x < 0),
     "heaviside": lambda x, at_zero: (x > 0) + at_zero * (x == 0),
     "copysign": lambda a, x: abs(a) * (1 - 2 * (x < 0)),
-    "clip": _clipped,
+    "clip": _clip,
     "where": _chosen,
-    "select": _selected,
+    "select": _select,
     "isnan": lambda _: False,
     "isfinite": lambda _: True,
-    "interp": _interpolated,
+    "interp": _interpolate,
 }
 
 
@@ -408,9 +408,9 @@ def _number_by_number(arithmetic: Callable[..., Any], original: Callable[..., An
             return original(*arguments, **named)
         if len(arguments) == 1 and isinstance(arguments[0], tuple | list):  # max([a, b])
             arguments = tuple(arguments[0]) if original in (max, min) else (np.array(arguments[0], object),)
-        if isinstance(arguments[0], np.ndarray) and arithmetic is _interpolated:
+        if isinstance(arguments[0], np.ndarray) and arithmetic is _interpolate:
             return np.frompyfunc(lambda x: arithmetic(x, *arguments[1:]), 1, 1)(arguments[0])
-        if any(isinstance(one, np.ndarray) for one in arguments) and arithmetic is not _interpolated:
+        if any(isinstance(one, np.ndarray) for one in arguments) and arithmetic is not _interpolate:
             return np.frompyfunc(arithmetic, len(arguments), 1)(*arguments)
         return arithmetic(*arguments, **named)
 

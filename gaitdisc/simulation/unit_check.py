@@ -8,10 +8,10 @@ from collections.abc import Callable, Mapping
 
 from gaitdisc.errors import SimulationError
 from gaitdisc.recording import Finding
-from gaitdisc.simulation.expression import Name, Number, Operation, Tree, parsed, written
+from gaitdisc.simulation.expression import Name, Number, Operation, Tree, parse, written
 from gaitdisc.simulation.parts import Sensor
 from gaitdisc.simulation.simulation import Simulation
-from gaitdisc.units import Powers, dimension_of, offset_words, unit_factor, unit_words
+from gaitdisc.units import Powers, find_dimension, offset_words, unit_factor, unit_words
 
 _SAME = frozenset(["+", "-", "max", "min"])
 _CHOSEN = {"neg": 0, "abs": 0, "delay": 0, "where": 1}  # which argument's unit it has
@@ -30,9 +30,9 @@ def unit_findings(simulation: Simulation) -> tuple[Finding, ...]:
     A number without a name may carry any unit, and so does what it multiplies; an angle counts as a pure number. Of a
     simulation in which nothing but 1 is given as a unit (a plain function, say) there is nothing to report.
 
-    >>> from gaitdisc.simulation.simulation_file import simulation_of
+    >>> from gaitdisc.simulation.simulation_file import parse_simulation
     >>> text = '[states.x]\nunit = "m"\n[parameters.f]\nvalue = 1\nunit = "N"\n[equations]\nx = "f"\n'
-    >>> print(unit_findings(simulation_of(text))[0].what)
+    >>> print(unit_findings(parse_simulation(text))[0].what)
     [equations] x: 'f' must have the unit m/s
     """
     parts = (*simulation.states, *simulation.inputs, *simulation.parameters, *simulation.ports)
@@ -41,24 +41,24 @@ def unit_findings(simulation: Simulation) -> tuple[Finding, ...]:
     file = simulation.source.name if simulation.source else simulation.title
     findings = []
     for part in parts:
-        if dimension_of(part.unit) is None and not getattr(part, "computed", False):
+        if find_dimension(part.unit) is None and not getattr(part, "computed", False):
             what = f"{part.unit!r} is not a known unit{offset_words(part.unit)}"
             findings.append(Finding("note", "unit", file, what, "the check of units in sums", part.name))
 
     def report(what: str) -> None:
         findings.append(Finding("warning", "unit", file, what, "the numbers there, if the units are right"))
 
-    known = _known(simulation, report)
+    known = _list_units(simulation, report)
     units = {part.name: part.unit for part in parts}
     places = [(f"[equations] {name}", "equation", name, text) for name, text in simulation.equations]
     places += [(f"[effects] {n}", one.kind, one.place, one.term) for n, one in enumerate(simulation.effects, 1)]
     for where, kind, place, text in places:
         wanted, unit = known[place], units[place]
         if kind == "equation":
-            wanted, unit = None if wanted is None else multiplied(wanted, {"s": 1}, -1), f"{unit}/s"
-        tree = parsed(text)
+            wanted, unit = None if wanted is None else multiply(wanted, {"s": 1}, -1), f"{unit}/s"
+        tree = parse(text)
         found = powers_in(tree, known, None, _at(where, report))
-        if found is not None and wanted is not None and dimension_of(found) != dimension_of(wanted):
+        if found is not None and wanted is not None and find_dimension(found) != find_dimension(wanted):
             report(f"{where}: {_short(tree)} must have the unit {unit}")
     return tuple(findings)
 
@@ -78,7 +78,7 @@ def powers_in(
     if tree.symbol in _SAME:
         return _alike(tree, parts, report)
     if tree.symbol in _PURE:
-        if report and tree.symbol in _OF_PURE and parts[0] is not None and any(dimension_of(parts[0]) or ()):
+        if report and tree.symbol in _OF_PURE and parts[0] is not None and any(find_dimension(parts[0]) or ()):
             report(f"the argument of {_short(tree)} must be a pure number or an angle")
         return {}
     if tree.symbol in _CHOSEN:
@@ -88,13 +88,13 @@ def powers_in(
         exponent = Number(0.5) if tree.symbol == "sqrt" else tree.arguments[1]
         raised = exponent.value if isinstance(exponent, Number) else None
         return bare if first is None or raised is None else {word: raised * power for word, power in first.items()}
-    return None if first is None or second is None else multiplied(first, second, 1 if tree.symbol == "*" else -1)
+    return None if first is None or second is None else multiply(first, second, 1 if tree.symbol == "*" else -1)
 
 
 def _alike(tree: Operation, parts: list[Powers | None], report: Report | None) -> Powers | None:
     """Unit of a sum or of the largest of several: of the first that has one, if the others have no other."""
     there = [(part, argument) for part, argument in zip(parts, tree.arguments, strict=True) if part is not None]
-    unlike = (one for one in there[1:] if dimension_of(one[0]) != dimension_of(there[0][0]))
+    unlike = (one for one in there[1:] if find_dimension(one[0]) != find_dimension(there[0][0]))
     if report is not None:
         for _, argument in unlike:
             word = "compared" if tree.symbol in ("max", "min") else "added"
@@ -108,11 +108,11 @@ def unit_powers(unit: str) -> Powers:
     powers: Powers = {}
     for word, power in unit_words(unit):
         if word not in ("", "1"):
-            powers = multiplied(powers, {word: power})
+            powers = multiply(powers, {word: power})
     return powers
 
 
-def multiplied(one: Powers, other: Powers, sign: int = 1) -> Powers:
+def multiply(one: Powers, other: Powers, sign: int = 1) -> Powers:
     """Powers of a product; with the sign -1 of a quotient."""
     product = dict(one)
     for word, power in other.items():
@@ -132,25 +132,25 @@ def unit_of_powers(powers: Powers) -> str:
     return (" ".join(above) or "1") + (f"/{under}" if below else "")
 
 
-def factor_of(tree: Tree) -> tuple[float, Tree]:
+def find_factor(tree: Tree) -> tuple[float, Tree]:
     """Number by which an expression is multiplied, of a sum that of its first signal; and what it multiplies.
 
-    >>> factor_of(parsed("-2*x")), factor_of(parsed("3*x + 1"))[0]
+    >>> find_factor(parse("-2*x")), find_factor(parse("3*x + 1"))[0]
     ((-2.0, Name(name='x')), 3.0)
     """
     if not isinstance(tree, Operation):
         return (tree.value if isinstance(tree, Number) else 1.0), tree
     if tree.symbol == "neg":
-        number, rest = factor_of(tree.arguments[0])
+        number, rest = find_factor(tree.arguments[0])
         return -number, rest
     if tree.symbol in ("*", "/"):
-        (one, left), (other, right) = map(factor_of, tree.arguments)
+        (one, left), (other, right) = map(find_factor, tree.arguments)
         number = one * other if tree.symbol == "*" else one / (other or 1.0)
         if isinstance(right, Number):
             return number, left
         return number, right if isinstance(left, Number) and tree.symbol == "*" else tree
     signals = [one for one in tree.arguments if not isinstance(one, Number)] if tree.symbol in _SUMMED else []
-    return (factor_of(signals[0])[0] if signals else 1.0), tree
+    return (find_factor(signals[0])[0] if signals else 1.0), tree
 
 
 def refuse_units(simulation: Simulation) -> None:
@@ -165,12 +165,12 @@ def refuse_units(simulation: Simulation) -> None:
     """
     for name, text in simulation.observations:
         sensor = simulation.sensor(name)
-        wanted = dimension_of(sensor.unit) if sensor.unit else None
+        wanted = find_dimension(sensor.unit) if sensor.unit else None
         if wanted is None:
             continue
-        tree = parsed(text)
-        found = powers_in(tree, _known(simulation), None)
-        if found is not None and dimension_of(found) != wanted:
+        tree = parse(text)
+        found = powers_in(tree, _list_units(simulation), None)
+        if found is not None and find_dimension(found) != wanted:
             raise _unlike(sensor, f"{text!r} has another kind of unit", "Correct the unit or expression.")
         _refuse_factor(simulation, sensor, tree)
 
@@ -178,7 +178,7 @@ def refuse_units(simulation: Simulation) -> None:
 def _refuse_factor(simulation: Simulation, sensor: Sensor, tree: Tree) -> None:
     """Refuse a state or input, bare or times a number, that is not what the unit makes of it."""
     units = {part.name: part.unit for part in (*simulation.states, *simulation.inputs)}
-    number, name = factor_of(tree)
+    number, name = find_factor(tree)
     unit = units.get(name.name) if isinstance(name, Name) else None
     factor = None if unit is None else unit_factor(unit, sensor.unit)
     if factor is None or unit is None:
@@ -192,8 +192,8 @@ def _refuse_factor(simulation: Simulation, sensor: Sensor, tree: Tree) -> None:
 
 def _is_of_units(number: float, unit: str) -> bool:
     """Whether a number is a factor between units, and not a gain of the sensor's own."""
-    angle, length = dimension_of("rad"), dimension_of("m")
-    others = {angle: ("rad", "deg"), length: ("m", "cm", "mm")}.get(dimension_of(unit), ())
+    angle, length = find_dimension("rad"), find_dimension("m")
+    others = {angle: ("rad", "deg"), length: ("m", "cm", "mm")}.get(find_dimension(unit), ())
     return any(abs(number / factor - 1) < ROUNDED for other in others if (factor := unit_factor(unit, other)))
 
 
@@ -202,14 +202,14 @@ def _unlike(sensor: Sensor, found: str, remedy: str) -> SimulationError:
     return SimulationError(needed, found, remedy, ("observations", sensor.channel))
 
 
-def _known(simulation: Simulation, report: Report | None = None) -> dict[str, Powers | None]:
+def _list_units(simulation: Simulation, report: Report | None = None) -> dict[str, Powers | None]:
     """Units of all names; None of what may have any: unknown units, and what an engine computes."""
     known: dict[str, Powers | None] = {"t": {"s": 1}}
     for part in (*simulation.states, *simulation.inputs, *simulation.parameters, *simulation.ports):
-        any_unit = dimension_of(part.unit) is None or getattr(part, "computed", False)
+        any_unit = find_dimension(part.unit) is None or getattr(part, "computed", False)
         known[part.name] = None if any_unit else unit_powers(part.unit)
     for name, text in simulation.definitions:
-        known[name] = powers_in(parsed(text), known, None, report and _at(f"[definitions] {name}", report))
+        known[name] = powers_in(parse(text), known, None, report and _at(f"[definitions] {name}", report))
     return known
 
 
@@ -231,28 +231,28 @@ def places_unit(simulation: Simulation, kind: str, place: str) -> str:
     """
     if kind == "port":
         return next(port.unit for port in simulation.ports if port.name == place)
-    return divided(next(state.unit for state in simulation.states if state.name == place), "s")
+    return divide(next(state.unit for state in simulation.states if state.name == place), "s")
 
 
-def divided(unit: str, by: str) -> str:
+def divide(unit: str, by: str) -> str:
     """Return one unit over another.
 
-    >>> divided("N m", "rad/s"), divided("1", "s"), divided("N", "N")
+    >>> divide("N m", "rad/s"), divide("1", "s"), divide("N", "N")
     ('N m s/rad', '1/s', '1')
     """
-    return unit_of_powers(multiplied(unit_powers(unit), unit_powers(by), -1))
+    return unit_of_powers(multiply(unit_powers(unit), unit_powers(by), -1))
 
 
-def unit_of(expression: str, units: Mapping[str, str]) -> str:
+def find_unit(expression: str, units: Mapping[str, str]) -> str:
     """Return the unit of an expression.
 
     units: unit by name; a name that is not there is a pure number
 
-    >>> unit_of("v*abs(v)", {"v": "rad/s"}), unit_of("max(0, x - x0)", {"x": "m"})
+    >>> find_unit("v*abs(v)", {"v": "rad/s"}), find_unit("max(0, x - x0)", {"x": "m"})
     ('rad^2/s^2', 'm')
     """
     return unit_of_powers(
-        powers_in(parsed(expression), {name: unit_powers(unit) for name, unit in units.items()}, {}) or {}
+        powers_in(parse(expression), {name: unit_powers(unit) for name, unit in units.items()}, {}) or {}
     )
 
 
@@ -264,7 +264,7 @@ def unit_of_state(simulation: Simulation, rate: str) -> str:
     'rad'
     """
     units = {part.name: part.unit for part in (*simulation.states, *simulation.inputs)}
-    return divided(unit_of(rate, units), "1/s")
+    return divide(find_unit(rate, units), "1/s")
 
 
 def channel_unit(expression: str, units: Mapping[str, str]) -> str:
@@ -274,7 +274,7 @@ def channel_unit(expression: str, units: Mapping[str, str]) -> str:
     >>> [channel_unit(text, of) for text in ("theta", "57.2958*theta", "-1*theta", "1000*x", "x + 0.1")]
     ['rad', 'deg', 'rad', '1', 'm']
     """
-    unit, scale = unit_of(expression, units), abs(factor_of(parsed(expression))[0])
+    unit, scale = find_unit(expression, units), abs(find_factor(parse(expression))[0])
     if abs(scale - 1) < 1e-9:
         return unit
     if _ANGLE.match(unit) and abs(scale * math.pi / 180 - 1) < IN_DEGREES:

@@ -12,12 +12,12 @@ import tomlkit
 from tomlkit.exceptions import TOMLKitError
 
 from gaitdisc.errors import GaitdiscError, ReadError, SchemaError, SimulationError
-from gaitdisc.own_files import guarded
+from gaitdisc.own_files import guard
 from gaitdisc.simulation.parts import Sensor
 from gaitdisc.simulation.python_simulation import PythonSimulation
 from gaitdisc.simulation.simulation import Simulation
-from gaitdisc.simulation.simulation_file import SENSOR, TABLES, simulation_of
-from gaitdisc.toml_text import parsed_toml, quoted
+from gaitdisc.simulation.simulation_file import SENSOR, TABLES, parse_simulation
+from gaitdisc.toml_text import parse_toml, quote
 from gaitdisc.whole_file import write_whole
 
 _REPLACED = "replaced_"  # begins the name of the definition that an input of a Python object is replaced by
@@ -49,7 +49,7 @@ def write_simulation(simulation: Simulation | PythonSimulation, path: Path | str
     --------
     >>> import tempfile
     >>> from gaitdisc.simulation.parts import Term
-    >>> decay = simulation_of('[states.x]  # metres\n[equations]\nx = "-x"\n')
+    >>> decay = parse_simulation('[states.x]  # metres\n[equations]\nx = "-x"\n')
     >>> more = decay.with_effect(Term("x", "equation", "constant_load", "0.5"))
     >>> print(write_simulation(more, Path(tempfile.mkdtemp()) / "decay.toml").read_text(), end="")
     [states.x]  # metres
@@ -68,7 +68,7 @@ def write_simulation(simulation: Simulation | PythonSimulation, path: Path | str
             "Convert a function first: gaitdisc.simulation_from_function(function).",
         )
     text = _python_text(simulation) if isinstance(simulation, PythonSimulation) else simulation_text(simulation)
-    with guarded("gd.write_simulation", overwrite=overwrite):
+    with guard("gd.write_simulation", overwrite=overwrite):
         return write_whole(path, text)
 
 
@@ -80,8 +80,8 @@ def simulation_text(simulation: Simulation) -> str:
     """
     if simulation.layout:
         with suppress(GaitdiscError, TOMLKitError):
-            text = _changed_text(simulation)
-            if simulation_of(text) == simulation:
+            text = _change_text(simulation)
+            if parse_simulation(text) == simulation:
                 return text
     return tomlkit.dumps(_table(simulation, long=bool(simulation.sensors)))
 
@@ -91,7 +91,7 @@ def read_into(model: PythonSimulation, path: Path | str) -> PythonSimulation:
     path = Path(path)
     try:
         text = path.read_text(encoding="utf-8")
-        table = parsed_toml(text)
+        table = parse_toml(text)
     except (OSError, ValueError) as error:
         raise ReadError("a model must be a TOML file", f"{path.name}: {error}", "Check the path.") from error
     for section in ("states", "inputs", "ports"):
@@ -102,8 +102,8 @@ def read_into(model: PythonSimulation, path: Path | str) -> PythonSimulation:
                 f"{path.name} has {', '.join(its) or 'none'}",
                 "Read the file that was written from this model.",
             )
-    equations = [f"{name} = {quoted(listed)}" for name, listed in model.equations]
-    read = simulation_of("\n".join([text, "[equations]", *equations, ""]), path.name)
+    equations = [f"{name} = {quote(listed)}" for name, listed in model.equations]
+    read = parse_simulation("\n".join([text, "[equations]", *equations, ""]), path.name)
     replaced = tuple((name.removeprefix(_REPLACED), listed) for name, listed in read.definitions)
     return replace(model, parts=replace(read, definitions=(), layout="", source=None), replaced=replaced)
 
@@ -144,10 +144,10 @@ def _entry(part: object, keys: Iterable[str]) -> dict[str, Any]:
     return {key: value for key, value in entry.items() if key in always or value not in (None, "")}
 
 
-def _changed_text(simulation: Simulation) -> str:
+def _change_text(simulation: Simulation) -> str:
     """Text of the file that a simulation was read from, changed where they differ; new tables stand at its end."""
     document = tomlkit.parse(simulation.layout.replace("\r\n", "\n"))
-    before, after = _table(simulation_of(simulation.layout), long=True), _table(simulation, long=True)
+    before, after = _table(parse_simulation(simulation.layout), long=True), _table(simulation, long=True)
     if "observations" not in document:
         implied = simulation.observations == tuple((state.name, state.name) for state in simulation.states)
         before["observations"] = after["observations"] if implied and not simulation.sensors else {}

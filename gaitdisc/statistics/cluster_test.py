@@ -116,7 +116,7 @@ def one_sample_test(
 
     mean = curves.mean(axis=0)
     error = np.sqrt(curves.var(axis=0, ddof=1) / n + least.reshape(shape))
-    return _tested(mean / error, error, t_of, sign_flips(n, plan), plan, worth)
+    return _test(mean / error, error, t_of, sign_flips(n, plan), plan, worth)
 
 
 def two_sample_test(
@@ -167,10 +167,10 @@ def two_sample_test(
     difference = second.mean(axis=0) - first.mean(axis=0)
     variance = first.var(axis=0, ddof=1) / len(first) + second.var(axis=0, ddof=1) / len(second)
     error = np.sqrt(variance + least.reshape(shape))
-    return _tested(difference / error, error, t_of, sign_flips(len(first) + len(second), plan), plan, worth)
+    return _test(difference / error, error, t_of, sign_flips(len(first) + len(second), plan), plan, worth)
 
 
-def _tested(
+def _test(
     t: NDArray[np.float64],
     error: NDArray[np.float64],
     t_of: Statistic,

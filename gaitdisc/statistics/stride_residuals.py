@@ -11,7 +11,7 @@ from scipy.stats import t as student
 from gaitdisc.errors import StrideError
 from gaitdisc.recording import PERCENT, Strides
 from gaitdisc.recording.arrays import mean_where_known
-from gaitdisc.recording.strides import interpolated
+from gaitdisc.recording.strides import interpolate
 
 LEAST_STRIDES = 5
 
@@ -55,7 +55,7 @@ def stride_curves(time: NDArray[np.float64], values: NDArray[np.float64], stride
     values (time, column) [each column's unit]: NaN where missing
     """
     points = strides.start[:, None] + strides.duration_s[:, None] * PERCENT / 100.0
-    return interpolated(time, values, points)
+    return interpolate(time, values, points)
 
 
 @dataclass(frozen=True, eq=False)

@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from gaitdisc.models.trained_network import TrainedNetwork
-from gaitdisc.recording import Samples, scale_of
+from gaitdisc.recording import Samples, fit_scale
 
 NODES = 10  # of either hidden layer, as in the published code of chapter 3
 MOST_WEIGHED = 300  # samples, evenly in time, that noise and weights are weighed on: neighbours share their noise
@@ -37,7 +37,7 @@ def train_bayesian(samples: Samples, nodes: int = NODES, seed: int = 0) -> Train
         chapter 3 trains logsig-radbas-purelin layers of ten nodes so (MATLAB's `trainbr`).
     """
     samples.trainable(LEAST_SAMPLES)
-    x_scale, y_scale = scale_of(samples.x), scale_of(samples.y)
+    x_scale, y_scale = fit_scale(samples.x), fit_scale(samples.y)
     x, y = x_scale.scaled(samples.x), y_scale.scaled(samples.y)[:, 0]
     some = np.unique(np.linspace(0, len(x) - 1, min(MOST_WEIGHED, len(x))).astype(int))
     weights, weighing = _descended(x[some], y[some], _drawn(x.shape[1], nodes, seed), None)

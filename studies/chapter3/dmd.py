@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from gaitdisc.errors import SamplingError, TrainingError
-from gaitdisc.recording import Samples, scale_of
+from gaitdisc.recording import Samples, fit_scale
 
 from .sindy import chapter3_library
 
@@ -85,7 +85,7 @@ def delayed(samples: Samples, delays: int, rank: int) -> Hankel:
             f"there are {len(samples)}, {least - len(samples)} too few",
             "Record longer, or take fewer delays or modes.",
         )
-    still, moving = scale_of(samples.y).constant, samples
+    still, moving = fit_scale(samples.y).constant, samples
     if still.any() and not still.all():  # a field may have many outputs that stand still
         names = tuple(np.array(samples.outputs)[~still])
         moving = replace(samples, y=samples.y[:, ~still], outputs=names)

@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from gaitdisc.errors import TrainingError
-from gaitdisc.recording import Samples, Scale, scale_of
+from gaitdisc.recording import Samples, Scale, fit_scale
 from gaitdisc.signals.series import autocorrelation_time
 
 KernelKind = Literal["squared_exponential", "matern_3_2", "matern_5_2"]
@@ -104,7 +104,7 @@ def fit_gaussian_process(
         8.27. The published code uses MATLAB's `fitrgp`, which has one length scale for all inputs.
     """
     samples.trainable(LEAST_SAMPLES)
-    scale, offset, size = scale_of(samples.x), samples.y.mean(axis=0), samples.y.std(axis=0)
+    scale, offset, size = fit_scale(samples.x), samples.y.mean(axis=0), samples.y.std(axis=0)
     x, y = scale.scaled(samples.x), (samples.y - offset) / size
     some = np.unique(np.linspace(0, len(x) - 1, min(MOST_FOR_LENGTHS, len(x))).astype(int))
     exact = len(x) <= most_exact

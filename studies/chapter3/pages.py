@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 
 from gaitdisc.report.figure import Figure
 from gaitdisc.report.page import Block, write_blocks, write_markdown
-from gaitdisc.report.panels import Look, Room, decades, in_style, legend, lines_of, panels
+from gaitdisc.report.panels import Look, Room, decades, in_style, legend, legend_lines, panels
 from gaitdisc.report.table import Table, save_table, words_table
 from gaitdisc.words import unit_text
 
@@ -95,7 +95,7 @@ def error_figure(cells: Sequence[DiscrepancyCell], name: str, source: str, chann
         row[0].set_ylabel(f"error of {cell.channels[channel]} [{_unit(cell, channel)}]")
     for axes in grid[-1]:
         axes.set_xlabel("time in the record [s]")
-    legend(drawn, lines_of({"truth − known": KNOWN, "truth − augmented": AUGMENTED}))
+    legend(drawn, legend_lines({"truth − known": KNOWN, "truth − augmented": AUGMENTED}))
     caption = (
         f"{source}. {cells[0].system}, {cells[0].channels[channel]}: reconstruction of the training part from the true "
         "first state; forecast from the noise-free true state (an oracle), and from the start estimated from the data; "
@@ -137,7 +137,7 @@ def system_figure(cell: DiscrepancyCell, missing: NDArray[np.float64], name: str
     ):
         panel.plot(table["t_s"], table[column], color=AUGMENTED.colour, linewidth=0.7)
         panel.set(title=words, xlabel="time [s]", ylabel=label)
-    legend(drawn, lines_of({"true": AUGMENTED, "known": KNOWN}))
+    legend(drawn, legend_lines({"true": AUGMENTED, "known": KNOWN}))
     caption = (
         f"{source}. True and known system from the same start, without noise: phase portraits, time evolution, and the "
         "two errors along the truth."
@@ -204,7 +204,7 @@ def horizon_figure(cells: Sequence[DiscrepancyCell], name: str, source: str) -> 
         axes.axvline(cells[0].parts[FORECAST].first_jump_s(), color="#7a7a7a", linewidth=0.6)
         axes.set(xlim=(0, longest), title=approach, xlabel="forecast horizon [s]")
     grid[0][0].set_ylabel("less RMSE than known [%]")
-    legend(drawn, lines_of({METHOD_WORDS[method]: METHOD_LOOKS[method] for method in methods}))
+    legend(drawn, legend_lines({METHOD_WORDS[method]: METHOD_LOOKS[method] for method in methods}))
     caption = (
         f"{source}. Median over channels, clipped to ±100, to the end of the forecast after {longest:g} s, from the "
         f"start estimated from the data; grey: the truth’s first jump. Noise {cells[0].noise:g}."

@@ -19,9 +19,9 @@ from numpy.typing import NDArray
 from torch import nn
 
 import gaitdisc as gd
-from gaitdisc.cohort.cohort import walks_of
+from gaitdisc.cohort.cohort import make_walks
 from gaitdisc.cohort.demonstration import MUSCLES, OUTPUTS
-from gaitdisc.cohort.person import drawn
+from gaitdisc.cohort.person import draw_one
 from gaitdisc.ingest.study import Conditions, Models, Participant, Study
 from gaitdisc.models.feedforward import FeedForward
 from gaitdisc.models.fourier_ridge import fit_fourier_ridge
@@ -33,14 +33,14 @@ from gaitdisc.response.fit_response import (
     Refit,
     ResponseModels,
     ResponseSettings,
-    covered,
+    coverage,
     fit_linear,
     fit_models,
     fit_network,
     fit_response,
-    held_out_part,
-    refitted_network,
+    refit_network,
     response_bands,
+    split_held_out,
 )
 from gaitdisc.run.run_study import response_settings
 
@@ -60,7 +60,7 @@ def run(who: str, condition: str) -> Parts:
     name = found.get(condition) or RUNS[who][condition]
     study = exotendon(DATA).model_copy(update={"models": Models(angles=ANGLES, emg=(), outputs=ANGLES)})
     trial = gd.read(next((DATA / "exotendon_run").rglob(name)))
-    before, held = held_out_part(processed(trial, study).trajectory, SETTINGS)
+    before, held = split_held_out(processed(trial, study).trajectory, SETTINGS)
     return gait_samples(before, ANGLES)[0], gait_samples(held, ANGLES)[0]
 
 
@@ -71,11 +71,11 @@ def band(quick: bool) -> Iterator[Number]:
     kinds: dict[str, tuple[ResponseModels, Refit]] = {"ridge": (ridge, lambda _, part: fit_linear(part).model)}
     if not quick:
         network = fit_models(nominal, exo, fit=lambda part, progress: fit_network(part, TrainingSettings(), progress))
-        kinds["network, last layer"] = (network, refitted_network)
+        kinds["network, last layer"] = (network, refit_network)
         kinds["network, whole"] = (network, lambda _, part: fit_network(part, TrainingSettings()).model)
     for kind, (models, refit) in kinds.items():
         for model, found in response_bands(models, refit, nominal, exo, held).items():
-            inside, width = covered(held.y, found), np.mean(found[1] - found[0], axis=0) / held.y.std(axis=0)
+            inside, width = coverage(held.y, found), np.mean(found[1] - found[0], axis=0) / held.y.std(axis=0)
             for which, share, wide in zip(ANGLES, inside, width, strict=True):
                 yield Number(f"{model.capitalize()}, {kind} refitted", "covered [%]", which, 100 * float(share))
                 yield Number(f"{model.capitalize()}, {kind} refitted", "width [SD of measured]", which, float(wide))
@@ -87,13 +87,13 @@ def people(quick: bool) -> Iterator[Number]:
     both = Conditions(nominal="nominal", device="exo")
     models = Models(emg=emg, outputs=OUTPUTS)
     for seed in FRESH[: 2 if quick else None]:
-        person = drawn(f"P{seed}", seed, "fm"[seed % 2])
+        person = draw_one(f"P{seed}", seed, "fm"[seed % 2])
         study = Study(conditions=both, models=models, participants=(Participant(id=person.name),))
-        walks = walks_of(person, 20.0 if quick else 60.0).trials
+        walks = make_walks(person, 20.0 if quick else 60.0).trials
         nominal, exo = (processed(walks[word], study).trajectory for word in both.both)
         held = fit_response(nominal, exo, response_settings(study), banded=True).held_out
         for model, found in held.bands.items():
-            inside = 100 * float(covered(held.measured, found).mean())
+            inside = 100 * float(coverage(held.measured, found).mean())
             yield Number(model.capitalize(), "mean of the outputs [%]", str(seed), inside)
 
 

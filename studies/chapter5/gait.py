@@ -24,11 +24,11 @@ from gaitdisc.reconstruction.reconstruct_study import ReconstructionSettings, re
 from gaitdisc.reconstruction.reconstruction import mean_over_people
 from gaitdisc.reconstruction.state_errors import angle_columns
 from gaitdisc.reconstruction.window_model import MASKED, Sensing, WindowModel, fit_reconstructor
-from gaitdisc.reconstruction.windows import Parts, filled, split_within, with_missing
+from gaitdisc.reconstruction.windows import Parts, fill_readings, split_within, with_missing
 from gaitdisc.report.figure import Figure
 from gaitdisc.report.panels import RECONSTRUCTED, Room, decades, draw_box, in_style, legend, panels
 from gaitdisc.report.table import Table
-from gaitdisc.words import counted, listed, number, unit_text
+from gaitdisc.words import counted, listing, number, unit_text
 
 if TYPE_CHECKING:
     pass
@@ -176,7 +176,7 @@ def against_missing(walks: Walks, what: Sensing, channels: Sequence[Channel], ki
 
             def lost(walk: Recording, k: int, done: WindowModel = done, level: float = level) -> Recording:
                 holed = with_missing(walk, what.sensors, level, 0.0, k)
-                return holed if done.kind == MASKED else filled(holed, what.sensors, "last", done.sensor_means)
+                return holed if done.kind == MASKED else fill_readings(holed, what.sensors, "last", done.sensor_means)
 
             test = _disturbed_parts(walks, what, lost).tested()
             rows.append(("missing", level, kind, _rmse(done, test, channels)))
@@ -264,7 +264,7 @@ def sensor_sets_figure(errors: pd.DataFrame, data: str, name: str, rule: str) ->
         f"model; a box over participants and states, median and quartiles, whiskers to the smallest and the largest. "
         f"Split: {rule}. Note the logarithmic axis, and that angles and translations have one each."
     )
-    alt = f"Boxes of the error of {listed(models)} for {counted(shown['sensors'].nunique(), 'sensor set')}."
+    alt = f"Boxes of the error of {listing(models)} for {counted(shown['sensors'].nunique(), 'sensor set')}."
     kept = ["sensors", "participant", "model", "state", "unit", "rmse"]
     return Figure(name, caption, alt, shown[kept], drawn)
 
@@ -292,7 +292,7 @@ def disturbance_figure(found: pd.DataFrame, whose: str) -> Figure:
         f"fitted to walks that lack none, the last known reading stands for a lost one, and masked shred is "
         f"given which are lost."
     )
-    return Figure("disturbed", caption, f"Error of {listed(models)} against noise and missing readings.", found, drawn)
+    return Figure("disturbed", caption, f"Error of {listing(models)} against noise and missing readings.", found, drawn)
 
 
 def _look(model: str) -> dict[str, Any]:

@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 
 from gaitdisc.recording.field import Field
 from gaitdisc.report.figure import Figure
-from gaitdisc.report.panels import RECONSTRUCTED, Look, Room, in_style, legend, lines_of, panels
+from gaitdisc.report.panels import RECONSTRUCTED, Look, Room, in_style, legend, legend_lines, panels
 from gaitdisc.report.table import Table
 from gaitdisc.words import number
 
@@ -56,7 +56,7 @@ def histograms_figure(cells: Sequence[FieldCell], name: str, source: str) -> Fig
         axes.set(title=split, yscale="log", xlabel=f"reconstructed − measured [{cells[0].unit}]")
         axes.yaxis.set_major_formatter(lambda value, _: f"{value:g}")
     row[0].set_ylabel(f"density [1/{cells[0].unit}]" if cells[0].unit != "1" else "density [1]")
-    handles = lines_of(dict(zip(routes, ROUTE_LOOKS, strict=False)))
+    handles = legend_lines(dict(zip(routes, ROUTE_LOOKS, strict=False)))
     drawn.legend(handles=handles, loc="upper center", ncols=min(3, len(routes)), bbox_to_anchor=(0.5, 1.0))
     # the two outermost bins are open-ended, so that their heights are no density
     outside = [float(one["count"].iloc[[0, -1]].sum() / one["count"].sum()) for one in numbers]
@@ -89,7 +89,7 @@ def boxes_figure(cells: Sequence[FieldCell], name: str, source: str, ceilings: d
         axes.set(title=split, ylim=(0, None))
     row[0].set_ylabel("relative L2 error [1]")
     looks = {"the field's own norm": Look("#888888", "-", ""), "POD ceiling": Look("#00875a", (0, (4.0, 1.6)), "")}
-    legend(drawn, lines_of(looks))
+    legend(drawn, legend_lines(looks))
     numbers = field_cells_table(cells)[["split", "route", "run", "relative_l2", "r2"]]
     caption = f"{source}. Each point is one model; box: quartiles, whiskers within 1.5 of their distance."
     return Figure(name, caption, "Boxes of relative errors by split and kind of sensor", numbers, drawn)

@@ -15,9 +15,9 @@ from numpy.typing import NDArray
 
 import gaitdisc as gd
 from gaitdisc.models.trained_network import TrainedNetwork
-from gaitdisc.reconstruction.calibration import calibrated
+from gaitdisc.reconstruction.calibration import calibrate
 from gaitdisc.reconstruction.reconstruct import persistence, phase_average
-from gaitdisc.reconstruction.sensed_walks import SensedWalk, sensed_walks
+from gaitdisc.reconstruction.sensed_walks import SensedWalk, read_walks
 from gaitdisc.reconstruction.window_model import (
     WITHOUT_NETWORK,
     Sensing,
@@ -88,7 +88,7 @@ def real_people() -> list[Person]:
 
 def runner() -> tuple[SensedWalk, tuple[gd.Channel, ...]]:
     """A minute of one runner, and the states that no sagittal sensor measures and that are angles."""
-    walks = sensed_walks(first_person(exotendon(DATA)), SAGITTAL, "natural")
+    walks = read_walks(first_person(exotendon(DATA)), SAGITTAL, "natural")
     angles = [channel for channel in walks.channels if channel.unit == "deg" and channel.name not in SAGITTAL]
     return next(iter(walks.people.values()))[0], tuple(angles)
 
@@ -202,7 +202,7 @@ def with_duration(windows: gd.Samples, walk: gd.Recording) -> gd.Samples:
 
 def simulated(quick: bool, recordings: Path) -> Iterator[Number]:
     """A real walker by models of simulated ones, from right hip, knee and ankle."""
-    people = sensed_walks(cohort(recordings, 3, 24.0), SAGITTAL, "nominal").people
+    people = read_walks(cohort(recordings, 3, 24.0), SAGITTAL, "nominal").people
     what = Sensing(SAGITTAL, TOLD, LAGS, 100.0)
     each = [stacked([what.windows(walk.recording, walk.phi) for walk in walks]) for walks in people.values()]
     fitted, checked = stacked(each[:-1]), each[-1]
@@ -224,7 +224,7 @@ def simulated(quick: bool, recordings: Path) -> Iterator[Number]:
                 roots.append((vectors * np.sqrt(values)) @ vectors.T)
             states = (states - own.mean(axis=0)) @ np.linalg.solve(*roots) + others.mean(axis=0)
             found["latent states aligned"] = done.model.decoded(states)
-        found["linear correction by ten strides' states"] = calibrated(done, few_real.rows(slice(1100)))(test)
+        found["linear correction by ten strides' states"] = calibrate(done, few_real.rows(slice(1100)))(test)
         if kind in WITHOUT_NETWORK:
             found["fitted to the person"] = fit_reconstructor(kind, what, parts.fitted(), parts.checked())(test)
         for name, values in found.items():

@@ -18,7 +18,7 @@ from gaitdisc.reconstruction.window_model import KINDS, Sensing, fit_reconstruct
 from gaitdisc.reconstruction.windows import Lags, Parts, split_within, stacked
 from gaitdisc.recording import Samples
 from gaitdisc.recording.field import Field
-from gaitdisc.saved.unit_folder import DamagedError, read_sealed, sealed_text
+from gaitdisc.saved.unit_folder import DamagedError, read_sealed, seal_text
 from gaitdisc.whole_file import write_whole
 
 from .modes import ENERGY, Modes, Season, fit_modes, season_of
@@ -118,7 +118,7 @@ def error_counts(errors: NDArray[np.floating], sd: float) -> ErrorCounts:
 def save_cells(cells: Sequence[FieldCell], made_by: Mapping[str, Any], path: Path) -> None:
     """Keep cells, so that a study that was stopped goes on."""
     rows = [{**vars(cell), "errors": {k: v.tolist() for k, v in vars(cell.errors).items()}} for cell in cells]
-    write_whole(path, sealed_text({"made_by": dict(made_by), "cells": rows}))
+    write_whole(path, seal_text({"made_by": dict(made_by), "cells": rows}))
 
 
 def load_cells(made_by: Mapping[str, Any], path: Path) -> list[FieldCell] | None:

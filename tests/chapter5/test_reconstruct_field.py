@@ -36,7 +36,7 @@ from manufactured_field import travelling_wave
 
 from gaitdisc.errors import ChannelError, SamplingError
 from gaitdisc.reconstruction.windows import RANDOM, Lags, split_within
-from gaitdisc.saved.unit_folder import sealed_text
+from gaitdisc.saved.unit_folder import seal_text
 from gaitdisc.whole_file import write_whole
 
 WAVE = travelling_wave()
@@ -191,7 +191,7 @@ def test_what_is_kept_is_found_again_unless_other_settings_made_it(tmp_path):
 def test_cells_that_were_saved_under_an_earlier_name_of_their_test_snapshots_are_found_again(tmp_path):
     cells = {**vars(cell(np.zeros(3))), "errors": {"edges": [0.0, 1.0], "counts": [3]}}
     cells["judged"] = cells.pop("tested")
-    write_whole(tmp_path / "a.json", sealed_text({"made_by": {}, "cells": [cells]}))
+    write_whole(tmp_path / "a.json", seal_text({"made_by": {}, "cells": [cells]}))
     assert [one.tested for one in load_cells({}, tmp_path / "a.json") or []] == [20]
 
 
@@ -224,7 +224,7 @@ def test_one_path_is_not_many():
 
 @pytest.mark.slow
 def test_four_modes_need_more_than_one_node(monkeypatch):
-    monkeypatch.setattr("gaitdisc.models.training_settings.epochs_of", lambda *_: 100)  # of two steps each
+    monkeypatch.setattr("gaitdisc.models.training_settings.count_epochs", lambda *_: 100)  # of two steps each
     wave = travelling_wave(200)
     found = latent_sizes(wave, fixed(wave, [30]), FieldTask("wave", Lags(3, 6), energy=0.999), (1, 8), epochs=5)
     assert found["nodes"].tolist() == [1, 8]

@@ -8,13 +8,13 @@ from made_clinic import PROVENANCE, made_person
 from texts import says
 
 from gaitdisc.clinic.clinical_reference import ReferenceLeg
-from gaitdisc.clinic.like_controls import at_leg_length, described, dimensionless_speed, groups_of, like_controls
+from gaitdisc.clinic.like_controls import at_leg_length, described, dimensionless_speed, like_controls, list_groups
 from gaitdisc.clinic.reading import read_beside
-from gaitdisc.clinic.reference import Sample, bands, reference_of, spatiotemporal_limits
+from gaitdisc.clinic.reference import Sample, bands, make_reference, spatiotemporal_limits
 from gaitdisc.clinic.rules import outstanding
 from gaitdisc.errors import SchemaError
 from gaitdisc.processing.leg_curves import LegCurves
-from gaitdisc.saved.provenance import made_now
+from gaitdisc.saved.provenance import provenance_now
 
 ADULT_LEG, CHILD_LEG = 0.9, 0.6
 
@@ -66,11 +66,11 @@ def test_groups_of_ten_by_age_and_speed():
     children, adults = controls(12, age=9, leg_m=0.65), controls(11, first=20)
     slow = controls(10, first=40, froude=0.25)
     few = controls(9, first=60, age=70)
-    groups = groups_of(children + adults + slow + few)
+    groups = list_groups(children + adults + slow + few)
     # the children, all of one speed; the grown at two speeds, and all of them; nobody of nine of 70 years
     assert [len({leg.person for leg in one}) for one in groups] == [12, 10, 11, 21]
     assert says(described(groups[0]), "12 controls", "9", "9 years", "0.45", "0.47")
-    assert groups_of(adults) == []
+    assert list_groups(adults) == []
 
 
 @pytest.mark.parametrize(
@@ -101,7 +101,7 @@ def test_all_of_them_and_why():
 
 def test_what_a_run_knows_of_size_and_age_reaches_the_reading():
     own = [made_person(f"C{k:02d}", leg_m=0.9, age_years=25, seed=5) for k in range(12)]
-    reference = reference_of(own, "controls", made_now({}, 0, {}, ""))
+    reference = make_reference(own, "controls", provenance_now({}, 0, {}, ""))
     person = read_beside(replace(made_person(), leg_m=0.6, age_years=25), reference)
     assert says(person.beside[0], "12 controls", "25", "25 years", "0.41")
     assert person.spatiotemporal["speed_m_per_s"].mean == pytest.approx(1.215 * np.sqrt(0.6 / 0.9))
@@ -144,17 +144,17 @@ def test_of_healthy_pages_one_in_twenty_speaks_of_what_is_beyond_its_limits():
 
 def test_the_first_session_of_a_person_counts_and_no_pseudonym_is_kept():
     people = [made_person("C1", session="before"), made_person("C1", session="after"), made_person("C2")]
-    found = reference_of(people, "controls", PROVENANCE)
+    found = make_reference(people, "controls", PROVENANCE)
     assert found.people("walk") == 2 and len(found.of("walk")) == 4
     assert {leg.person for leg in found.of("walk")} == {1, 2}
     assert found.of("turn") == ()
     assert found.without(1).people("walk") == 1
     with pytest.raises(SchemaError, match=r"controls.*none.*0"):
-        reference_of([], "controls", PROVENANCE)
+        make_reference([], "controls", PROVENANCE)
 
 
 def test_a_band_is_the_mean_and_spread_of_legs():
-    legs = reference_of([made_person(f"C{k}") for k in range(3)], "", PROVENANCE).of("walk")
+    legs = make_reference([made_person(f"C{k}") for k in range(3)], "", PROVENANCE).of("walk")
     band = bands(legs)["knee_flexion"]
     each = np.array([leg.curves["knee_flexion"] for leg in legs])
     np.testing.assert_allclose(band.mean, each.mean(axis=0))

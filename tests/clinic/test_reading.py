@@ -9,15 +9,15 @@ from texts import says
 
 from gaitdisc.clinic.clinical_reference import ReferenceLeg
 from gaitdisc.clinic.reading import (
-    contrast_of,
+    contrast,
     deviation_index,
+    find_profile,
     multiple_correlation,
-    profile_of,
     profile_score,
     read_beside,
     variable_score,
 )
-from gaitdisc.processing.leg_curves import PELVIS, PROFILE, LegCurves, legs_of
+from gaitdisc.processing.leg_curves import PELVIS, PROFILE, LegCurves, make_legs
 from gaitdisc.recording import PERCENT, Finding
 from gaitdisc.saved.provenance import Refusal
 
@@ -79,7 +79,7 @@ def test_a_profile_computed_by_hand():
     """Left: 3 deg in every curve. Right: 4 deg in six, and 99 in the pelvis', which counts once, on the left."""
     left = dict.fromkeys(PROFILE, 3.0)
     right = {name: 99.0 if name in PELVIS else -4.0 for name in PROFILE}
-    profile, why = profile_of({"l": _leg("l", left), "r": _leg("r", right)}, _controls())
+    profile, why = find_profile({"l": _leg("l", left), "r": _leg("r", right)}, _controls())
     assert why == ""
     assert profile.legs["l"].value == pytest.approx(3.0)
     assert profile.legs["r"].value == pytest.approx(np.sqrt((3 * 99**2 + 6 * 16) / 9))
@@ -101,7 +101,7 @@ def test_the_reference_has_a_spread_of_its_own_each_control_against_the_others()
         for k, at in enumerate((0.0, 0.0, 3.0))
         for side in "lr"
     ]
-    profile, _ = profile_of({"l": _leg("l", dict.fromkeys(PROFILE, 1.0))}, legs)
+    profile, _ = find_profile({"l": _leg("l", dict.fromkeys(PROFILE, 1.0))}, legs)
     score = profile.legs["l"]
     assert score.reference_mean == pytest.approx(2.0)
     assert score.people == 3
@@ -111,17 +111,17 @@ def test_the_reference_has_a_spread_of_its_own_each_control_against_the_others()
 def test_why_there_is_no_profile():
     controls = _controls()
     bare = {name: 1.0 for name in PROFILE if name != "foot_progression"}
-    assert "the recording lacks foot progression" in profile_of({"l": _leg("l", bare)}, controls)[1]
-    assert says(profile_of({"l": _leg("l", bare, 43.0)}, controls)[1], "the pelvis turns", "43 deg")
+    assert "the recording lacks foot progression" in find_profile({"l": _leg("l", bare)}, controls)[1]
+    assert says(find_profile({"l": _leg("l", bare, 43.0)}, controls)[1], "the pelvis turns", "43 deg")
     without = [replace(leg, curves={"knee_flexion": np.zeros(101)}) for leg in controls]
-    assert "the reference lacks pelvis tilt" in profile_of({"l": _leg("l", dict.fromkeys(PROFILE, 1.0))}, without)[1]
+    assert "the reference lacks pelvis tilt" in find_profile({"l": _leg("l", dict.fromkeys(PROFILE, 1.0))}, without)[1]
 
 
 def test_a_made_person_of_the_controls_lies_within_their_spread():
-    profile, _ = profile_of(legs_of(made_person("P07", seed=5)), made_controls().of("walk"))
+    profile, _ = find_profile(make_legs(made_person("P07", seed=5)), made_controls().of("walk"))
     assert abs(profile.both.value - profile.both.reference_mean) < 4 * profile.both.reference_sd
-    stiff = legs_of(made_person("P07", seed=5, changed={"knee_angle_l": -30.0}))
-    assert profile_of(stiff, made_controls().of("walk"))[0].variables["knee_flexion", "l"].value > 25
+    stiff = make_legs(made_person("P07", seed=5, changed={"knee_angle_l": -30.0}))
+    assert find_profile(stiff, made_controls().of("walk"))[0].variables["knee_flexion", "l"].value > 25
 
 
 def test_controls_are_100_with_a_standard_deviation_of_10():
@@ -135,7 +135,7 @@ def test_controls_are_100_with_a_standard_deviation_of_10():
 
 
 def test_whoever_walks_otherwise_is_far_below_and_few_controls_give_none():
-    stiff = legs_of(made_person("P01", changed={"knee_angle_l": -30.0, "hip_flexion_l": 20.0}))
+    stiff = make_legs(made_person("P01", changed={"knee_angle_l": -30.0, "hip_flexion_l": 20.0}))
     assert deviation_index(stiff, made_controls(32).of("walk"))[0]["l"] < 80
     index, why = deviation_index(stiff, made_controls(6).of("walk"))
     assert index == {} and says(why, "30 controls", "6")
@@ -157,7 +157,7 @@ def test_where_the_knee_bends_more_after_is_found_and_nothing_on_the_other_side(
     bump = 15.0 * ((PERCENT >= 65) & (PERCENT <= 80))
     before = made_person("P01", session="before", each=8, spread=0.0)
     after = made_person("P01", session="after", each=8, spread=0.0, seed=1, changed={"knee_angle_l": bump})
-    found = contrast_of(read_beside(before, None), read_beside(after, None))
+    found = contrast(read_beside(before, None), read_beside(after, None))
     large = [one for one in found.spans if one.matters]
     assert [(one.variable, one.side) for one in large] == [("knee_flexion", "l")]
     assert (large[0].first, large[0].last) == (65, 80)
@@ -167,6 +167,6 @@ def test_where_the_knee_bends_more_after_is_found_and_nothing_on_the_other_side(
 
 
 def test_few_cycles_are_not_tested_and_the_reason_is_said():
-    found = contrast_of(_reading("before", each=2), _reading("after", each=2))
+    found = contrast(_reading("before", each=2), _reading("after", each=2))
     assert found.spans == () and found.tested == {}
     assert says(found.untested["l"], "6 units", "2")

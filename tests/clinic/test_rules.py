@@ -5,9 +5,9 @@ import pytest
 from made_clinic import ANKLE, made_controls, made_person
 from texts import says
 
-from gaitdisc.clinic.rules import Rule, outstanding, part_of, rules, rules_in
+from gaitdisc.clinic.rules import Rule, find_part, outstanding, rules, rules_in
 from gaitdisc.errors import SchemaError
-from gaitdisc.processing.leg_curves import BY_NAME, legs_of
+from gaitdisc.processing.leg_curves import BY_NAME, make_legs
 from gaitdisc.processing.pooled_cycles import SPATIOTEMPORAL
 from gaitdisc.recording import PERCENT
 
@@ -33,7 +33,7 @@ def test_no_rule_is_a_diagnosis():
      ("swing", 60, 100), ("mid swing", 73, 87), ("cycle", 0, 100)],
 )  # fmt: skip
 def test_parts_of_a_cycle_with_foot_off_at_60_percent(part, first, last):
-    found = part_of(part, 60.0)
+    found = find_part(part, 60.0)
     assert (found.start, found.stop - 1) == (first, last)
 
 
@@ -65,7 +65,7 @@ def reference():
 
 def test_a_knee_that_bends_little_in_swing_is_found_with_its_number_limits_and_cycles(reference):
     person = made_person("P01", spread=0.0, changed={"knee_angle_l": -0.45 * 55 * (PERCENT > 55)})
-    numbers, why = outstanding(legs_of(person), reference)
+    numbers, why = outstanding(make_legs(person), reference)
     first, noted = numbers[0], [one for one in numbers if one.words]
     assert (first.words, first.side, why) == ("reduced knee flexion in swing", "l", "")
     assert first.value == pytest.approx(60 - 0.45 * 55, abs=0.5)
@@ -77,28 +77,28 @@ def test_a_knee_that_bends_little_in_swing_is_found_with_its_number_limits_and_c
 
 def test_a_foot_that_drops_in_swing_is_found(reference):
     person = made_person("P01", spread=0.0, changed={"ankle_angle_r": -15.0 * (PERCENT > 60)})
-    noted, _ = outstanding(legs_of(person), reference)
+    noted, _ = outstanding(make_legs(person), reference)
     assert ("reduced dorsiflexion in swing", "r") in [(one.words, one.side) for one in noted]
     assert ANKLE[80] == pytest.approx(0.0, abs=0.1)
 
 
 def test_of_forty_more_healthy_people_few_pages_say_anything(reference):
     """5 % of pages are allowed; of 40 more than 6 would have a chance of 1 %."""
-    pages = [outstanding(legs_of(made_person(f"H{k:02d}", seed=9)), reference)[0] for k in range(40)]
+    pages = [outstanding(make_legs(made_person(f"H{k:02d}", seed=9)), reference)[0] for k in range(40)]
     assert sum(any(one.words for one in page) for page in pages) <= 6
 
 
 def test_what_is_beyond_the_limits_by_less_than_matters_is_not_spoken_of():
     alike = made_controls(20).of("walk")
     rule = {"name": "a", "variable": "knee_flexion", "part": "contact", "take": "mean", "least": 400.0, "more": "more"}
-    person = legs_of(made_person("P01", changed={"knee_angle_l": 300.0}))
+    person = make_legs(made_person("P01", changed={"knee_angle_l": 300.0}))
     assert [one.words for one in outstanding(person, alike, rules_in({"rules": [rule]}))[0]] == ["", ""]
     found = outstanding(person, alike, rules_in({"rules": [{**rule, "least": 200.0}]}))[0]
     assert [(one.words, one.side) for one in found] == [("more", "l"), ("", "r")]
 
 
 def test_too_few_controls_say_nothing_in_words():
-    numbers, why = outstanding(legs_of(made_person()), made_controls(4).of("walk"))
+    numbers, why = outstanding(make_legs(made_person()), made_controls(4).of("walk"))
     assert numbers == ()
     assert says(why, "5 people", "more", "4 people")
 
@@ -107,11 +107,11 @@ def test_a_number_that_prints_as_the_limit_is_not_beyond_it(reference):
     """0.3 deg below the limit is said only where the limit itself prints as a larger number."""
     rule = {"name": "a", "variable": "knee_flexion", "part": "swing", "take": "max", "least": 5.0, "less": "less"}
     plain, table = made_person("P01", spread=0.0), rules_in({"rules": [rule]})
-    usual = {one.side: one for one in outstanding(legs_of(plain), reference, table)[0]}["l"]
+    usual = {one.side: one for one in outstanding(make_legs(plain), reference, table)[0]}["l"]
     for shown, words in ((round(usual.limits.low), ""), (round(usual.limits.low) - 1, "less")):
         person = made_person("P01", spread=0.0, changed={"knee_angle_l": shown - usual.value})
-        found = {one.side: one for one in outstanding(legs_of(person), reference, table)[0]}["l"]
+        found = {one.side: one for one in outstanding(make_legs(person), reference, table)[0]}["l"]
         assert (round(found.value), found.words) == (shown, words)
     edge = made_person("P01", spread=0.0, changed={"knee_angle_l": usual.limits.low - 0.02 - usual.value})
-    found = {one.side: one for one in outstanding(legs_of(edge), reference, table)[0]}["l"]
+    found = {one.side: one for one in outstanding(make_legs(edge), reference, table)[0]}["l"]
     assert found.value < found.limits.low and (found.words == "") == (round(found.value) == round(found.limits.low))

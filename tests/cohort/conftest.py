@@ -19,4 +19,4 @@ def nominal(person):
 
 @pytest.fixture(scope="session")
 def exo(person):
-    return walked(person.adapted_to(Spring()), Spring(), 40.0, seed=5)
+    return walked(person.adapt_to(Spring()), Spring(), 40.0, seed=5)

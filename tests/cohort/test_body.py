@@ -5,17 +5,17 @@ import pytest
 
 from gaitdisc.cohort.body import (
     GRAVITY,
+    add_ground_force,
     ankle_place,
     bias,
     cycle_rate,
     inertia,
     joint_moments,
-    leg_of,
-    moved_by_ground,
+    make_leg,
     solved,
 )
 
-LEG = leg_of(1.69, 66.5)
+LEG = make_leg(1.69, 66.5)
 
 
 def energy(psi, rate):
@@ -64,7 +64,7 @@ def test_solved_is_the_linear_solution():
 
 def test_the_ground_force_does_the_work_of_its_point():
     psi, force, arm, q = np.array([0.4, -0.1, 0.2]), np.array([30.0, 700.0]), np.array([0.1, -0.05]), np.zeros(3)
-    moved_by_ground(LEG, psi, force, arm, q)
+    add_ground_force(LEG, psi, force, arm, q)
     tiny = 1e-6
     for link in range(3):
         turned = psi.copy()
@@ -100,7 +100,7 @@ def test_cycle_rate_twice_is_the_second_derivative():
 
 
 def test_a_taller_person_has_longer_and_heavier_legs():
-    tall = leg_of(1.85, 80.0)
+    tall = make_leg(1.85, 80.0)
     assert tall.thigh_m > LEG.thigh_m
     assert tall.i1 > LEG.i1
-    assert leg_of(1.69, 66.5, 0.8).foot_kg == pytest.approx(LEG.foot_kg + 0.8)
+    assert make_leg(1.69, 66.5, 0.8).foot_kg == pytest.approx(LEG.foot_kg + 0.8)

@@ -5,19 +5,19 @@ import json
 import numpy as np
 import pytest
 
-from gaitdisc.cohort.cohort import CALIBRATION_SEED, CHANGES, HIDDEN, REPORTED_SEED, the_twelve, walked_cohort, walks_of
+from gaitdisc.cohort.cohort import CALIBRATION_SEED, CHANGES, HIDDEN, REPORTED_SEED, make_walks, the_twelve, walk_cohort
 from gaitdisc.cohort.habit import BURSTS, STANCE, activity, habitual
 from gaitdisc.cohort.leg_path import habit_angles
-from gaitdisc.cohort.measurement import measured
+from gaitdisc.cohort.measurement import measure
 from gaitdisc.cohort.other_people import PEOPLE, somebody, walking_with
-from gaitdisc.cohort.person import GROUPS, SYNERGIES, Spring, drawn
+from gaitdisc.cohort.person import GROUPS, SYNERGIES, Spring, draw_one
 from gaitdisc.cohort.walk import walked
 from gaitdisc.errors import SchemaError
 from gaitdisc.ingest.study import Conditions, Models, Participant, Quality, Study
 from gaitdisc.processing.process import processed
 from gaitdisc.processing.samples import gait_samples
 from gaitdisc.recording.trial import LEG_OF_STATURE
-from gaitdisc.response.fit_response import ResponseSettings, fit_linear, held_out_part
+from gaitdisc.response.fit_response import ResponseSettings, fit_linear, split_held_out
 from gaitdisc.statistics.r2 import r2
 
 OUTPUTS = ("hip_flexion_r", "knee_angle_r", "ankle_angle_r")
@@ -36,9 +36,9 @@ def study(outputs, emg, late_change="report"):
 
 
 def parts(walk, outputs, emg=()):
-    trajectory = processed(measured(walk, "walk", "nominal"), study(outputs, emg)).trajectory
+    trajectory = processed(measure(walk, "walk", "nominal"), study(outputs, emg)).trajectory
     settings = ResponseSettings(outputs, held_out_s=0.125 * len(walk.slow_s) / 100)
-    return [gait_samples(part, outputs)[0] for part in held_out_part(trajectory, settings)]
+    return [gait_samples(part, outputs)[0] for part in split_held_out(trajectory, settings)]
 
 
 def nominal_on_both(person, walker, device, duration_s, seed, outputs=OUTPUTS, emg=()):
@@ -59,7 +59,7 @@ def test_six_women_and_six_men_other_than_those_of_the_calibration():
 
 
 def test_walks_of_a_person_are_two_trials_and_a_truth_that_is_plain():
-    walks = walks_of(the_twelve()[0], 12.0)
+    walks = make_walks(the_twelve()[0], 12.0)
     assert [trial.condition for trial in walks.trials.values()] == ["nominal", "exo"]
     assert {trial.subject for trial in walks.trials.values()} == {"W01"}
     truth = json.loads(json.dumps(walks.truth))
@@ -72,18 +72,18 @@ def test_walks_of_a_person_are_two_trials_and_a_truth_that_is_plain():
 
 @pytest.mark.parametrize("hidden", HIDDEN)
 def test_effects_can_be_hidden(hidden):
-    truth = walks_of(the_twelve()[0], 6.0, hidden).truth
+    truth = make_walks(the_twelve()[0], 6.0, hidden).truth
     assert truth["hidden"] == hidden
     assert truth["spring_nm_per_deg"] == {"spring": 5.0, "scaled moment": 3.0}.get(hidden, 0.0)
 
 
 def test_an_unknown_effect_is_refused():
     with pytest.raises(SchemaError, match="spring, weak plantarflexor"):
-        walks_of(the_twelve()[0], 6.0, "gremlin")
+        make_walks(the_twelve()[0], 6.0, "gremlin")
 
 
 def test_the_cohort_comes_one_person_at_a_time():
-    names = [walks.person.name for walks, _ in zip(walked_cohort(4.0), range(2), strict=False)]
+    names = [walks.person.name for walks, _ in zip(walk_cohort(4.0), range(2), strict=False)]
     assert names == ["W01", "W02"]
 
 
@@ -91,7 +91,7 @@ def test_the_cohort_comes_one_person_at_a_time():
 def test_who_changes_late_is_found_by_the_quality_checks_alone():
     kinds = {}
     for number in (CHANGES, CHANGES + 1):
-        trial = walks_of(the_twelve()[number], 120.0).trials["exo"]
+        trial = make_walks(the_twelve()[number], 120.0).trials["exo"]
         walk = processed(trial, study(OUTPUTS, ()))
         kinds[number] = [f.severity for f in walk.findings if f.kind == "late change"]
     assert kinds == {CHANGES: ["warning"], CHANGES + 1: []}
@@ -104,7 +104,7 @@ def test_no_spring_and_no_adaptation_is_no_discrepancy(person):
 
 
 def test_a_spring_is_a_discrepancy_at_the_ankle(person):
-    learner = person.adapted_to(Spring())
+    learner = person.adapt_to(Spring())
     own, other = nominal_on_both(person, learner, Spring(), 120.0, 31)
     assert other[2] < own[2] - 0.02
 
@@ -134,14 +134,14 @@ def test_slack_moves_the_engagement():
 
 
 def test_a_seed_is_a_person():
-    one, same, other = drawn("A", 5, "f"), drawn("B", 5, "f"), drawn("A", 6, "f")
+    one, same, other = draw_one("A", 5, "f"), draw_one("B", 5, "f"), draw_one("A", 6, "f")
     assert (one.height_m, one.mass_kg, one.stride_s) == (same.height_m, same.mass_kg, same.stride_s)
     assert np.array_equal(one.style.wave_deg, same.style.wave_deg)
     assert one.height_m != other.height_m
 
 
 def test_a_population_is_the_dissertations():
-    people = [drawn("A", seed, "fm"[seed % 2]) for seed in range(400)]
+    people = [draw_one("A", seed, "fm"[seed % 2]) for seed in range(400)]
     for name, mean, spread in [
         ("age_years", 23.9, 1.8),
         ("height_m", 1.69, 0.10),
@@ -155,7 +155,7 @@ def test_a_population_is_the_dissertations():
 
 def test_cadence_is_that_of_schwartz_at_their_speed():
     for seed in range(20):
-        person = drawn("A", seed, "m")
+        person = draw_one("A", seed, "m")
         leg = LEG_OF_STATURE * person.height_m
         cadence = 2 / person.stride_s * np.sqrt(leg / 9.81)
         expected = 0.565 * np.sqrt(person.dimensionless_speed / 0.429)
@@ -163,14 +163,14 @@ def test_cadence_is_that_of_schwartz_at_their_speed():
 
 
 def test_adaptation_can_be_taken_away_or_set():
-    person = drawn("A", 5, "f")
+    person = draw_one("A", 5, "f")
     assert person.learnt is None
     spring = Spring(5.0)
-    assert person.adapted_to(spring).learnt == spring
+    assert person.adapt_to(spring).learnt == spring
     assert person.unadapted().adaptation.relief == 0.0
     assert not person.unadapted().adaptation.habit_deg.any()
-    assert person.relieved(0.3).adaptation.relief == 0.3
-    assert person.relieved(0.3).adaptation.effort is person.adaptation.effort
+    assert person.relieve(0.3).adaptation.relief == 0.3
+    assert person.relieve(0.3).adaptation.effort is person.adaptation.effort
 
 
 GRID = np.linspace(0.0, 1.0, 501)
@@ -240,7 +240,7 @@ WALK_S = 12.0
 @pytest.fixture(scope="module")
 def walks():
     """A usual person and each of the others, of one seed."""
-    people = {"usual": drawn("usual", 1, "f")} | {kind: somebody(kind) for kind in PEOPLE}
+    people = {"usual": draw_one("usual", 1, "f")} | {kind: somebody(kind) for kind in PEOPLE}
     return {kind: walked(person, None, WALK_S, 3) for kind, person in people.items()}
 
 

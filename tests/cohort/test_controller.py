@@ -7,9 +7,9 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from gaitdisc.cohort.body import cycle_rate, leg_of
+from gaitdisc.cohort.body import cycle_rate, make_leg
 from gaitdisc.cohort.cohort import the_twelve
-from gaitdisc.cohort.controller import COLUMNS, engaged_moment, learnt_table
+from gaitdisc.cohort.controller import COLUMNS, learnt_table, spring_moment
 from gaitdisc.cohort.leg_path import (
     PHASES,
     belt_held,
@@ -18,42 +18,42 @@ from gaitdisc.cohort.leg_path import (
     habit_angles,
     habitual_force,
     hip_motion,
-    pressed_point,
+    map_phase,
     pressure_centre,
-    staged,
+    pressure_point,
     thigh_shank_foot,
 )
-from gaitdisc.cohort.muscles import capacities, cycle_activation, strength_of
-from gaitdisc.cohort.person import Spring, drawn
+from gaitdisc.cohort.muscles import capacities, cycle_activation, find_strength
+from gaitdisc.cohort.person import Spring, draw_one
 
 
 def test_the_table_is_whole_and_closes():
-    table = learnt_table(drawn("A", 1, "f"), 0)
+    table = learnt_table(draw_one("A", 1, "f"), 0)
     assert table.shape == (PHASES + 1, COLUMNS.width)
     assert np.isfinite(table).all()
     assert np.array_equal(table[0], table[-1])
 
 
 def test_a_slack_spring_teaches_nothing():
-    person = drawn("A", 1, "f")
-    assert np.array_equal(learnt_table(person, 0), learnt_table(person.adapted_to(Spring(0.0)), 0))
+    person = draw_one("A", 1, "f")
+    assert np.array_equal(learnt_table(person, 0), learnt_table(person.adapt_to(Spring(0.0)), 0))
 
 
 def test_relief_lets_soleus_rest():
-    person = drawn("A", 1, "f").relieved(0.6)
-    person = type(person)(**{**vars(person), "adaptation": person.unadapted().relieved(0.6).adaptation})
+    person = draw_one("A", 1, "f").relieve(0.6)
+    person = type(person)(**{**vars(person), "adaptation": person.unadapted().relieve(0.6).adaptation})
     soleus = COLUMNS.excitation + 4
     before = learnt_table(person, 0)[:, soleus]
-    after = learnt_table(person.adapted_to(Spring(5.0)), 0)[:, soleus]
+    after = learnt_table(person.adapt_to(Spring(5.0)), 0)[:, soleus]
     assert after.max() < 0.95 * before.max()
     assert after.mean() < 0.9 * before.mean()
     assert np.all(after[:500] <= before[:500] + 0.005)  # while the spring pulls
 
 
 def test_the_spring_engages_where_it_fits():
-    person = drawn("A", 1, "f")
+    person = draw_one("A", 1, "f")
     psi = np.radians([[0.0, 0.0, person.engaged_deg + 4.0], [0.0, 0.0, person.engaged_deg - 4.0]])
-    assert engaged_moment(Spring(5.0), person, psi) == pytest.approx([-20.0, 0.0])
+    assert spring_moment(Spring(5.0), person, psi) == pytest.approx([-20.0, 0.0])
 
 
 def test_muscles_cause_the_moments():
@@ -62,7 +62,7 @@ def test_muscles_cause_the_moments():
         table = learnt_table(person, 0)[:-1]
         psi, others = table[:, :3], table[:, COLUMNS.others : COLUMNS.others + 3]
         step_s = person.stride_s / PHASES
-        strength = strength_of(person.mass_kg, person.style.strength[0])
+        strength = find_strength(person.mass_kg, person.style.strength[0])
         rate = cycle_rate(psi, step_s)
         joint = [np.column_stack([a[:, 0], a[:, 0] - a[:, 1], a[:, 2] - a[:, 1]]) for a in (psi, rate)]
         activation = cycle_activation(table[:, COLUMNS.excitation : COLUMNS.others], step_s, 3)
@@ -83,15 +83,15 @@ STANDS = (PHASE > 0.10) & (PHASE < 0.48)
 
 
 def sole_speed(person, psi):
-    leg = leg_of(person.height_m, person.mass_kg)
-    path = contact_path(leg, psi, pressure_centre(staged(person, PHASE), leg.sole_m)) / person.stride_s
+    leg = make_leg(person.height_m, person.mass_kg)
+    path = contact_path(leg, psi, pressure_centre(map_phase(person, PHASE), leg.sole_m)) / person.stride_s
     return (path + hip_motion(person, PHASE))[STANDS]
 
 
 @pytest.mark.parametrize("seed", range(6))
 def test_a_standing_foot_goes_with_the_belt(seed):
-    person = drawn("A", seed, "fm"[seed % 2])
-    leg = leg_of(person.height_m, person.mass_kg)
+    person = draw_one("A", seed, "fm"[seed % 2])
+    leg = make_leg(person.height_m, person.mass_kg)
     free = thigh_shank_foot(habit_angles(person, 0, PHASE))
     held = belt_held(person, leg, free, hip_motion(person, PHASE))
     assert sole_speed(person, held)[:, 0] == pytest.approx(-person.speed_m_per_s, rel=0.03)
@@ -99,7 +99,7 @@ def test_a_standing_foot_goes_with_the_belt(seed):
 
 
 def test_the_published_curves_nearly_hold_the_belt_themselves():
-    person = drawn("A", 2, "f")
+    person = draw_one("A", 2, "f")
     free = thigh_shank_foot(habit_angles(person, 0, PHASE))
     assert sole_speed(person, free)[:, 0].mean() == pytest.approx(-person.speed_m_per_s, rel=0.13)
 
@@ -110,13 +110,13 @@ def test_thigh_shank_foot_adds_up():
 
 
 def test_a_hip_comes_back_after_a_stride():
-    assert hip_motion(drawn("A", 1, "f"), PHASE).mean(axis=0) == pytest.approx([0.0, 0.0], abs=1e-9)
+    assert hip_motion(draw_one("A", 1, "f"), PHASE).mean(axis=0) == pytest.approx([0.0, 0.0], abs=1e-9)
 
 
 @given(st.integers(0, 500))
 def test_each_persons_stance_ends_where_it_ends_in_them(seed):
-    person = drawn("A", seed, "f")
-    stage = staged(person, PHASE)
+    person = draw_one("A", seed, "f")
+    stage = map_phase(person, PHASE)
     assert stage[0] == 0.0
     assert np.all(np.diff(stage) > 0)
     up = habitual_force(stage, person.dimensionless_speed)[:, 1] * person.mass_kg * 9.81
@@ -125,8 +125,8 @@ def test_each_persons_stance_ends_where_it_ends_in_them(seed):
 
 
 def test_a_pressed_point_turns_with_the_foot():
-    leg = leg_of(1.7, 70.0)
-    flat, upright = (pressed_point(leg, np.array([angle]), np.array([0.1]))[0] for angle in (0.0, np.pi / 2))
+    leg = make_leg(1.7, 70.0)
+    flat, upright = (pressure_point(leg, np.array([angle]), np.array([0.1]))[0] for angle in (0.0, np.pi / 2))
     assert flat == pytest.approx([0.1, -leg.ankle_m])
     assert upright == pytest.approx([leg.ankle_m, 0.1])
 

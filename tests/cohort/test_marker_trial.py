@@ -9,11 +9,11 @@ from gaitdisc.cohort.marker_trial import STANDS_N, belts, marker_trial, overgrou
 from gaitdisc.cohort.walk import walked
 from gaitdisc.ingest.c3d_writing import write_c3d
 from gaitdisc.ingest.reading import read_trial
-from gaitdisc.kinematics.motion import moved_body
+from gaitdisc.kinematics.motion import move_body
 from gaitdisc.kinetics.body_inertia import Person
 from gaitdisc.kinetics.joint_moments import KineticsSettings
 from gaitdisc.kinetics.trial_kinetics import trial_kinetics
-from gaitdisc.processing.markers_to_moments import foot_paths_of
+from gaitdisc.processing.markers_to_moments import find_foot_paths
 from gaitdisc.recording.arrays import runs
 
 JOINTS = {"hip_flexion": 0, "hip_adduction": 1, "hip_rotation": 2, "knee_angle": 3, "ankle_angle": 4}
@@ -43,7 +43,7 @@ def off(moved, walk):
 def test_without_skin_the_angles_are_those_of_the_bones(walk, monkeypatch):
     monkeypatch.setattr(laboratory, "SKIN_M", dict.fromkeys(laboratory.SKIN_M, 0.0))
     trial, static = marker_trial(walk, "walk", "nominal"), standing(walk.person)
-    moved = moved_body(trial.stream("markers"), static.stream("markers"))
+    moved = move_body(trial.stream("markers"), static.stream("markers"))
     for name, (mean, spread) in off(moved, walk).items():
         assert abs(mean) < 0.1, name
         assert spread < 0.3, name
@@ -51,7 +51,7 @@ def test_without_skin_the_angles_are_those_of_the_bones(walk, monkeypatch):
 
 def test_skin_spoils_rotation_more_than_flexion(files, walk):
     """Skin spoils rotation of the hip by several degrees, flexion of knee and hip by one or two (Leardini 2005)."""
-    moved = moved_body(files[0].stream("markers"), files[1].stream("markers"))
+    moved = move_body(files[0].stream("markers"), files[1].stream("markers"))
     found = {name: np.hypot(*one) for name, one in off(moved, walk).items()}
     assert 0.2 < found["knee_angle"] < 4.0
     assert found["ankle_angle"] < 2.0
@@ -70,9 +70,9 @@ def test_skin_moves_a_thighs_markers_by_5_to_15_mm(walk, monkeypatch):
 
 def test_moments_by_newton_and_euler_are_those_that_walked(files, walk):
     read, static = files
-    moved = moved_body(read.stream("markers"), static.stream("markers"))
+    moved = move_body(read.stream("markers"), static.stream("markers"))
     person = Person(walk.person.mass_kg, "", walk.person.height_m)
-    found = trial_kinetics(read, moved.poses, foot_paths_of(moved), person, KineticsSettings())
+    found = trial_kinetics(read, moved.poses, find_foot_paths(moved), person, KineticsSettings())
     assert sum(step.clean for step in found.steps) >= 8
     for joint, (column, alike) in {"ankle_angle": (2, 0.97), "knee_angle": (1, 0.8), "hip_flexion": (0, 0.8)}.items():
         seen = found.moments[f"{joint}_r_moment"]
@@ -136,9 +136,9 @@ def test_moments_of_the_step_are_those_of_the_belts(floor, still, person):
     static = standing(person).stream("markers")
 
     def ankle(trial):
-        moved = moved_body(trial.stream("markers"), static)
+        moved = move_body(trial.stream("markers"), static)
         who = Person(person.mass_kg, person.sex, person.height_m)
-        found = trial_kinetics(trial, moved.poses, foot_paths_of(moved), who, KineticsSettings()).moments
+        found = trial_kinetics(trial, moved.poses, find_foot_paths(moved), who, KineticsSettings()).moments
         return found.time, found["ankle_angle_r_moment"]
 
     (time, own), (belt_time, belt) = ankle(floor), ankle(still)

@@ -5,17 +5,17 @@ import pytest
 from scipy.signal import butter, sosfiltfilt
 
 from gaitdisc.cohort.habit import habitual
-from gaitdisc.cohort.measurement import BAND_HZ, CROSS_TALK, DELAY_S, FLOOR_V, RANGE_V, electrode_volts, heard, measured
-from gaitdisc.cohort.person import JOINTS, MUSCLES, drawn
+from gaitdisc.cohort.measurement import BAND_HZ, CROSS_TALK, DELAY_S, FLOOR_V, RANGE_V, electrode_volts, heard, measure
+from gaitdisc.cohort.person import JOINTS, MUSCLES, draw_one
 from gaitdisc.cohort.walk import QUICK_HZ
 from gaitdisc.signals.channel_quality import channel_findings
 from gaitdisc.signals.contacts import force_contacts
-from gaitdisc.signals.emg import ENVELOPE_HZ, emg_findings, enveloped
+from gaitdisc.signals.emg import ENVELOPE_HZ, emg_findings, envelopes
 
 
 @pytest.fixture(scope="module")
 def trials(nominal, exo):
-    return {"nominal": measured(nominal, "C_nominal", "nominal"), "exo": measured(exo, "C_exo", "exo")}
+    return {"nominal": measure(nominal, "C_nominal", "nominal"), "exo": measure(exo, "C_exo", "exo")}
 
 
 def test_a_laboratorys_channels_and_rates(trials):
@@ -61,7 +61,7 @@ def test_raw_emg_lives_and_fits_the_amplifier(trials):
 
 def test_the_envelope_follows_the_excitation(trials, nominal):
     """Through the envelope's own low-pass, and as much earlier as the electromechanical delay."""
-    envelope = enveloped(trials["nominal"].stream("emg"))
+    envelope = envelopes(trials["nominal"].stream("emg"))
     low = butter(4, ENVELOPE_HZ, fs=QUICK_HZ, output="sos")
     driven = np.roll(sosfiltfilt(low, nominal.excitation[:, 0], axis=0), -round(DELAY_S * QUICK_HZ), axis=0)
     for muscle, name in enumerate(MUSCLES):
@@ -75,21 +75,21 @@ def test_quality_checks_find_nothing_in_a_clean_walk(trials):
 
 
 def test_emg_can_be_late(nominal):
-    late = measured(nominal, "C", "exo", emg_late_s=0.05).stream("emg")
-    timely = measured(nominal, "C", "exo").stream("emg")
-    first = nominal.mean_stride(enveloped(timely)["emg_ta_r"])
-    second = nominal.mean_stride(enveloped(late)["emg_ta_r"])
+    late = measure(nominal, "C", "exo", emg_late_s=0.05).stream("emg")
+    timely = measure(nominal, "C", "exo").stream("emg")
+    first = nominal.mean_stride(envelopes(timely)["emg_ta_r"])
+    second = nominal.mean_stride(envelopes(late)["emg_ta_r"])
     lags = [np.dot(np.roll(first - first.mean(), k), second - second.mean()) for k in range(12)]
     assert int(np.argmax(lags)) == pytest.approx(0.05 / nominal.person.stride_s * 100, abs=1.5)
 
 
 def test_the_same_walk_measured_again_is_the_same(trials, nominal):
-    again = measured(nominal, "C_nominal", "nominal")
+    again = measure(nominal, "C_nominal", "nominal")
     for key, stream in again.streams.items():
         assert np.array_equal(stream.values, trials["nominal"].stream(key).values)
 
 
-PERSON = drawn("A", 5, "f")
+PERSON = draw_one("A", 5, "f")
 TA, SOL, GAS = (MUSCLES.index(name) for name in ("emg_ta", "emg_sol", "emg_gas"))
 
 

@@ -4,28 +4,28 @@ import numpy as np
 import pytest
 from scipy.optimize import minimize
 
-from gaitdisc.cohort.controller import shared
+from gaitdisc.cohort.controller import share
 from gaitdisc.cohort.muscles import (
     ECCENTRIC,
     FALL_S,
     RISE_S,
-    activated,
+    activate,
     capacities,
     cycle_activation,
     cycle_excitation,
+    find_strength,
     force_at_speed,
     muscle_moments,
-    strength_of,
 )
 from gaitdisc.cohort.person import GROUPS
 
-STRENGTH = strength_of(70.0)
+STRENGTH = find_strength(70.0)
 
 
 def stepped(start, excitation, seconds, step_s=1e-5):
     level = start
     for _ in range(round(seconds / step_s)):
-        level = activated(excitation, level, step_s)
+        level = activate(excitation, level, step_s)
     return level
 
 
@@ -106,7 +106,7 @@ def test_cycle_activation_is_periodic_and_lags():
     excitation = np.repeat(np.maximum(0.05, np.sin(2 * np.pi * phase))[:, None], 7, axis=1)
     activation = cycle_activation(excitation, step, 3)
     assert activation[:, 0].argmax() > excitation[:, 0].argmax()
-    last = activated(excitation[-1, 0], activation[-1, 0], step)
+    last = activate(excitation[-1, 0], activation[-1, 0], step)
     assert last == pytest.approx(activation[0, 0], abs=1e-6)
 
 
@@ -116,14 +116,14 @@ PHASES = 40
 @pytest.fixture(scope="module")
 def task():
     rng = np.random.default_rng(2)
-    capacity = capacities(strength_of(70.0), 0.2 * rng.normal(size=(PHASES, 3)), rng.normal(size=(PHASES, 3)))
+    capacity = capacities(find_strength(70.0), 0.2 * rng.normal(size=(PHASES, 3)), rng.normal(size=(PHASES, 3)))
     wanted = rng.normal(size=(PHASES, 3)) * (25.0, 20.0, 25.0)
     return wanted, capacity, rng.uniform(0.02, 0.2, (PHASES, 9)), np.full((PHASES, 9), 0.02), rng.uniform(1, 3, 9)
 
 
 def test_the_moments_are_met_within_the_bounds(task):
     wanted, capacity, habit, least, dear = task
-    found = shared(wanted, capacity, habit, least, dear)
+    found = share(wanted, capacity, habit, least, dear)
     assert np.all((found >= least) & (found <= 1.0))
     given = np.einsum("pm,pmj->pj", found, capacity)
     assert np.abs(given - wanted).max() < 0.02 * np.abs(wanted).max()
@@ -131,7 +131,7 @@ def test_the_moments_are_met_within_the_bounds(task):
 
 def test_it_is_what_a_general_solver_finds(task):
     wanted, capacity, habit, least, dear = task
-    found = shared(wanted, capacity, habit, least, dear)
+    found = share(wanted, capacity, habit, least, dear)
     for phase in (0, 7, 23):
         by = minimize(
             lambda a, p: float(dear @ (a - habit[p]) ** 2),
@@ -148,12 +148,12 @@ def test_it_is_what_a_general_solver_finds(task):
 def test_a_habit_that_meets_the_moments_is_kept(task):
     _, capacity, habit, least, dear = task
     wanted = np.einsum("pm,pmj->pj", habit, capacity)
-    assert shared(wanted, capacity, habit, least, dear) == pytest.approx(habit, abs=1e-9)
+    assert share(wanted, capacity, habit, least, dear) == pytest.approx(habit, abs=1e-9)
 
 
 def test_cocontraction_of_antagonists_costs_no_moment(task):
     wanted, capacity, habit, least, dear = task
-    calm, tense = (shared(wanted, capacity, level * habit, least, dear) for level in (0.2, 2.0))
+    calm, tense = (share(wanted, capacity, level * habit, least, dear) for level in (0.2, 2.0))
     assert tense.sum() > 1.3 * calm.sum()
     both = [np.einsum("pm,pmj->pj", found, capacity) for found in (calm, tense)]
     assert both[0] == pytest.approx(both[1], abs=0.02 * np.abs(wanted).max())
@@ -161,6 +161,6 @@ def test_cocontraction_of_antagonists_costs_no_moment(task):
 
 def test_what_cannot_be_met_is_left_and_nothing_breaks(task):
     _, capacity, habit, least, dear = task
-    found = shared(np.full((PHASES, 3), 5000.0), capacity, habit, least, dear)
+    found = share(np.full((PHASES, 3), 5000.0), capacity, habit, least, dear)
     assert np.all(np.isfinite(found))
     assert np.all((found >= least) & (found <= 1.0))

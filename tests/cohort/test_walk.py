@@ -5,13 +5,13 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from gaitdisc.cohort.body import leg_of
+from gaitdisc.cohort.body import make_leg
 from gaitdisc.cohort.cohort import the_twelve
 from gaitdisc.cohort.controller import COLUMNS, learnt_table
 from gaitdisc.cohort.leg_path import STANCE, Belt, gate, habitual_force, pressure_centre
-from gaitdisc.cohort.motion import NOISE, NOISE_STEPS, STEP_S, Worn, moved
-from gaitdisc.cohort.muscles import strength_of
-from gaitdisc.cohort.person import Spring, drawn
+from gaitdisc.cohort.motion import NOISE, NOISE_STEPS, STEP_S, Worn, integrate
+from gaitdisc.cohort.muscles import find_strength
+from gaitdisc.cohort.person import Spring, draw_one
 from gaitdisc.cohort.walk import _loop, walked
 from gaitdisc.errors import StrideError
 
@@ -26,7 +26,7 @@ def response_deg(exo, nominal):
 
 
 def test_a_slack_spring_is_no_spring_to_the_last_bit(person):
-    none, slack = walked(person, None, 6.0, 3), walked(person.adapted_to(Spring(0.0)), Spring(0.0), 6.0, 3)
+    none, slack = walked(person, None, 6.0, 3), walked(person.adapt_to(Spring(0.0)), Spring(0.0), 6.0, 3)
     for name in ("phase", "force", "excitation", "angles", "moments", "spring", "sole", "acceleration"):
         assert np.array_equal(getattr(none, name), getattr(slack, name)), name
 
@@ -39,28 +39,28 @@ def test_a_seed_is_a_walk(person):
 def test_a_stiffer_spring_changes_more(person, nominal):
     springs = [Spring(k) for k in (1.0, 2.5, 5.0, 8.0)]
     for learner in (person, person.unadapted()):
-        sizes = [response_deg(walked(learner.adapted_to(s), s, 20.0, 5), nominal) for s in springs]
+        sizes = [response_deg(walked(learner.adapt_to(s), s, 20.0, 5), nominal) for s in springs]
         assert np.all(np.diff(sizes) > 0), sizes
 
 
 def test_the_more_is_learnt_the_smaller_the_change(person):
     plain, spring = person.unadapted(), Spring(5.0)
     free = walked(plain, None, 20.0, 5)
-    learners = [plain.relieved(share).adapted_to(spring) for share in (0.0, 0.3, 0.6, 0.9)]
+    learners = [plain.relieve(share).adapt_to(spring) for share in (0.0, 0.3, 0.6, 0.9)]
     sizes = [response_deg(walked(learner, spring, 20.0, 5), free) for learner in learners]
     assert np.all(np.diff(sizes) < 0), sizes
 
 
 def test_a_device_that_is_wholly_allowed_for_changes_no_kinematics_but_the_muscles(person):
     plain, spring = person.unadapted(), Spring(5.0)
-    free, worn = walked(plain, None, 20.0, 5), walked(plain.relieved(1.0).adapted_to(spring), spring, 20.0, 5)
+    free, worn = walked(plain, None, 20.0, 5), walked(plain.relieve(1.0).adapt_to(spring), spring, 20.0, 5)
     assert response_deg(worn, free) < 0.6
     soleus = [w.mean_stride(w.excitation)[:, 0, 4].max() for w in (free, worn)]
     assert soleus[1] < 0.9 * soleus[0]
 
 
 def test_without_the_spring_an_adapted_person_overshoots(person):
-    learner = person.unadapted().relieved(0.6).adapted_to(Spring(5.0))
+    learner = person.unadapted().relieve(0.6).adapt_to(Spring(5.0))
     peaks = [
         w.mean_stride(w.angles)[:, 0, ANKLE].max()
         for w in (walked(learner, None, 20.0, 5), walked(person, None, 20.0, 5), walked(person, Spring(5.0), 20.0, 5))
@@ -96,7 +96,7 @@ def test_moments_are_those_of_the_motion(nominal):
     mass = nominal.person.mass_kg
     peak = -nominal.mean_stride(nominal.moments)[30:60, 0, 2].min() / mass
     lever = peak / 9.81 / (nominal.mean_stride(nominal.force)[30:60, 0, 1].max() / mass / 9.81)
-    assert 0.3 < lever / leg_of(nominal.person.height_m, mass).sole_m < 0.75
+    assert 0.3 < lever / make_leg(nominal.person.height_m, mass).sole_m < 0.75
 
 
 def test_hidden_faults_show(person, nominal):
@@ -110,8 +110,8 @@ def test_a_late_change_is_late_and_only_on_the_device(person):
     spring = Spring(5.0)
     changing = replace(person, change_s=20.0)
     same, changed = (
-        walked(person.adapted_to(spring), spring, 30.0, 5),
-        walked(changing.adapted_to(spring), spring, 30.0, 5),
+        walked(person.adapt_to(spring), spring, 30.0, 5),
+        walked(changing.adapt_to(spring), spring, 30.0, 5),
     )
     assert np.array_equal(same.angles[:1900], changed.angles[:1900])
     assert np.abs(same.angles[2500:] - changed.angles[2500:]).max() > 2.0
@@ -120,8 +120,8 @@ def test_a_late_change_is_late_and_only_on_the_device(person):
 
 @pytest.mark.parametrize("seed", range(3))
 def test_random_people_do_not_fall(seed):
-    someone = drawn("A", 90_000 + seed, "fm"[seed % 2])
-    for learner, spring in ((someone, None), (someone, Spring(5.0)), (someone.adapted_to(Spring(5.0)), Spring(5.0))):
+    someone = draw_one("A", 90_000 + seed, "fm"[seed % 2])
+    for learner, spring in ((someone, None), (someone, Spring(5.0)), (someone.adapt_to(Spring(5.0)), Spring(5.0))):
         angles = walked(learner, spring, 10.0, seed).angles
         assert angles[:, :, KNEE].min() > -15.0
         assert 40.0 < angles[:, :, KNEE].max() < 90.0
@@ -130,8 +130,8 @@ def test_random_people_do_not_fall(seed):
 @pytest.mark.slow
 def test_none_of_two_hundred_random_people_falls():
     for seed in range(200):
-        someone = drawn("A", 91_000 + seed, "fm"[seed % 2])
-        for learner, spring in ((someone, None), (someone.adapted_to(Spring(5.0)), Spring(5.0))):
+        someone = draw_one("A", 91_000 + seed, "fm"[seed % 2])
+        for learner, spring in ((someone, None), (someone.adapt_to(Spring(5.0)), Spring(5.0))):
             walk = walked(learner, spring, 60.0, seed)
             assert np.abs(walk.angles).max() < 100.0
             assert walk.strides(walk.angles).std(axis=0).mean(axis=0)[0, KNEE] < 5.0
@@ -148,9 +148,9 @@ def quiet_walk(person, duration_s, stiffness=0.0, damping=1.0):
     worn = Worn(np.degrees(stiffness), np.radians(person.engaged_deg), person.speed_m_per_s, person.stride_s)
     loop = _loop(person)
     loop = loop._replace(damping=damping * loop.damping)
-    leg = leg_of(person.height_m, person.mass_kg)
-    strengths = tuple(strength_of(person.mass_kg, person.style.strength[side]) for side in (0, 1))
-    return moved(leg, strengths, Belt(), loop, worn, np.stack([table, table]), noise)
+    leg = make_leg(person.height_m, person.mass_kg)
+    strengths = tuple(find_strength(person.mass_kg, person.style.strength[side]) for side in (0, 1))
+    return integrate(leg, strengths, Belt(), loop, worn, np.stack([table, table]), noise)
 
 
 def test_without_noise_the_legs_follow_their_habit(person):

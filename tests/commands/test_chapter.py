@@ -18,7 +18,7 @@ def computed(monkeypatch):
         return chapter_run.Made(out / part.name, False)
 
     monkeypatch.setattr(chapter_run, "run_part", run)
-    monkeypatch.setattr(chapter_run, "lack_of", lambda *_: None)
+    monkeypatch.setattr(chapter_run, "find_lack", lambda *_: None)
     return seen
 
 
@@ -39,7 +39,7 @@ def test_all_parts_of_a_chapter_are_computed_and_the_rest_is_counted(computed, c
 
 def test_what_a_machine_cannot_compute_is_left_out_and_said(computed, called, tmp_path, monkeypatch):
     lack = SchemaError("sea_surface needs data", "none is there", "Name the folder.")
-    monkeypatch.setattr(chapter_run, "lack_of", lambda part, _: lack if part.name == "sea_surface" else None)
+    monkeypatch.setattr(chapter_run, "find_lack", lambda part, _: lack if part.name == "sea_surface" else None)
     done = called("chapter", 5, tmp_path, ends=SOME_REFUSED)
     assert "sea_surface" not in computed
     assert says(done.stderr, "left out: sea_surface", "data")

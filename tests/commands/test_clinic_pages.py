@@ -16,7 +16,7 @@ from made_clinic import SOURCE, made_controls, made_person, made_run, published_
 from texts import says
 
 from gaitdisc.clinic.clinical_reference import load_reference, save_reference
-from gaitdisc.commands.clinic_pages import keep_reference, kept_reference, say_new_recordings, write_people
+from gaitdisc.commands.clinic_pages import keep_reference, load_kept_reference, say_new_recordings, write_people
 from gaitdisc.errors import WriteError
 from gaitdisc.ingest.study import Conditions, Participant, PlannedTrial, Study
 from gaitdisc.response.participant_response import load_run
@@ -77,10 +77,10 @@ def test_recordings_that_the_study_does_not_name_are_counted_by_pseudonym_and_no
 
 def test_a_reference_stays_with_the_run(tmp_path):
     save_reference(made_controls(3), tmp_path / "ref")
-    assert kept_reference(tmp_path / "run") is None
+    assert load_kept_reference(tmp_path / "run") is None
     keep_reference(tmp_path / "ref", tmp_path / "run")
     keep_reference(None, tmp_path / "run")
-    assert kept_reference(tmp_path / "run").people("walk") == 3
+    assert load_kept_reference(tmp_path / "run").people("walk") == 3
 
 
 def test_a_run_without_cycles_has_no_pages_of_people(tmp_path):
@@ -96,7 +96,7 @@ def test_a_published_reference_stays_as_its_table_until_another_takes_its_place(
     assert SOURCE[2:] in index.read_text() and SOURCE[2:] in (index.parent / "people" / "P01.html").read_text()
     save_reference(made_controls(3), tmp_path / "ref")
     keep_reference(tmp_path / "ref", tmp_path / "run")
-    assert kept_reference(tmp_path / "run").published == ()
+    assert load_kept_reference(tmp_path / "run").published == ()
 
 
 @pytest.fixture(scope="module")

@@ -15,7 +15,7 @@ from gaitdisc.reconstruction.window_model import Sensing, fit_reconstructor
 from gaitdisc.reconstruction.windows import Lags
 from gaitdisc.recording import Samples
 from gaitdisc.response.participant_response import ResponseRun
-from gaitdisc.saved.provenance import made_now
+from gaitdisc.saved.provenance import provenance_now
 from gaitdisc.saved.study_run import save_run
 
 
@@ -48,7 +48,7 @@ def save_cycles(folder, session=""):
     """A run of one person's cycles, as it is saved; the cycles."""
     one = made_cycles(each=3, out=1, session=session)
     CYCLES.save(one, folder / "cycles" / cycles_name("P01", session, "walk"), "key")
-    save_run(ResponseRun("t", "walk", "", (), made_now({}, 0, {}, "4.2"), {"cycles.json": (one,)}), folder)
+    save_run(ResponseRun("t", "walk", "", (), provenance_now({}, 0, {}, "4.2"), {"cycles.json": (one,)}), folder)
     return one
 
 
@@ -80,5 +80,5 @@ def test_mean_cycles_of_a_run_as_mot_and_back(tmp_path, called):
 
 
 def test_a_run_without_cycles_has_none_to_export(tmp_path, called):
-    save_run(ResponseRun("t", "walk", "exo", (), made_now({}, 0, {}, "4.2"), {}), tmp_path)
+    save_run(ResponseRun("t", "walk", "exo", (), provenance_now({}, 0, {}, "4.2"), {}), tmp_path)
     assert says(called("export", tmp_path, "--out", tmp_path / "out", ends=REFUSED).stderr, "tables of cycles")

@@ -8,13 +8,13 @@ from texts import says
 
 from gaitdisc.discovery.answer import (
     answer,
-    augmented_of,
+    augment_with,
     bic_gain,
     corrected,
     file_bounds,
-    phase_of,
-    region_of,
-    rivals_of,
+    find_phase,
+    find_region,
+    weigh_rivals,
 )
 from gaitdisc.discovery.candidate import Candidate
 from gaitdisc.discovery.candidate_model import Part, fit_model
@@ -24,11 +24,11 @@ from gaitdisc.discovery.decision import Verdict
 from gaitdisc.discovery.discover import discover
 from gaitdisc.discovery.process_noise import rank_process_noise
 from gaitdisc.discovery.result import Correction, Estimate
-from gaitdisc.discovery.scored_model import compared, scored
+from gaitdisc.discovery.scored_model import compared, score
 from gaitdisc.simulation.measured_table import read_measured
 from gaitdisc.simulation.parts import Input, Parameter
 from gaitdisc.simulation.running import compile_simulation
-from gaitdisc.simulation.simulation_file import simulation_of
+from gaitdisc.simulation.simulation_file import parse_simulation
 
 ABOVE = Candidate(
     "missing_physics", "port", "load", "one_sided_spring", ("max(0, x - _x0)",), {"x0": "quantiles of x"}, "x"
@@ -84,7 +84,7 @@ def test_what_was_named_is_not_its_own_rival(answered):
 
 def test_numbers_are_written_one_explanation_after_the_other():
     drift = Candidate("sensor_error", "observation", "x", "sensor_drift")
-    augmented = augmented_of(mass(), (Part(ABOVE, {"factor": -30.0, "x0": 0.25}), Part(drift, {"rate": 0.02})))
+    augmented = augment_with(mass(), (Part(ABOVE, {"factor": -30.0, "x0": 0.25}), Part(drift, {"rate": 0.02})))
     assert augmented.effects[0].term == "-30*(max(0, x - 0.25))"
     assert dict(augmented.observations)["x"] == "(x) + 0.02*t"
 
@@ -99,7 +99,7 @@ def test_numbers_are_written_one_explanation_after_the_other():
     ],
 )
 def test_a_region_is_said_where_an_effect_has_one(candidate, values, region):
-    assert region_of(Part(candidate, values)) == region
+    assert find_region(Part(candidate, values)) == region
 
 
 @pytest.mark.parametrize(("seen", "centre"), [("phase", 0.4), ("late", 0.5)])
@@ -115,7 +115,7 @@ def test_the_part_of_the_stride_is_where_the_effect_is_half_as_strong_as_at_its_
     grids = {"c": "phases", "w": "phase widths"}
     pulse = Candidate("missing_physics", "port", "load", "pulse", (f"exp(-(({seen} - _c)/_w)**2)",), grids)
     half = 0.1 * np.sqrt(np.log(2))
-    begin, end = phase_of(case, case.as_read(), Part(pulse, {"factor": 3.0, "c": 0.4, "w": 0.1}))
+    begin, end = find_phase(case, case.as_read(), Part(pulse, {"factor": 3.0, "c": 0.4, "w": 0.1}))
     assert (begin, end) == pytest.approx((centre - half, centre + half), abs=0.03)
 
 
@@ -132,8 +132,8 @@ def test_random_pushes_of_a_function_are_answered(tmp_path):
 def shape(case, as_read, cubic):
     """Return an answer without a name that is the truth: no effect of the catalogue but one comes near it."""
     part = Part(replace(cubic, name="unnamed"), {"factor": -14.0})
-    model = as_read.model.refitted(as_read.shooting, (part,))
-    return scored(as_read.shooting, model)
+    model = as_read.model.refit(as_read.shooting, (part,))
+    return score(as_read.shooting, model)
 
 
 def test_the_evidence_of_an_answer_is_its_own_and_one_of_nothing_has_none(case, as_read, shape):
@@ -146,11 +146,11 @@ def test_rivals_are_compared_with_the_answer_and_one_that_explains_as_much_is_ti
     gained = bic_gain(case.search, shape)
     found = tuple(one for one in named[1] if one.labels != ("cubic_stiffness@load",))
     assert found
-    rivals = rivals_of(case.search, shape, found, gained)
+    rivals = weigh_rivals(case.search, shape, found, gained)
     assert rivals
     assert not any(one.tied for one in rivals)
     assert all(one.gained < gained - CRITERIA.tie for one in rivals)
-    first = rivals_of(case.search, shape, tuple(named[1]), gained)[0]
+    first = weigh_rivals(case.search, shape, tuple(named[1]), gained)[0]
     assert first.scored.labels == ("cubic_stiffness@load",)
     assert first.tied
     assert first.gained == pytest.approx(gained, abs=0.5)
@@ -158,24 +158,24 @@ def test_rivals_are_compared_with_the_answer_and_one_that_explains_as_much_is_ti
 
 def test_one_that_is_in_the_answer_is_no_rival(case, named):
     now, found = named
-    rivals = rivals_of(case.search, now, tuple(found), bic_gain(case.search, now))
+    rivals = weigh_rivals(case.search, now, tuple(found), bic_gain(case.search, now))
     assert "cubic_stiffness@load" not in [one.scored.labels[-1] for one in rivals]
 
 
 def test_beside_one_of_two_a_rival_stands_in_the_place_of_the_other(case, as_read, cubic, named):
     drift = next(one for one in case.search.candidates if one.label == "sensor_drift@x")
     parts = (Part(cubic, {"factor": -14.0}), Part(drift, {"rate": 0.0}))
-    model = as_read.model.refitted(as_read.shooting, parts)
-    both = scored(as_read.shooting, model)
+    model = as_read.model.refit(as_read.shooting, parts)
+    both = score(as_read.shooting, model)
     offset = next(one for one in case.search.candidates if one.label == "sensor_offset@x")
-    other = as_read.model.refitted(as_read.shooting, (Part(offset, {"offset": 0.0}),))
-    (rival,) = rivals_of(case.search, both, (replace(both, model=other),), 0.0)
+    other = as_read.model.refit(as_read.shooting, (Part(offset, {"offset": 0.0}),))
+    (rival,) = weigh_rivals(case.search, both, (replace(both, model=other),), 0.0)
     assert rival.scored.labels == ("cubic_stiffness@load", "sensor_offset@x")
     assert rival.tied
 
 
 def test_where_nothing_is_named_rivals_keep_what_they_were_found_with(case, as_read, named):
-    rivals = rivals_of(case.search, as_read, tuple(named[1]), 0.0)
+    rivals = weigh_rivals(case.search, as_read, tuple(named[1]), 0.0)
     assert [one.gained for one in rivals] == [one.gained for one in named[1]][: len(rivals)]
     assert not any(one.tied for one in rivals)
 
@@ -196,7 +196,7 @@ def believed(bounds=0.125):
     for true, off in OFF.values():
         low, high = off * (1 - bounds), off * (1 + bounds)
         text = text.replace(f"value = {true}", f"value = {off}\nlow = {low:.6g}\nhigh = {high:.6g}")
-    return simulation_of(text, "believed.toml")
+    return parse_simulation(text, "believed.toml")
 
 
 def test_where_only_numbers_are_a_little_off_nothing_is_named_and_they_are_corrected():

@@ -12,7 +12,7 @@ from gaitdisc.discovery.criteria import CRITERIA
 from gaitdisc.discovery.discover import discover
 from gaitdisc.discovery.gap_share import CrossValidated, errs_more
 from gaitdisc.discovery.score import Score
-from gaitdisc.simulation.simulation_file import simulation_of
+from gaitdisc.simulation.simulation_file import parse_simulation
 
 CLEAN = Experiment(seconds=8.0, noise=0.001)
 
@@ -84,7 +84,7 @@ def near_runs_of_one_length(case, scale):
     from gaitdisc.discovery.candidate_model import fit_model
     from gaitdisc.discovery.noise import white_noise
 
-    shooting = case.learned_runs(case.longest).with_noise(white_noise(scale.spread))
+    shooting = case.cut_learned_runs(case.longest).with_noise(white_noise(scale.spread))
     return fit_model(shooting, case.search.base, (), case.guess.starts(shooting.segments)).fit
 
 
@@ -150,7 +150,7 @@ def test_what_is_left_is_told_as_a_share(answered):
 
 
 def test_a_number_ten_times_too_large_is_found_where_no_slope_at_the_files_leads_to_it():
-    stiff = simulation_of(MASS.replace("value = 24.0", "value = 240.0"), "mass.toml")
+    stiff = parse_simulation(MASS.replace("value = 24.0", "value = 240.0"), "mass.toml")
     case = set_up_case(stiff, record(with_load("-0.6*v*abs(v)**0.5"), 5, CLEAN))
     found = closing_most(case, ())
     (k,) = (part for part in found.now.model.parts if part.candidate.label == "wrong_parameter@k")

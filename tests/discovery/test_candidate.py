@@ -4,13 +4,13 @@ import numpy as np
 import pytest
 from hidden_in_a_mass import MASS, mass, two_rods
 
-from gaitdisc.discovery.candidate import BENT, FLEXIBLE, Candidate, candidates_of, saturations, unnamed_terms
+from gaitdisc.discovery.candidate import BENT, FLEXIBLE, Candidate, list_candidates, list_unnamed_terms, saturations
 from gaitdisc.discovery.candidate_model import Part, with_parts
-from gaitdisc.discovery.catalogue import Shape, known_shapes
+from gaitdisc.discovery.catalogue import Shape, read_shapes
 from gaitdisc.discovery.criteria import CRITERIA
-from gaitdisc.discovery.places import places_of
+from gaitdisc.discovery.places import list_places
 from gaitdisc.simulation.running import compile_simulation
-from gaitdisc.simulation.simulation_file import simulation_of
+from gaitdisc.simulation.simulation_file import parse_simulation
 
 SPRING = Candidate(
     "missing_physics", "port", "load", "one_sided_spring", ("max(0, x - _x0)",), {"x0": "quantiles of x"}, "x"
@@ -19,8 +19,8 @@ WAVE = Candidate("missing_physics", "port", "load", "wave", ("sin(_w*t)", "cos(_
 
 
 def _candidates(simulation, shapes=None):
-    places = places_of(simulation, compile_simulation(simulation))
-    return candidates_of(simulation, places, known_shapes() if shapes is None else shapes)
+    places = list_places(simulation, compile_simulation(simulation))
+    return list_candidates(simulation, places, read_shapes() if shapes is None else shapes)
 
 
 def _pieces(simulation, label):
@@ -110,14 +110,14 @@ def test_everything_that_could_be_wrong_is_listed_once():
 
 
 def test_an_input_that_nothing_uses_is_not_suspected():
-    idle = simulation_of(MASS.replace("[parameters.m]", '[inputs.spare]\nunit = "N"\n[parameters.m]'), "idle.toml")
+    idle = parse_simulation(MASS.replace("[parameters.m]", '[inputs.spare]\nunit = "N"\n[parameters.m]'), "idle.toml")
     assert not any(one.place == "spare" for one in _candidates(idle))
 
 
 def test_a_stride_brings_effects_that_are_locked_to_it_and_does_not_lag():
     text = MASS.replace("[parameters.m]", '[inputs.phase]\nunit = "1"\n[parameters.m]')
     used = text.replace("push + load", "push + load + phase")
-    idle, driving = ({one.label for one in _candidates(simulation_of(one, "stride.toml"))} for one in (text, used))
+    idle, driving = ({one.label for one in _candidates(parse_simulation(one, "stride.toml"))} for one in (text, used))
     assert "phase_locked_moment@load" in idle
     assert "input_delay@phase" in driving and "input_lag@phase" not in driving
 
@@ -134,7 +134,7 @@ def test_in_a_chain_a_spring_acts_on_a_joint_or_their_difference_and_gravity_on_
 
 def test_a_shape_of_the_users_own_is_one_more_candidate():
     quintic = Shape("quintic", ("x**5",), means="a very stiff spring")
-    found = [one for one in _candidates(mass(), (*known_shapes(), quintic)) if one.name == "quintic"]
+    found = [one for one in _candidates(mass(), (*read_shapes(), quintic)) if one.name == "quintic"]
     assert [(one.label, one.pieces, one.means) for one in found] == [("quintic@load", ("x**5",), "a very stiff spring")]
 
 
@@ -156,7 +156,7 @@ def test_a_lagged_input_replaces_the_input_everywhere_but_in_its_own_equation():
 
 
 def terms(simulation):
-    found = unnamed_terms(simulation, places_of(simulation, compile_simulation(simulation)))
+    found = list_unnamed_terms(simulation, list_places(simulation, compile_simulation(simulation)))
     return [(one.place, one.pieces[0]) for one in found]
 
 
@@ -173,7 +173,7 @@ def test_another_bodys_acceleration_may_act_with_nothing_at_its_port():
 
 def test_each_compiles_where_it_is_put():
     simulation = two_rods()
-    for one in unnamed_terms(simulation, places_of(simulation, compile_simulation(simulation))):
+    for one in list_unnamed_terms(simulation, list_places(simulation, compile_simulation(simulation))):
         assert one.name == "unnamed"
         compile_simulation(one.written(simulation, {"factor": "0.5"}))
 
@@ -196,7 +196,7 @@ def test_a_friction_that_drives_costs_more(case):
 
 
 def test_every_price_is_of_an_explanation_that_there_is(case):
-    names = {shape.name for shape in known_shapes()} | {one.name for one in case.search.candidates}
+    names = {shape.name for shape in read_shapes()} | {one.name for one in case.search.candidates}
     assert {*BENT, *FLEXIBLE} <= names | {"unnamed"}
 
 
@@ -213,7 +213,7 @@ def test_parts_are_put_in_one_after_the_other_under_names_of_their_own():
 
 def test_the_true_explanation_is_fitted_to_its_true_number(case, as_read, cubic):
     part = Part(cubic, {"factor": 0.0})
-    model = as_read.model.refitted(as_read.shooting, (part,))
+    model = as_read.model.refit(as_read.shooting, (part,))
     error = float(np.sqrt(model.fit.covariance[0, 0]))
     assert model.parts[0].values["factor"] == pytest.approx(-14.0, abs=max(4 * error, 0.1))
     assert model.names == ({"factor": "part0_factor"},)
@@ -221,7 +221,7 @@ def test_the_true_explanation_is_fitted_to_its_true_number(case, as_read, cubic)
 
 
 def test_a_number_more_costs_the_logarithm_of_what_was_measured(case, as_read, cubic):
-    model = as_read.model.refitted(as_read.shooting, (Part(cubic, {"factor": 0.0}),))
+    model = as_read.model.refit(as_read.shooting, (Part(cubic, {"factor": 0.0}),))
     assert model.size == 1
     assert model.bic - model.fit.misfit == pytest.approx(np.log(model.fit.white.size))
 

@@ -12,12 +12,12 @@ from gaitdisc.discovery.folder import save_discovery
 from gaitdisc.discovery.noise import sensor_noise
 from gaitdisc.discovery.page import write_discovery_report
 from gaitdisc.discovery.record_filter import RecordFilter
-from gaitdisc.discovery.scored_model import scored
+from gaitdisc.discovery.scored_model import score
 from gaitdisc.simulation.compiled_simulation import Drive, Rows
 from gaitdisc.simulation.measured import Measured
 from gaitdisc.simulation.parts import Sensor
 from gaitdisc.simulation.running import compile_simulation
-from gaitdisc.simulation.simulation_file import simulation_of
+from gaitdisc.simulation.simulation_file import parse_simulation
 
 FALLING = """
 [states.x]
@@ -89,7 +89,7 @@ def test_runs_are_about_a_period_long(case):
 
 
 def test_runs_are_shorter_where_a_change_of_the_start_grows_fast():
-    unstable = simulation_of(FALLING, "falling.toml")
+    unstable = parse_simulation(FALLING, "falling.toml")
     calm = set_up_case(mass(), record(mass(), 0, Experiment(4, 6.0)))
     wild = set_up_case(unstable, record(mass(), 0, Experiment(4, 6.0)))
     assert calm.predictable_periods() == 1.0
@@ -104,12 +104,12 @@ def test_as_read_only_the_starts_are_fitted(as_read):
 
 def test_a_right_account_is_followed_over_half_a_trial_or_more_and_no_run_is_longer_than_wanted(case, as_read, cubic):
     part = Part(cubic, {"factor": -14.0})
-    true = as_read.model.refitted(as_read.shooting, (part,))
-    longer = case.lengthened(scored(as_read.shooting, true))
+    true = as_read.model.refit(as_read.shooting, (part,))
+    longer = case.lengthen(score(as_read.shooting, true))
     assert longer.shooting.segments.length >= case.measured.samples.min() / 2
     assert longer.model.parts[0].values["factor"] == pytest.approx(-14.0, rel=0.005)
     length = as_read.shooting.segments.length
-    assert case.lengthened(as_read, 2 * length).shooting.segments.length <= 2 * length
+    assert case.lengthen(as_read, 2 * length).shooting.segments.length <= 2 * length
 
 
 def test_shapes_of_the_users_own_are_searched():
@@ -156,7 +156,7 @@ m = "(u - m)/lag"
     u = np.sin(t)
     seen = np.stack([u + np.random.default_rng(seed).normal(0, 0.01, len(t)) for seed in range(4)])[..., None]
     measured = Measured(Drive.of([u[:, None]] * 4, 1 / 0.03), seen, ("1", "2", "3", "4"), ("m",))
-    return set_up_case(simulation_of(text, "lag.toml"), measured)
+    return set_up_case(parse_simulation(text, "lag.toml"), measured)
 
 
 @pytest.mark.parametrize(("lag", "steps"), [(0.1, 2), (0.004, 4)])  # two steps of 15 ms run away below 5.4 ms

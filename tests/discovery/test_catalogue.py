@@ -1,6 +1,6 @@
 import pytest
 
-from gaitdisc.discovery.catalogue import Shape, known_shapes, read_catalogue
+from gaitdisc.discovery.catalogue import Shape, read_catalogue, read_shapes
 from gaitdisc.errors import SchemaError
 
 CONTRACT = {
@@ -13,7 +13,7 @@ BEYOND_IT = {"contact_damper", "hysteresis", "series_elasticity", "input_product
 
 
 def test_the_catalogue_holds_the_names_of_the_contract_and_few_others():
-    assert {shape.name for shape in known_shapes()} == CONTRACT | BEYOND_IT
+    assert {shape.name for shape in read_shapes()} == CONTRACT | BEYOND_IT
 
 
 def test_a_state_of_the_effects_own_is_no_role_and_its_derivative_names_roles():
@@ -22,7 +22,7 @@ def test_a_state_of_the_effects_own_is_no_role_and_its_derivative_names_roles():
 
 
 def test_every_shape_has_a_clause_for_a_reader():
-    assert all(len(shape.means) > 5 for shape in known_shapes())
+    assert all(len(shape.means) > 5 for shape in read_shapes())
 
 
 def test_roles_are_read_off_the_pieces():

@@ -5,8 +5,8 @@ import numpy as np
 import pytest
 from made_joint import made_joint
 
-from gaitdisc.discovery.changed_moment import changed_moment, foot_mass
-from gaitdisc.discovery.joint_and_trials import changes_of, nominal_moment, walk_of
+from gaitdisc.discovery.changed_moment import find_change, foot_mass
+from gaitdisc.discovery.joint_and_trials import as_walk, changes, nominal_moment
 
 
 @pytest.fixture(scope="module")
@@ -20,7 +20,7 @@ def model(nominal):
 
 
 def changed(model, nominal, device) -> Any:
-    return changed_moment(model, walk_of(nominal), walk_of(device), changes_of(device))
+    return find_change(model, as_walk(nominal), as_walk(device), changes(device))
 
 
 def test_the_same_muscles_changed_nothing(model, nominal):
@@ -48,7 +48,7 @@ def test_gains_that_the_nominal_walk_mistakes_are_mended_by_both_walks(nominal, 
     """An envelope that holds a muscle of constant tone hides its gain from one walk; the other, relieved, shows it."""
     device = made_joint(seed=3, spring=150.0)
     relieved = replace(device, envelopes=0.6 * device.envelopes, moment=device.moment)
-    driven = walk_of(device).driven
+    driven = as_walk(device).driven
     moment = device.moment - 0.4 * model.by_muscle(driven).sum(axis=1)
     wrong = replace(model, gains=0.8 * model.gains)
     found = changed(wrong, nominal, replace(relieved, moment=moment))
@@ -68,11 +68,11 @@ def test_a_mass_at_the_foot_is_weighed_where_its_moment_is_known(model, nominal)
 def test_a_spring_whose_interval_holds_none_is_not_named(model, nominal, monkeypatch):
     """Without what nobody measured, 50 N m/rad are found to 5; with the lag of activation in doubt, 40 are nothing."""
     device = made_joint(seed=3, spring=50.0)
-    spring = [one for one in changes_of(device) if one.name == "one_sided_spring"]
-    walks = walk_of(nominal), walk_of(device)
-    assert changed_moment(model, *walks, spring) is None
+    spring = [one for one in changes(device) if one.name == "one_sided_spring"]
+    walks = as_walk(nominal), as_walk(device)
+    assert find_change(model, *walks, spring) is None
     monkeypatch.setattr("gaitdisc.discovery.changed_moment.LAGS", (1.0, 1.0))
-    found = changed_moment(model, *walks, spring)
+    found = find_change(model, *walks, spring)
     assert found is not None and found.value == pytest.approx(50.0, rel=0.1)
 
 
@@ -83,7 +83,7 @@ def weighed(nominal, model, kg, resisted=0.0):
     departure = 0.03 * np.cos(2 * np.pi * device.phase + 0.5) * (resisted > 0)
     moment = device.moment + resisted * departure - kg * per_kg
     changed = replace(device, angle=device.angle - departure, moment=moment)
-    return foot_mass(model, walk_of(nominal), walk_of(changed), per_kg)
+    return foot_mass(model, as_walk(nominal), as_walk(changed), per_kg)
 
 
 @pytest.mark.parametrize("kg", [0.8, 0.0])

@@ -14,16 +14,16 @@ from gaitdisc.discovery.case import Case, set_up_case
 from gaitdisc.discovery.criteria import CRITERIA
 from gaitdisc.discovery.decision import (
     Verdict,
+    check_on_longer_runs,
     decide,
-    held_out_proof,
-    kept_on_longer_runs,
-    needed,
+    keep_useful,
     prefer_on_held_out,
+    prove_held_out,
 )
 from gaitdisc.discovery.fitted import Prior
-from gaitdisc.discovery.forward_selection import pruned
+from gaitdisc.discovery.forward_selection import prune
 from gaitdisc.discovery.paired_test import PairedTest
-from gaitdisc.discovery.scored_model import ScoredModel, scored
+from gaitdisc.discovery.scored_model import ScoredModel, score
 from gaitdisc.discovery.search import is_certain
 from gaitdisc.discovery.second_look import prefer_relatives
 from gaitdisc.simulation.simulation import Term
@@ -33,13 +33,13 @@ def test_what_longer_runs_have_no_use_for_is_not_named(case, as_read, cubic, lab
     shooting = case.shooting(case.segments(case.learned, 0.4)).with_noise(as_read.noise)
     starts = case.guess.starts(shooting.segments)
     read, both = (
-        scored(shooting, fit_model(shooting, case.search.base, parts, starts))
+        score(shooting, fit_model(shooting, case.search.base, parts, starts))
         for parts in ((), (Part(cubic, {"factor": -14.0}), Part(labelled["viscous_damping@load"], {"factor": 0.0})))
     )
     assert not case.spans_a_period(read)
-    assert kept_on_longer_runs(case, read, both).labels == ("cubic_stiffness@load",)
-    assert kept_on_longer_runs(case, read, both).shooting.segments is shooting.segments
-    assert kept_on_longer_runs(case, as_read, both) is both
+    assert check_on_longer_runs(case, read, both).labels == ("cubic_stiffness@load",)
+    assert check_on_longer_runs(case, read, both).shooting.segments is shooting.segments
+    assert check_on_longer_runs(case, as_read, both) is both
 
 
 @pytest.fixture(scope="module")
@@ -48,23 +48,23 @@ def beside(as_read, cubic, labelled):
 
     def fit(*idle):
         parts = (Part(labelled[one], dict.fromkeys(labelled[one].slots, 0.0)) for one in idle)
-        model = as_read.model.refitted(as_read.shooting, (Part(cubic, {"factor": -14.0}), *parts))
-        return scored(as_read.shooting, model)
+        model = as_read.model.refit(as_read.shooting, (Part(cubic, {"factor": -14.0}), *parts))
+        return score(as_read.shooting, model)
 
     return fit
 
 
 def test_what_the_held_out_data_do_not_bear_out_beside_another_is_left_out(case, as_read, beside):
-    assert needed(case, as_read, beside("viscous_damping@load")).labels == ("cubic_stiffness@load",)
+    assert keep_useful(case, as_read, beside("viscous_damping@load")).labels == ("cubic_stiffness@load",)
     alone = beside()
-    assert needed(case, as_read, alone) is alone
+    assert keep_useful(case, as_read, alone) is alone
 
 
 def test_held_out_data_prefer_two_plain_effects_to_one_of_more_numbers_that_imitates_them(
     case, as_read, beside, labelled
 ):
     imitates = Part(labelled["periodic_forcing@load"], {"factor": 1.0, "factor_1": 1.0, "w": 3.0})
-    one = scored(as_read.shooting, as_read.model.refitted(as_read.shooting, (imitates,)))
+    one = score(as_read.shooting, as_read.model.refit(as_read.shooting, (imitates,)))
     true, two = beside(), beside("viscous_damping@load")
     assert one.model.size > two.model.size > true.model.size
     assert prefer_on_held_out(case, one, (two,)) is two
@@ -74,7 +74,7 @@ def test_held_out_data_prefer_two_plain_effects_to_one_of_more_numbers_that_imit
 
 
 def test_of_three_names_the_one_that_is_missed_least_goes(case, beside):
-    kept = pruned(case.search, beside("viscous_damping@load", "sensor_drift@x"), float("inf"), 2)
+    kept = prune(case.search, beside("viscous_damping@load", "sensor_drift@x"), float("inf"), 2)
     assert len(kept.model.parts) == 2
     assert "cubic_stiffness@load" in kept.labels
 
@@ -82,11 +82,11 @@ def test_of_three_names_the_one_that_is_missed_least_goes(case, beside):
 def test_a_shape_that_the_held_out_data_do_not_bear_out_is_not_handed_out(case, as_read, cubic, beside, monkeypatch):
     both = beside("viscous_damping@load")
     wrong = replace(cubic, name="unnamed")
-    bad = as_read.model.refitted(as_read.shooting, (Part(wrong, {"factor": 2.0}),), turns=0)
+    bad = as_read.model.refit(as_read.shooting, (Part(wrong, {"factor": 2.0}),), turns=0)
     shape = ScoredModel(bad, as_read.shooting)
     for name, value in (
-        ("searched", lambda *_: (as_read, both, [])),
-        ("fitted_shape", lambda *_: shape),
+        ("search_runs", lambda *_: (as_read, both, [])),
+        ("fit_shape", lambda *_: shape),
         ("says_more", lambda *_: True),
         ("with_autocorrelation", lambda *_: None),
     ):
@@ -98,9 +98,9 @@ def test_a_shape_that_the_held_out_data_do_not_bear_out_is_not_handed_out(case, 
 
 def test_a_shape_that_is_no_likelier_than_a_name_is_none_either_way(case, as_read, cubic, beside, monkeypatch):
     likelier, unnamed = beside("viscous_damping@load"), Part(replace(cubic, name="unnamed"), {"factor": -14.0})
-    shape = scored(as_read.shooting, as_read.model.refitted(as_read.shooting, (unnamed,)))
+    shape = score(as_read.shooting, as_read.model.refit(as_read.shooting, (unnamed,)))
     borne = {likelier.labels: True, shape.labels: True}
-    monkeypatch.setattr(decision, "held_out_proof", lambda *of: SimpleNamespace(bears_out=borne[of[-1].labels]))
+    monkeypatch.setattr(decision, "prove_held_out", lambda *of: SimpleNamespace(bears_out=borne[of[-1].labels]))
     monkeypatch.setattr(decision, "with_random_pushes", lambda *_: "pushes")
     both = case, as_read, likelier, shape, []
     assert decision.with_autocorrelation(*both) is None
@@ -113,8 +113,8 @@ def test_a_shape_that_is_no_likelier_than_a_name_is_none_either_way(case, as_rea
 @pytest.mark.parametrize(("half", "word"), [(0.5, "missing_physics"), (1.1, "no_gap")])
 def test_of_more_names_than_are_named_two_take_half_of_the_error(case, as_read, beside, monkeypatch, half, word):
     three = beside("viscous_damping@load", "sensor_drift@x")
-    monkeypatch.setattr("gaitdisc.discovery.decision.searched", lambda *_: (as_read, three, []))
-    monkeypatch.setattr("gaitdisc.discovery.decision.fitted_shape", lambda *_: None)
+    monkeypatch.setattr("gaitdisc.discovery.decision.search_runs", lambda *_: (as_read, three, []))
+    monkeypatch.setattr("gaitdisc.discovery.decision.fit_shape", lambda *_: None)
     monkeypatch.setattr("gaitdisc.discovery.decision.CRITERIA", replace(CRITERIA, half=half))
     monkeypatch.setattr(Case, "leaves_noise", lambda *_: False)
     for name in ("plainest", "with_random_pushes"):
@@ -131,7 +131,7 @@ def test_one_shape_that_leaves_mere_noise_stands_before_names_that_do_not(case, 
     proofs, errors = iter([True, True, False, True, False]), {"shape": 0.1}
     monkeypatch.setattr(decision, "free_run_error", lambda _, now: errors["shape"] if now == "shape" else 0.2)
     monkeypatch.setattr(Case, "leaves_noise", lambda _, now: now in ("shape", one))
-    monkeypatch.setattr(decision, "held_out_proof", lambda *_: SimpleNamespace(bears_out=next(proofs)))
+    monkeypatch.setattr(decision, "prove_held_out", lambda *_: SimpleNamespace(bears_out=next(proofs)))
     found = decision.shape_that_leaves_noise(case, as_read, "shape", names)
     assert (found.word, found.found, found.rivals) == ("unnamed", "shape", (names.found, "rival"))
     assert decision.shape_that_leaves_noise(case, as_read, "shape", names) is None  # not preferred to names
@@ -191,12 +191,12 @@ def test_what_never_relaxes_or_yields_within_the_record_is_named_as_the_spring_t
     )
     part = Part(remembering, {"factor": -30.0, **constants})
     base, starts = case.search.base, as_read.model.fit.starts
-    endless = scored(as_read.shooting, fit_model(as_read.shooting, base, (part,), starts, turns=0))
+    endless = score(as_read.shooting, fit_model(as_read.shooting, base, (part,), starts, turns=0))
     assert not case.search.shows(endless.model)
-    plain = scored(as_read.shooting, fit_model(as_read.shooting, base, (Part(spring, {"factor": -30.0}),), starts))
+    plain = score(as_read.shooting, fit_model(as_read.shooting, base, (Part(spring, {"factor": -30.0}),), starts))
     as_rival = prefer_relatives(case, as_read, Verdict("missing_physics", plain, (endless, plain)))
     assert [one.labels for one in as_rival.rivals] == [("linear_stiffness@load",)]
-    proof = held_out_proof(case, as_read, endless)
+    proof = prove_held_out(case, as_read, endless)
     found = prefer_relatives(case, as_read, Verdict("missing_physics", endless, (), proof=proof))
     assert (found.word, found.found.labels) == ("missing_physics", ("linear_stiffness@load",))
     assert found.found.model.parts[0].values["factor"] == pytest.approx(-30.0, rel=0.05)
@@ -204,8 +204,8 @@ def test_what_never_relaxes_or_yields_within_the_record_is_named_as_the_spring_t
 
 def test_what_relaxes_beyond_the_record_and_is_no_spring_either_is_not_named(case, as_read, cubic, labelled):
     parts = (Part(cubic, {"factor": -14.0}), Part(labelled["series_elasticity@load"], {"factor": 2.0, "tau": 5e13}))
-    model = as_read.model.refitted(as_read.shooting, parts, turns=0)
-    endless = scored(as_read.shooting, model)
-    proof = held_out_proof(case, as_read, endless)
+    model = as_read.model.refit(as_read.shooting, parts, turns=0)
+    endless = score(as_read.shooting, model)
+    proof = prove_held_out(case, as_read, endless)
     found = prefer_relatives(case, as_read, Verdict("missing_physics", endless, (), proof=proof))
     assert all(case.search.shows(one.model) for one in (found.found, *found.rivals))

@@ -15,10 +15,10 @@ from gaitdisc.discovery.paired_test import PairedTest
 from gaitdisc.errors import SchemaError, SimulationError
 from gaitdisc.simulation.compiled_simulation import Drive, Rows
 from gaitdisc.simulation.even_time import TrialColumns
-from gaitdisc.simulation.measured import Measured, measured_of_trials
+from gaitdisc.simulation.measured import Measured, check_measured
 from gaitdisc.simulation.parts import Parameter, Term
 from gaitdisc.simulation.running import compile_simulation
-from gaitdisc.simulation.simulation_file import simulation_of
+from gaitdisc.simulation.simulation_file import parse_simulation
 from gaitdisc.simulation.writing import simulation_text
 
 SEED = 3
@@ -119,7 +119,7 @@ def test_effects_with_states_of_their_own_and_of_inputs_are_named_and_written(tr
     assert discovery.held_out.after < 1.2 * discovery.held_out.noise_floor
     states = discovery.effects[0].states
     assert [state.name for state in augmented.states] == ["x", "v", *states]
-    again = simulation_of(simulation_text(augmented))
+    again = parse_simulation(simulation_text(augmented))
     assert again == augmented
 
 
@@ -273,7 +273,7 @@ def test_where_the_last_quarter_of_one_trial_alone_shows_a_gap_the_first_is_held
 
 
 def test_one_record_in_degrees_gives_the_same_name_and_estimates():
-    knee = simulation_of(KNEE, "knee.toml")
+    knee = parse_simulation(KNEE, "knee.toml")
     stop = knee.with_effect(Term("knee", "port", "hidden", "-110*max(0, theta - 0.25)"))
     seen = record(stop, SEED, Experiment(seconds=6.0))
     plain, degrees = (
@@ -303,7 +303,7 @@ def test_samples_that_are_too_far_apart_for_a_simulation_are_told_from_slow_ones
     slow = system({"x": "w*tanh(v)", "v": "-w*tanh(x)"}, parameters={"w": 1.0})
     time = 4.0 * np.arange(400)
     level = TrialColumns("1", time, np.empty((400, 0)), np.column_stack([np.sin(0.01 * time), np.cos(0.01 * time)]))
-    measured = measured_of_trials([level, replace(level, name="2")], (), ("x", "v"), "tank.csv")
+    measured = check_measured([level, replace(level, name="2")], (), ("x", "v"), "tank.csv")
     assert [one.kind for one in measured.findings] == ["clock"]
     assert refuse_blow_up(slow.with_values({"w": 0.01}), measured) and not refuse_blow_up(slow, measured)
 

@@ -4,7 +4,7 @@ from hypothesis import strategies as st
 
 from gaitdisc.simulation.parts import Sensor
 from gaitdisc.simulation.simulation_file import bundled
-from gaitdisc.simulation.unit_check import channel_unit, divided, places_unit, unit_of, unit_of_channel
+from gaitdisc.simulation.unit_check import channel_unit, divide, find_unit, places_unit, unit_of_channel
 from gaitdisc.units import unit_factor
 
 UNITS = ("N m", "N", "rad", "rad/s", "m/s", "kg m^2", "1", "N m s/rad", "1/s")
@@ -27,16 +27,16 @@ UNITS = ("N m", "N", "rad", "rad/s", "m/s", "kg m^2", "1", "N m s/rad", "1/s")
     ],
 )
 def test_units_follow_the_expression(expression, unit):
-    assert unit_of(expression, {"x": "rad", "v": "rad/s"}) == unit
+    assert find_unit(expression, {"x": "rad", "v": "rad/s"}) == unit
 
 
 def test_a_unit_that_nobody_knows_is_kept_as_a_word():
-    assert divided("furlong", "s") == "furlong/s"
+    assert divide("furlong", "s") == "furlong/s"
 
 
 @given(st.sampled_from(UNITS), st.sampled_from(UNITS))
 def test_dividing_agrees_with_the_units_of_the_simulation_file(unit, by):
-    said = divided(divided(unit, by), divided("1", by))
+    said = divide(divide(unit, by), divide("1", by))
     assert unit_factor(said, unit) == pytest.approx(1.0)
 
 

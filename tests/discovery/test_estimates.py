@@ -5,12 +5,12 @@ import numpy as np
 import pytest
 from hidden_in_a_mass import mass, record
 
-from gaitdisc.discovery.candidate import Candidate, candidates_of
+from gaitdisc.discovery.candidate import Candidate, list_candidates
 from gaitdisc.discovery.candidate_model import Part
-from gaitdisc.discovery.catalogue import Shape, known_shapes
+from gaitdisc.discovery.catalogue import Shape, read_shapes
 from gaitdisc.discovery.discover import discover
-from gaitdisc.discovery.estimates import NORMAL_95, named_estimates, slot_units, wrong_starts
-from gaitdisc.discovery.places import places_of
+from gaitdisc.discovery.estimates import NORMAL_95, name_estimates, slot_units, wrong_starts
+from gaitdisc.discovery.places import list_places
 from gaitdisc.simulation.running import compile_simulation
 
 
@@ -18,13 +18,13 @@ from gaitdisc.simulation.running import compile_simulation
 def candidates():
     base = mass()
     own = Shape("stick", ("x/(1 + x**2)",), names={"factor": "stiffness"})
-    return candidates_of(base, places_of(base, compile_simulation(base)), (*known_shapes(), own))
+    return list_candidates(base, list_places(base, compile_simulation(base)), (*read_shapes(), own))
 
 
 def named(candidates, label, values, piece=""):
     found = next(one for one in candidates if one.label == label and piece in str(one.pieces))
     slots = dict(zip(found.slots, values, strict=True))
-    return named_estimates(Part(found, slots), np.diag([0.01] * len(values)), mass())
+    return name_estimates(Part(found, slots), np.diag([0.01] * len(values)), mass())
 
 
 def test_a_stiffness_is_positive_where_it_resists_above_and_below(candidates):
@@ -73,7 +73,7 @@ def test_a_sine_and_a_cosine_are_an_amplitude_and_a_phase(candidates):
 
 def test_numbers_of_one_name_stay_apart():
     bumps = Candidate("missing_physics", "port", "load", "unnamed", ("exp(-x**2)", "exp(-(x - 1)**2)"))
-    said = named_estimates(Part(bumps, {"factor": 1.0, "factor_1": 2.0}), np.eye(2), mass())
+    said = name_estimates(Part(bumps, {"factor": 1.0, "factor_1": 2.0}), np.eye(2), mass())
     assert [one.value for one in said.values()] == [1.0, 2.0]
     assert slot_units(bumps, mass()) == {"factor": "N", "factor_1": "N"}
 

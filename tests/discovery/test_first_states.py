@@ -5,13 +5,13 @@ import pytest
 from hidden_in_a_mass import MASS, Experiment, mass, record
 
 from gaitdisc.discovery.case import set_up_case
-from gaitdisc.discovery.first_states import ObservationMap, followed, guess_states, with_own_states
+from gaitdisc.discovery.first_states import ObservationMap, follow, guess_states, with_own_states
 from gaitdisc.discovery.segments import Segments
 from gaitdisc.simulation.compiled_simulation import Drive
 from gaitdisc.simulation.measured import Measured
 from gaitdisc.simulation.parts import State
 from gaitdisc.simulation.running import compile_simulation
-from gaitdisc.simulation.simulation_file import simulation_of
+from gaitdisc.simulation.simulation_file import parse_simulation
 
 RATE, PERIOD = 50.0, 2.0
 T = np.arange(400) / RATE
@@ -50,7 +50,7 @@ def test_a_state_that_is_not_measured_follows_its_equation_where_it_forgets_its_
     text = MASS.replace("[inputs.push]", "[states.hidden]\ninitial = 0.7\n[inputs.push]")
     text = text.replace("[equations]", f'[equations]\nhidden = "{rate}"')
     text = text.replace('[observations]\nx = "x"', '[observations.x]\nexpression = "x"\nsd = 0.01')
-    states = _guess(X[None, :, None], simulation_of(text, "three.toml")).states
+    states = _guess(X[None, :, None], parse_simulation(text, "three.toml")).states
     np.testing.assert_allclose(states[0, :, 2], expected, atol=1e-6)
 
 
@@ -175,7 +175,7 @@ def with_lag(seconds):
 
 def test_a_lag_follows_its_input_as_the_convolution_with_its_exponential(shooting):
     machine = compile_simulation(with_lag(0.3))
-    (own,) = followed(shooting, machine.simulation, machine.defaults[None])
+    (own,) = follow(shooting, machine.simulation, machine.defaults[None])
     drive = shooting.measured.drive
     push, dt = drive.inputs[0, : drive.samples[0], 0], 1 / drive.rate
     k = 400  # the start is forgotten
@@ -189,10 +189,10 @@ def test_several_versions_are_followed_at_once_as_one_by_one(shooting):
     machine = compile_simulation(mass().with_state(State("z", "m", initial=0.0), "v - k*z"))
     values = np.stack([machine.defaults, machine.defaults])
     values[1, machine.parameters.index("k")] = 3.0
-    both = followed(shooting, machine.simulation, values)
+    both = follow(shooting, machine.simulation, values)
     assert both.shape[0] == 2
     for version in (0, 1):
-        np.testing.assert_array_equal(both[version], followed(shooting, machine.simulation, values[version][None])[0])
+        np.testing.assert_array_equal(both[version], follow(shooting, machine.simulation, values[version][None])[0])
     assert np.abs(both[0] - both[1]).max() > 0.01
 
 
@@ -202,7 +202,7 @@ def test_starts_are_completed_by_the_own_states_and_else_left_alone(shooting):
     starts = np.zeros((len(segments), 2))
     np.testing.assert_array_equal(with_own_states(shooting, plain, plain.defaults, starts), starts)
     whole = with_own_states(shooting, machine, machine.defaults, starts)
-    (own,) = followed(shooting, machine.simulation, machine.defaults[None])
+    (own,) = follow(shooting, machine.simulation, machine.defaults[None])
     np.testing.assert_array_equal(whole, np.column_stack([starts, own[segments.trial, segments.begin, 0]]))
 
 
@@ -210,7 +210,7 @@ def test_what_is_not_known_of_the_record_is_bridged(shooting):
     gappy = shooting.past.copy()
     gappy[0, 100:105] = np.nan
     machine = compile_simulation(mass().with_state(State("z", "m", initial=0.0), "v - z/0.2"))
-    (own,) = followed(replace(shooting, past=gappy), machine.simulation, machine.defaults[None])
-    (whole,) = followed(shooting, machine.simulation, machine.defaults[None])
+    (own,) = follow(replace(shooting, past=gappy), machine.simulation, machine.defaults[None])
+    (whole,) = follow(shooting, machine.simulation, machine.defaults[None])
     assert np.isfinite(own).all()
     assert np.abs(own - whole).max() < 0.1 * whole.std()

@@ -6,9 +6,9 @@ from scipy.linalg import null_space
 from gaitdisc.discovery.candidate import Candidate
 from gaitdisc.discovery.candidate_model import Part, fit_model
 from gaitdisc.discovery.case import set_up_case
-from gaitdisc.discovery.fitted import Fitted, prior_of, start_basis, without
+from gaitdisc.discovery.fitted import Fitted, read_prior, start_basis, without
 from gaitdisc.discovery.noise import white_noise
-from gaitdisc.simulation.simulation_file import simulation_of
+from gaitdisc.simulation.simulation_file import parse_simulation
 
 RNG = np.random.default_rng(0)
 
@@ -101,7 +101,7 @@ NOISE = 0.013
 
 def bounded(k=24.0, low=20.0, high=28.0):
     """The mass, its stiffness believed to lie between bounds; 24 is true."""
-    return simulation_of(MASS.replace("value = 24.0", f"value = {k}\nlow = {low}\nhigh = {high}"), "bounded.toml")
+    return parse_simulation(MASS.replace("value = 24.0", f"value = {k}\nlow = {low}\nhigh = {high}"), "bounded.toml")
 
 
 @pytest.fixture(scope="module")
@@ -116,7 +116,7 @@ def _fitted_mass(simulation, measured, parts=()):
 
 
 def test_half_the_width_is_two_standard_deviations():
-    prior = prior_of(bounded())
+    prior = read_prior(bounded())
     assert (prior.names, prior.sd.tolist()) == (("k",), [2.0])
     assert prior.left(np.array([2.0, 20.0, 0.8])).tolist() == [2.0]
     assert prior.within(np.array([2.0, 40.0, 0.8])).tolist() == [2.0, 28.0, 0.8]
@@ -124,8 +124,8 @@ def test_half_the_width_is_two_standard_deviations():
 
 @pytest.mark.parametrize("bounds", ["", "\nlow = 20.0", "\nhigh = 28.0", "\nlow = 24.0\nhigh = 24.0"])
 def test_a_number_without_two_bounds_is_exact(bounds):
-    exact = simulation_of(MASS.replace("value = 24.0", f"value = 24.0{bounds}"), "exact.toml")
-    assert prior_of(exact).names == ()
+    exact = parse_simulation(MASS.replace("value = 24.0", f"value = 24.0{bounds}"), "exact.toml")
+    assert read_prior(exact).names == ()
 
 
 def test_a_number_that_is_a_little_off_is_found_within_its_bounds(measured):

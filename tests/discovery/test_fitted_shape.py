@@ -5,9 +5,9 @@ import pytest
 from hidden_in_a_mass import MASS, Experiment, mass, record, with_load
 
 from gaitdisc.discovery.case import set_up_case
-from gaitdisc.discovery.fitted_shape import FLAT_BUMPS, fitted_shape, shapes_at
-from gaitdisc.simulation.expression import parsed
-from gaitdisc.simulation.simulation_file import simulation_of
+from gaitdisc.discovery.fitted_shape import FLAT_BUMPS, fit_shape, shapes_at
+from gaitdisc.simulation.expression import parse
+from gaitdisc.simulation.simulation_file import parse_simulation
 
 
 @pytest.fixture(scope="module")
@@ -21,7 +21,7 @@ def test_shapes_over_place_speed_and_both_are_tried(bumpy):
     shapes = shapes_at(case.search.places[0], now, case.search)
     assert {one.name for one in shapes} == {"unnamed"}
     assert len(shapes[0].pieces) == FLAT_BUMPS
-    assert all(parsed(piece) for one in shapes for piece in one.pieces)
+    assert all(parse(piece) for one in shapes for piece in one.pieces)
     assert any("x" in one.pieces[0] and "v" in one.pieces[0] for one in shapes)
 
 
@@ -44,7 +44,9 @@ def test_powers_of_two_states_are_tried_up_to_the_third_together(bumpy):
 
 
 def test_where_there_is_a_stride_a_shape_may_be_locked_to_it():
-    strides = simulation_of(MASS.replace("inputs.push", "inputs.phase").replace("(push +", "(phase +"), "stride.toml")
+    strides = parse_simulation(
+        MASS.replace("inputs.push", "inputs.phase").replace("(push +", "(phase +"), "stride.toml"
+    )
     case = set_up_case(strides, record(mass(), 0, Experiment(2, 4.0)))
     shapes = shapes_at(case.search.places[0], case.as_read(), case.search)
     assert any("phase" in one.pieces[0] for one in shapes)
@@ -52,7 +54,7 @@ def test_where_there_is_a_stride_a_shape_may_be_locked_to_it():
 
 def test_a_fitted_shape_closes_a_gap_that_has_no_name(bumpy):
     case, now = bumpy
-    shape = fitted_shape(case, now)
+    shape = fit_shape(case, now)
     assert shape is not None
     (part,) = shape.model.parts
     assert (part.candidate.name, part.candidate.place) == ("unnamed", "load")

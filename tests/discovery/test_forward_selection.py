@@ -5,7 +5,7 @@ from gaitdisc.discovery.candidate import Candidate
 from gaitdisc.discovery.candidate_model import Part
 from gaitdisc.discovery.case import set_up_case
 from gaitdisc.discovery.criteria import CRITERIA
-from gaitdisc.discovery.forward_selection import beside_others, exchanged, pruned, select_forward, settled
+from gaitdisc.discovery.forward_selection import beside_others, exchange, prune, select_forward, settled
 from gaitdisc.discovery.scored_model import ScoredModel, ranked
 
 DAMPER = Candidate("missing_physics", "port", "load", "viscous_damping", ("v",), None, "x")
@@ -20,7 +20,7 @@ def test_what_is_hidden_is_let_in_alone(named):
 
 
 def _with(case, as_read, *parts):
-    return ScoredModel(as_read.model.refitted(as_read.shooting, parts), as_read.shooting)
+    return ScoredModel(as_read.model.refit(as_read.shooting, parts), as_read.shooting)
 
 
 def _idle_and_true(case, as_read, cubic):
@@ -33,13 +33,11 @@ def _wrong_and_idle(case, as_read):
 
 
 def test_an_explanation_that_earns_nothing_is_thrown_out(case, as_read, cubic):
-    assert pruned(case.search, _idle_and_true(case, as_read, cubic), CRITERIA.margin).labels == (
-        "cubic_stiffness@load",
-    )
+    assert prune(case.search, _idle_and_true(case, as_read, cubic), CRITERIA.margin).labels == ("cubic_stiffness@load",)
 
 
 def test_a_wrong_explanation_is_exchanged_for_the_true_one(case, as_read):
-    assert "cubic_stiffness@load" in exchanged(case.search, _wrong_and_idle(case, as_read), set()).labels
+    assert "cubic_stiffness@load" in exchange(case.search, _wrong_and_idle(case, as_read), set()).labels
 
 
 def test_what_is_settled_holds_the_true_one_alone(case, as_read):
@@ -51,7 +49,7 @@ def test_beside_what_was_explored_already_nothing_is_sought_again(case, as_read)
     now = _wrong_and_idle(case, as_read)
     explored = {case.search.without(now, number).model.explanations for number in range(2)}
     assert len(explored) == 2
-    assert exchanged(case.search, now, explored) is now
+    assert exchange(case.search, now, explored) is now
 
 
 @pytest.fixture(scope="module")

@@ -2,7 +2,7 @@ import numpy as np
 import pytest
 
 from gaitdisc.discovery.catalogue import GRIDS
-from gaitdisc.discovery.grids import Rhythm, cells, delays, grid, rhythm_of
+from gaitdisc.discovery.grids import Rhythm, cells, delays, find_rhythm, grid
 
 RHYTHM = Rhythm(period=1.6, duration=20.0, rate=50.0)
 ALONG = np.linspace(-1.0, 3.0, 401)
@@ -12,19 +12,19 @@ ALONG = np.linspace(-1.0, 3.0, 401)
 def test_the_period_of_a_sine_is_read_off(period):
     t = np.arange(1000) / 50
     seen = np.sin(2 * np.pi * t / period) + np.random.default_rng(0).normal(0, 0.1, 1000)
-    assert rhythm_of(seen[None, :, None], 50.0).period == pytest.approx(period, rel=0.05)
+    assert find_rhythm(seen[None, :, None], 50.0).period == pytest.approx(period, rel=0.05)
 
 
 def test_the_offset_and_scale_of_a_channel_do_not_count():
     t = np.arange(800) / 50
     seen = np.sin(2 * np.pi * t)[None, :, None]
-    assert rhythm_of(1e3 * seen + 5e4, 50.0).period == pytest.approx(rhythm_of(seen, 50.0).period)
+    assert find_rhythm(1e3 * seen + 5e4, 50.0).period == pytest.approx(find_rhythm(seen, 50.0).period)
 
 
 def test_shorter_trials_are_padded_with_nan():
     t = np.arange(1000) / 50
     two = np.stack([np.sin(2 * np.pi * t / 2), np.where(t < 10, np.sin(2 * np.pi * t / 2), np.nan)])[..., None]
-    rhythm = rhythm_of(two, 50.0)
+    rhythm = find_rhythm(two, 50.0)
     assert rhythm.period == pytest.approx(2.0, rel=0.05)
     assert (rhythm.duration, rhythm.rate) == (20.0, 50.0)
 
@@ -75,4 +75,4 @@ def test_gaps_of_one_channel_after_the_other_leave_the_period():
     seen = np.stack([np.sin(2 * np.pi * t / 2), np.cos(2 * np.pi * t / 2)], axis=1)
     seen[::2, 0] = np.nan
     seen[1::2, 1] = np.nan
-    assert rhythm_of(seen[None], 50.0).period == pytest.approx(2.0, rel=0.05)
+    assert find_rhythm(seen[None], 50.0).period == pytest.approx(2.0, rel=0.05)

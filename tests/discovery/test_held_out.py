@@ -9,24 +9,24 @@ from gaitdisc.discovery.case import set_up_case
 from gaitdisc.discovery.first_states import StateGuess
 from gaitdisc.discovery.held_out import (
     Proof,
-    drawn_runs,
     gap_size,
     holding_out_others,
     is_uninformative,
     noted,
-    proof_of,
-    runs_of,
+    prove,
+    run_trials,
+    tabulate_runs,
 )
 from gaitdisc.discovery.paired_test import PairedTest
-from gaitdisc.discovery.scored_model import ScoredModel, scored
+from gaitdisc.discovery.scored_model import ScoredModel, score
 
 
 @pytest.fixture(scope="module")
 def runs(case, as_read, cubic):
     part = Part(cubic, {"factor": -14.0})
-    true = as_read.model.refitted(as_read.shooting, (part,))
+    true = as_read.model.refit(as_read.shooting, (part,))
     true = ScoredModel(true, as_read.shooting)
-    return tuple(runs_of(case, one, case.held_out, as_read) for one in (as_read, true))
+    return tuple(run_trials(case, one, case.held_out, as_read) for one in (as_read, true))
 
 
 def test_on_held_out_trials_nothing_is_found_but_the_starts(case, as_read, runs):
@@ -48,7 +48,7 @@ def test_the_truth_leaves_the_noise_and_nothing_else(case, runs):
 
 def test_runs_are_drawn_at_their_own_times(case, runs):
     before, after = runs
-    drawn = drawn_runs(case, before, after)
+    drawn = tabulate_runs(case, before, after)
     assert set(drawn.trial) == set(case.held_out)
     np.testing.assert_allclose(np.diff(drawn.time, axis=1), 1 / case.rhythm.rate)
     np.testing.assert_allclose(drawn.measured - drawn.augmented, after.fit.residual)
@@ -66,8 +66,8 @@ def test_the_truth_is_borne_out_and_what_is_worse_is_not(case, as_read, cubic):
         model = fit_model(shooting, case.search.base, (Part(cubic, {"factor": factor}),), as_read.model.fit.starts, 0)
         return ScoredModel(model, shooting)
 
-    assert proof_of(case, as_read, with_stiffness(-14.0), as_read).bears_out
-    worse = proof_of(case, as_read, with_stiffness(2.0), as_read)
+    assert prove(case, as_read, with_stiffness(-14.0), as_read).bears_out
+    worse = prove(case, as_read, with_stiffness(2.0), as_read)
     assert worse.test.fall < 0
     assert not worse.bears_out
     assert not worse.bears_out
@@ -85,11 +85,11 @@ def test_the_past_of_what_comes_late_is_the_runs_own():
     late = next(one for one in case.search.candidates if one.pieces == ("delay(x, _d)",))
     part = Part(late, {"factor": -4.0, "d": 0.21})
     starts = case.guess.starts(shooting.segments)
-    true = scored(shooting, fit_model(shooting, case.search.base, (part,), starts))
+    true = score(shooting, fit_model(shooting, case.search.base, (part,), starts))
     assert true.noise.size[0] < 0.03 * case.measured.observed.std()
     rough = replace(case, guess=StateGuess(case.guess.states + 0.3))
     wide = case.shooting(case.segments(case.learned, 3.0)).with_noise(true.noise)
-    run = runs_of(rough, true, case.held_out, replace(true, shooting=wide))
+    run = run_trials(rough, true, case.held_out, replace(true, shooting=wide))
     assert run.fit.residual.std() < 1.3 * true.noise.size[0]
 
 
@@ -98,10 +98,10 @@ def test_the_start_of_a_long_run_is_found_by_way_of_short_ones():
     case = set_up_case(neuron(), record(truth, 2, Experiment(seconds=40.0, noise=0.05)))
     as_read = case.as_read()
     b = next(one for one in case.search.candidates if one.label == "wrong_parameter@b")
-    true = as_read.model.refitted(as_read.shooting, (Part(b, {"value": 1.0}),))
-    longer = case.lengthened(scored(as_read.shooting, true))
+    true = as_read.model.refit(as_read.shooting, (Part(b, {"value": 1.0}),))
+    longer = case.lengthen(score(as_read.shooting, true))
     assert longer.shooting.segments.length > 4 * as_read.shooting.segments.length
-    run = runs_of(case, longer, case.held_out, longer)
+    run = run_trials(case, longer, case.held_out, longer)
     assert run.misfits.sum() < 1.2 * run.fit.white.size
 
 

@@ -8,12 +8,12 @@ from texts import says
 from gaitdisc.discovery.case import set_up_case
 from gaitdisc.discovery.discover import discover
 from gaitdisc.discovery.influence import nearly_off
-from gaitdisc.discovery.places import places_of
+from gaitdisc.discovery.places import list_places
 from gaitdisc.discovery.process_noise import rank_process_noise
 from gaitdisc.discovery.result import Estimate, FoundEffect
 from gaitdisc.errors import SimulationError
 from gaitdisc.simulation.running import compile_simulation
-from gaitdisc.simulation.simulation_file import simulation_of
+from gaitdisc.simulation.simulation_file import parse_simulation
 
 PORT = '[ports.load]\nunit = "N"\n'
 MUTED = MASS.replace("push + load", "push + load + 0*wind").replace(PORT, PORT + '[ports.wind]\nunit = "N"\n')
@@ -29,7 +29,7 @@ def measured():
 
 
 def findings_of(text, measured):
-    found, _ = discover(simulation_of(text), measured)
+    found, _ = discover(parse_simulation(text), measured)
     assert [(one.place, one.name) for one in found.effects] == [("load", "cubic_stiffness")]
     return [one.line() for one in found.findings if one.kind == "no influence"]
 
@@ -47,7 +47,7 @@ def test_a_state_that_nothing_sees_and_the_port_that_moves_it_are_said(measured)
 
 def test_a_parameter_without_influence_is_no_candidate(measured):
     more = MASS.replace("[ports.load]", "[parameters.colour]\nvalue = 3.0\n[ports.load]")
-    case = set_up_case(simulation_of(more), measured)
+    case = set_up_case(parse_simulation(more), measured)
     assert says(case.measured.findings[-1].what, "'colour'", "no", "what is measured")
     assert all(one.place != "colour" for one in case.search.candidates)
     assert any(one.place == "k" for one in case.search.candidates)
@@ -55,19 +55,19 @@ def test_a_parameter_without_influence_is_no_candidate(measured):
 
 def test_where_no_port_shows_the_simulation_is_refused(measured):
     with pytest.raises(SimulationError, match=r"\[ports\].*'load' affects none"):  # fmt: skip
-        discover(simulation_of(MASS.replace("push + load", "push + 0*load")), measured)
+        discover(parse_simulation(MASS.replace("push + load", "push + 0*load")), measured)
 
 
 @pytest.mark.parametrize("expression", ["0*x", "k", "3.5"])
 def test_an_observation_that_never_changes_is_refused(measured, expression):
     text = MASS.replace('[observations]\nx = "x"', f'[observations]\nx = "{expression}"')
     with pytest.raises(SimulationError, match=r"\[observations\].*measured channel must depend.*'x'"):  # fmt: skip
-        discover(simulation_of(text), measured)
+        discover(parse_simulation(text), measured)
 
 
 def test_a_port_that_shows_only_late_has_influence():
     slow = MASS.replace("k*x", "k*delay(x, 5)")
-    case = set_up_case(simulation_of(slow), record(mass(), 3, Experiment(trials=2, seconds=8.0)))
+    case = set_up_case(parse_simulation(slow), record(mass(), 3, Experiment(trials=2, seconds=8.0)))
     assert [place.name for place in case.search.places] == ["load"]
     assert case.measured.findings == ()
 
@@ -77,9 +77,9 @@ def test_all_has_influence_where_all_is_as_it_should_be(measured):
 
 
 def test_pushes_that_show_nowhere_explain_nothing(measured):
-    case = set_up_case(simulation_of(MUTED), measured)
+    case = set_up_case(parse_simulation(MUTED), measured)
     now = case.as_read()
-    places = places_of(case.search.base, compile_simulation(case.search.base))
+    places = list_places(case.search.base, compile_simulation(case.search.base))
     best, muted = rank_process_noise(now.shooting, now.model, places)
     assert (best.place.name, muted.place.name) == ("load", "wind")
     assert np.isfinite(best.bic) and np.isinf(muted.bic)

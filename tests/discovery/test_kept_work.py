@@ -45,7 +45,7 @@ def test_the_same_work_continues_where_it_was_stopped_last(tmp_path):
 def test_what_rests_on_something_else_is_computed_again(tmp_path, monkeypatch, changed):
     stopped(tmp_path, 4 if changed == "results before" else 1, 2, 7)
     if changed == "versions":
-        monkeypatch.setattr("gaitdisc.discovery.kept_work.installed_versions", lambda: {"numpy": "another"})
+        monkeypatch.setattr("gaitdisc.discovery.kept_work.list_versions", lambda: {"numpy": "another"})
     if changed == "file":
         (file,) = (tmp_path / "kept").iterdir()
         file.write_text(file.read_text().replace("0.33333", "0.44444"))

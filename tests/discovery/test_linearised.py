@@ -1,7 +1,7 @@
 import numpy as np
 import pytest
 
-from gaitdisc.discovery.linearised import Linearised, linearise, pushable, seen_change
+from gaitdisc.discovery.linearised import Linearised, carry_change, linearise, pushable
 from gaitdisc.simulation.evaluating import Points, evaluate
 from gaitdisc.simulation.parts import Term
 from gaitdisc.simulation.running import compile_simulation
@@ -48,7 +48,7 @@ def test_a_change_of_the_start_goes_on_as_in_the_run(as_read, line):
 
 
 def test_steps_land_on_the_run(as_read, line):
-    np.testing.assert_allclose(line.landed, as_read.model.fit.states[:, 1:], rtol=1e-9)
+    np.testing.assert_allclose(line.land, as_read.model.fit.states[:, 1:], rtol=1e-9)
 
 
 def test_pushes_have_parameters_that_are_zero(case, as_read):
@@ -61,7 +61,7 @@ def test_what_is_seen_of_a_change_is_the_observation_of_it(as_read):
     fit = as_read.model.fit
     change = np.random.default_rng(0).normal(size=(*fit.states.shape, 3))
     gained = as_read.model.simulation.with_observation("x", "2*x - 0.5*v")
-    seen = seen_change(as_read.shooting, compile_simulation(gained), fit, change)
+    seen = carry_change(as_read.shooting, compile_simulation(gained), fit, change)
     np.testing.assert_allclose(seen[:, :, 0], 2 * change[:, :, 0] - 0.5 * change[:, :, 1], rtol=1e-6, atol=1e-6)
 
 
@@ -70,7 +70,7 @@ def test_a_late_sensor_sees_the_change_late(as_read):
     change = np.zeros((*fit.states.shape, 1))
     change[:, 10:, 0] = 1.0
     lagging = as_read.model.simulation.with_observation("x", f"delay(x, {late / 50})")
-    seen = seen_change(as_read.shooting, compile_simulation(lagging), fit, change)[:, :, 0, 0]
+    seen = carry_change(as_read.shooting, compile_simulation(lagging), fit, change)[:, :, 0, 0]
     np.testing.assert_allclose(seen[:, 10 + late :], 1.0, rtol=1e-4)
     np.testing.assert_allclose(seen[:, late : 10 + late - 1], 0.0, atol=1e-6)
 

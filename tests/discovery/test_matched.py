@@ -9,7 +9,7 @@ from hidden_in_a_mass import Experiment, mass, record
 from gaitdisc.discovery.case import set_up_case
 from gaitdisc.discovery.catalogue import Request, Shape
 from gaitdisc.discovery.discover import discover
-from gaitdisc.discovery.matched import matched
+from gaitdisc.discovery.matched import match_channels
 from gaitdisc.errors import GaitdiscError, SamplingError, SimulationError
 from gaitdisc.simulation.compiled_simulation import Drive
 from gaitdisc.simulation.parts import Sensor
@@ -84,9 +84,9 @@ def test_what_does_not_fit_is_refused_in_words(measured, wrong):
 
 def test_of_the_observations_those_that_were_measured_are_kept(measured):
     both = mass().with_observation("v", "v")
-    assert matched(both, measured).observations == (("x", "x"),)
+    assert match_channels(both, measured).observations == (("x", "x"),)
     assert set_up_case(both, measured).search.base.observations == (("x", "x"),)
-    assert matched(mass(), measured) is not None and matched(mass(), measured) == mass()
+    assert match_channels(mass(), measured) is not None and match_channels(mass(), measured) == mass()
 
 
 def test_channels_are_found_by_name_whatever_their_order(measured):
@@ -94,7 +94,7 @@ def test_channels_are_found_by_name_whatever_their_order(measured):
     swapped = replace(
         measured, channels=("v", "x"), observed=np.concatenate([0.5 * measured.observed, measured.observed], 2)
     )
-    assert [name for name, _ in matched(both, swapped).observations] == ["v", "x"]
+    assert [name for name, _ in match_channels(both, swapped).observations] == ["v", "x"]
 
 
 @pytest.mark.parametrize(
@@ -126,5 +126,5 @@ def test_a_delay_of_the_simulation_longer_than_the_shortest_trial_is_refused(mea
 def test_a_filter_beyond_half_the_rate_is_refused(measured):
     filtered = mass().with_sensor(Sensor("x", lowpass=25.0))
     with pytest.raises(SamplingError, match=r"25 Hz.*\[observations.x\].*walk.csv.*50 samples"):
-        matched(filtered, measured)
-    assert matched(mass().with_sensor(Sensor("x", lowpass=24.0)), measured).sensors
+        match_channels(filtered, measured)
+    assert match_channels(mass().with_sensor(Sensor("x", lowpass=24.0)), measured).sensors

@@ -12,7 +12,7 @@ from texts import says
 from gaitdisc.discovery.case import set_up_case
 from gaitdisc.discovery.discover import discover
 from gaitdisc.discovery.folder import save_discovery
-from gaitdisc.discovery.odd_trials import agreeing_trials, odd_trials, shifted, without_trial_apart
+from gaitdisc.discovery.odd_trials import agreeing_trials, odd_trials, shift_channels, without_trial_apart
 from gaitdisc.discovery.page import write_discovery_report
 from gaitdisc.discovery.search import Search
 from gaitdisc.simulation.compiled_simulation import Drive, Rows
@@ -33,7 +33,7 @@ def turned(measured, trial, channel=0):
 
 def moved_in_time(measured, trial, samples):
     """Return trials of one length, the channels of one of them so many samples early (late where negative)."""
-    every, length = shifted(measured, samples), measured.observed.shape[1] - abs(samples)
+    every, length = shift_channels(measured, samples), measured.observed.shape[1] - abs(samples)
     observed, inputs = np.array(measured.observed[:, :length]), np.array(measured.drive.inputs[:, :length])
     observed[trial], inputs[trial] = every.observed[trial], every.drive.inputs[trial]
     return replace(measured, drive=replace(every.drive, inputs=inputs, time0=measured.drive.time0), observed=observed)
@@ -120,7 +120,7 @@ def test_two_against_two_are_left_as_they_are(cubic):
 
 def test_trials_are_shifted_against_their_inputs(cubic):
     for shift in (3, -3):
-        moved = shifted(cubic, shift)
+        moved = shift_channels(cubic, shift)
         assert moved.samples.tolist() == [597] * 4
         np.testing.assert_array_equal(moved.observed[2], cubic.observed[2, max(shift, 0) :][:597])
         np.testing.assert_array_equal(moved.drive.inputs[2], cubic.drive.inputs[2, max(-shift, 0) :][:597])

@@ -1,11 +1,11 @@
 import pytest
 from hidden_in_a_mass import MASS, TWO_RODS, mass, two_rods
 
-from gaitdisc.discovery.candidate import candidates_of
-from gaitdisc.discovery.catalogue import known_shapes
-from gaitdisc.discovery.places import driven_state, kinematic_rates, places_of
+from gaitdisc.discovery.candidate import list_candidates
+from gaitdisc.discovery.catalogue import read_shapes
+from gaitdisc.discovery.places import find_driven_state, kinematic_rates, list_places
 from gaitdisc.simulation.running import compile_simulation
-from gaitdisc.simulation.simulation_file import simulation_of
+from gaitdisc.simulation.simulation_file import parse_simulation
 
 LORENZ = """
 [states.x]
@@ -19,7 +19,7 @@ z = "x*y - 2.7*z"
 
 
 def _places(simulation):
-    return {place.name: place for place in places_of(simulation, compile_simulation(simulation))}
+    return {place.name: place for place in list_places(simulation, compile_simulation(simulation))}
 
 
 def test_a_state_whose_derivative_is_another_state_is_kinematic():
@@ -29,7 +29,7 @@ def test_a_state_whose_derivative_is_another_state_is_kinematic():
 
 def test_a_rate_that_is_scaled_is_not_kinematic():
     text = MASS.replace('x = "v"', 'x = "2*v"')
-    scaled = simulation_of(text, "scaled.toml")
+    scaled = parse_simulation(text, "scaled.toml")
     assert kinematic_rates(scaled, compile_simulation(scaled)) == {}
 
 
@@ -37,7 +37,7 @@ def test_a_port_sees_the_motion_that_it_drives():
     place = _places(mass())["load"]
     assert (place.kind, place.motions, place.others, place.angle) == ("port", (("x", "v"),), (), False)
     assert place.products == (("x", "v"),)
-    held = simulation_of(MASS.replace("push + load", "push - load"), "held.toml")  # a push holds it back
+    held = parse_simulation(MASS.replace("push + load", "push - load"), "held.toml")  # a push holds it back
     assert (place.power, _places(held)["load"].power) == (1.0, -1.0)
 
 
@@ -55,12 +55,12 @@ def test_in_a_chain_each_joint_sees_its_own_angle_first_then_the_difference_then
 
 
 def test_a_port_with_a_name_of_its_own_drives_what_it_moves_most():
-    renamed = simulation_of(TWO_RODS.replace("lower_moment", "brace"), "renamed.toml")
-    assert driven_state(renamed, compile_simulation(renamed), "brace") == "upper_rate"
+    renamed = parse_simulation(TWO_RODS.replace("lower_moment", "brace"), "renamed.toml")
+    assert find_driven_state(renamed, compile_simulation(renamed), "brace") == "upper_rate"
 
 
 def test_a_model_without_ports_takes_effects_in_every_equation():
-    places = _places(simulation_of(LORENZ, "lorenz.toml"))
+    places = _places(parse_simulation(LORENZ, "lorenz.toml"))
     assert list(places) == ["x", "y", "z"]
     assert places["y"].kind == "equation"
     assert places["y"].motions == (("y", ""),)
@@ -69,12 +69,12 @@ def test_a_model_without_ports_takes_effects_in_every_equation():
 
 def test_a_kinematic_equation_takes_no_effect():
     portless = MASS.replace('[ports.load]\nunit = "N"\n', "").replace("push + load", "push")
-    assert list(_places(simulation_of(portless, "portless.toml"))) == ["v"]
+    assert list(_places(parse_simulation(portless, "portless.toml"))) == ["v"]
 
 
 def test_a_state_in_metres_a_second_without_its_position_is_a_speed():
     """Drag and friction act on it, and no spring."""
-    simulation = simulation_of("""
+    simulation = parse_simulation("""
 title = "A sled that is pushed"
 [states.v]
 unit = "m/s"
@@ -83,8 +83,8 @@ unit = "N"
 [equations]
 v = "push/80"
 """)
-    (place,) = places_of(simulation, compile_simulation(simulation))
+    (place,) = list_places(simulation, compile_simulation(simulation))
     assert place.motions == (("v", "v"),)
-    names = {one.name for one in candidates_of(simulation, (place,), known_shapes()) if one.kind == "equation"}
+    names = {one.name for one in list_candidates(simulation, (place,), read_shapes()) if one.kind == "equation"}
     assert {"viscous_damping", "coulomb_friction", "quadratic_drag"} <= names
     assert not {"linear_stiffness", "cubic_stiffness", "one_sided_spring", "dead_zone_spring"} & names

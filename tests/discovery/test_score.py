@@ -63,7 +63,7 @@ def test_the_best_limit_of_the_grid_is_near_the_true_one():
 
 def test_an_effect_that_is_let_in_already_promises_nothing_more(case, as_read, cubic):
     part = Part(cubic, {"factor": -14.0})
-    model = as_read.model.refitted(as_read.shooting, (part,))
+    model = as_read.model.refit(as_read.shooting, (part,))
     before, after = _scores(case, as_read), _scores(case, replace(as_read, model=model))
     assert after["cubic_stiffness@load"].gain < 1e-3 * before["cubic_stiffness@load"].gain
 
@@ -85,7 +85,7 @@ def test_a_sensor_that_lags_already_is_not_delayed_again():
 def test_what_is_left_without_a_trial_is_what_the_others_alone_would_leave(case, as_read):
     model, candidates = as_read.model, case.search.candidates
     scorer = case.search.scorer(as_read.shooting, model)
-    left = scorer.left_without_each(candidates)
+    left = scorer.leave_out_each(candidates)
     for trial in np.unique(as_read.shooting.segments.trial):
         some = np.flatnonzero(as_read.shooting.segments.trial != trial)
         parts = {name: getattr(model.fit, name)[some] for name in ("starts", "states", "residual", "white", "slopes")}

@@ -6,30 +6,30 @@ import pytest
 from gaitdisc.discovery.candidate import Candidate
 from gaitdisc.discovery.candidate_model import Part
 from gaitdisc.discovery.criteria import CRITERIA
-from gaitdisc.discovery.scored_model import ScoredModel, compared, ranked, scored
+from gaitdisc.discovery.scored_model import ScoredModel, compared, ranked, score
 
 
 @pytest.fixture(scope="module")
 def with_cubic(case, as_read, cubic):
     part = Part(cubic, {"factor": -14.0})
-    return ScoredModel(as_read.model.refitted(as_read.shooting, (part,)), as_read.shooting)
+    return ScoredModel(as_read.model.refit(as_read.shooting, (part,)), as_read.shooting)
 
 
 def test_under_its_own_noise_an_account_leaves_numbers_of_unit_variance(case, as_read, with_cubic):
-    own = scored(as_read.shooting, with_cubic.model)
+    own = score(as_read.shooting, with_cubic.model)
     fit = own.model.fit
     used = fit.starts.size + 1
     assert fit.misfit / (fit.white.size - used) == pytest.approx(1.0, abs=0.1)
 
 
 def test_the_noise_of_the_true_account_is_that_of_the_sensor(case, as_read, with_cubic):
-    own = scored(as_read.shooting, with_cubic.model)
+    own = score(as_read.shooting, with_cubic.model)
     hidden = 0.02 * case.measured.observed.std()
     assert own.noise.size[0] == pytest.approx(hidden, rel=0.1)
 
 
 def test_what_comes_late_sees_the_past_of_the_account_and_not_of_the_simulation_as_read(case, as_read, with_cubic):
-    own = scored(as_read.shooting, with_cubic.model)
+    own = score(as_read.shooting, with_cubic.model)
     past, states = own.shooting.segments.of(own.shooting.past), own.model.fit.states
     apart = np.abs(states - as_read.model.fit.states).max()
     assert np.abs(past - states).max() < 0.01 * apart
@@ -40,7 +40,7 @@ def test_where_the_simulation_errs_by_a_share_of_the_spread_the_noise_is_no_less
 ):
     base = replace(case.search.base, inexact=0.1)
     models = with_cubic.model, replace(with_cubic.model, base=base)
-    exact, inexact = (scored(as_read.shooting, one) for one in models)
+    exact, inexact = (score(as_read.shooting, one) for one in models)
     spread = case.measured.observed.std()
     assert inexact.noise.size[0] ** 2 == pytest.approx(exact.noise.size[0] ** 2 + (0.1 * spread) ** 2, rel=0.05)
     gains = [plain.bic - true.bic for plain, true in (compared([as_read, one]) for one in (exact, inexact))]
@@ -72,7 +72,7 @@ def test_labels_name_what_is_in(as_read, with_cubic):
 
 
 def test_under_anothers_noise_what_was_gained_stays(case, as_read, with_cubic):
-    own = scored(as_read.shooting, with_cubic.model)
+    own = score(as_read.shooting, with_cubic.model)
     moved = replace(as_read, gained=7.0).under(own)
     assert (moved.gained, moved.noise) == (7.0, own.noise)
 

@@ -63,7 +63,7 @@ def test_slopes_are_those_of_finite_differences():
     values = machine.defaults.copy()
     values[machine.parameters.index("k")] += 0.01
     states, observed = shooting.run(machine, np.stack([starts, starts]), np.stack([machine.defaults, values]))
-    change = shooting.whitened(observed[1] - observed[0]) / 0.01
+    change = shooting.whiten(observed[1] - observed[0]) / 0.01
     np.testing.assert_allclose(fit.slopes[..., 2], change, rtol=0.01, atol=1e-3 * np.abs(change).max())
     assert states.shape == (2, len(shooting.segments), shooting.segments.length, 2)
 
@@ -72,7 +72,7 @@ def test_steps_land_where_the_run_goes_on():
     shooting, starts = _shooting()
     machine = compile_simulation(mass())
     states, _ = shooting.run(machine, starts[None], machine.defaults[None])
-    landed = shooting.landed(machine, states[:, :, :-1], machine.defaults[None])
+    landed = shooting.land(machine, states[:, :, :-1], machine.defaults[None])
     np.testing.assert_allclose(landed, states[:, :, 1:], rtol=1e-12)
 
 

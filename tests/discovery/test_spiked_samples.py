@@ -10,7 +10,7 @@ from hidden_in_a_mass import Experiment, mass, record, with_load
 from texts import says
 
 from gaitdisc.discovery.discover import discover
-from gaitdisc.discovery.spiked_samples import spiked, without_spikes
+from gaitdisc.discovery.spiked_samples import mark_spikes, without_spikes
 from gaitdisc.simulation.measured_table import read_measured
 from gaitdisc.simulation.simulation_file import read_simulation
 
@@ -48,7 +48,7 @@ def test_single_samples_far_from_their_neighbours_are_marked_and_no_other(size):
     x, rng = np.sin(5 * T) + 0.05 * NOISE, np.random.default_rng(2)
     here = rng.choice(np.arange(3, 2997, 4), 30, replace=False)
     x[here] += size * rng.choice([-1, 1], 30)
-    assert np.flatnonzero(spiked(x)).tolist() == sorted(here)
+    assert np.flatnonzero(mark_spikes(x)).tolist() == sorted(here)
 
 
 def test_up_to_three_in_a_row_are_marked_and_four_are_not():
@@ -56,14 +56,14 @@ def test_up_to_three_in_a_row_are_marked_and_four_are_not():
     x[100:103] += 3.0
     x[200:202] -= [2.0, 4.0]
     x[300:304] += 3.0
-    assert np.flatnonzero(spiked(x)).tolist() == [100, 101, 102, 200, 201]
+    assert np.flatnonzero(mark_spikes(x)).tolist() == [100, 101, 102, 200, 201]
 
 
 def test_the_first_and_the_last_sample_may_be_spikes_and_empty_cells_stay():
     x = np.sin(5 * T)
     x[[0, -1]] += 5.0
     x[1000:1040] = np.nan
-    assert np.flatnonzero(spiked(x)).tolist() == [0, 2999]
+    assert np.flatnonzero(mark_spikes(x)).tolist() == [0, 2999]
 
 
 @pytest.mark.parametrize(
@@ -80,8 +80,8 @@ def test_the_first_and_the_last_sample_may_be_spikes_and_empty_cells_stay():
     ],
 )
 def test_what_moves_fast_has_no_spikes(motion):
-    assert not spiked(motion).any()
-    assert not spiked(motion + 0.01 * NOISE[: len(motion)]).any()
+    assert not mark_spikes(motion).any()
+    assert not mark_spikes(motion + 0.01 * NOISE[: len(motion)]).any()
 
 
 def test_spikes_are_emptied_with_channel_trial_number_and_time():

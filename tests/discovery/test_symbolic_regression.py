@@ -7,10 +7,10 @@ from hidden_in_a_mass import Experiment, mass, record, with_load
 
 from gaitdisc.discovery.candidate import Candidate
 from gaitdisc.discovery.case import set_up_case
-from gaitdisc.discovery.decision import Verdict, held_out_proof
+from gaitdisc.discovery.decision import Verdict, prove_held_out
 from gaitdisc.discovery.discover import discover
-from gaitdisc.discovery.fitted_shape import fitted_shape
-from gaitdisc.discovery.symbolic_regression import effect_of, read_instead, read_shape
+from gaitdisc.discovery.fitted_shape import fit_shape
+from gaitdisc.discovery.symbolic_regression import find_effect, read_instead, read_shape
 
 
 def asked(term):
@@ -22,8 +22,8 @@ def asked(term):
 def damped():
     """A damping that grows with the square of the displacement, which no effect of the catalogue is, and its shape."""
     case, as_read = asked("-8*x**2*v")
-    shape = fitted_shape(case, as_read)
-    return case, as_read, Verdict("unnamed", shape, (), proof=held_out_proof(case, as_read, shape))
+    shape = fit_shape(case, as_read)
+    return case, as_read, Verdict("unnamed", shape, (), proof=prove_held_out(case, as_read, shape))
 
 
 def test_a_shape_is_read_as_the_product_that_was_hidden(damped):
@@ -38,9 +38,9 @@ def test_a_shape_is_read_as_the_product_that_was_hidden(damped):
 def test_a_reading_that_is_an_effect_of_the_catalogue_is_said_to_be_one(damped):
     search = damped[0].search
     like = Candidate("missing_physics", "port", "load", "unnamed", ("x**3",), {}, "x", "")
-    assert effect_of(search, like) == "cubic_stiffness"
+    assert find_effect(search, like) == "cubic_stiffness"
     bump = Candidate("missing_physics", "port", "load", "unnamed", ("exp(-((x - _c)/_w)**2)",), {}, "x", "")
-    assert effect_of(search, bump) == ""
+    assert find_effect(search, bump) == ""
 
 
 def test_what_is_no_learned_shape_is_not_read(damped):

@@ -14,7 +14,7 @@ from gaitdisc.discovery.input_errors import with_constant_errors, with_drawn_err
 from gaitdisc.discovery.uncertain_inputs import covariance_by_inputs, weigh_unstated_errors
 from gaitdisc.simulation.measured import Measured
 from gaitdisc.simulation.simulation import Simulation
-from gaitdisc.simulation.simulation_file import simulation_of
+from gaitdisc.simulation.simulation_file import parse_simulation
 from gaitdisc.simulation.writing import simulation_text
 
 SEED = 3
@@ -62,7 +62,7 @@ def test_a_gain_within_its_stated_error_is_corrected_and_not_named():
     assert (found.verdict, found.effects) == ("no_gap", ())
     (moved,) = found.corrections
     assert moved.parameter == "gain_of_push" and moved.found.low < 1.12 < moved.found.high
-    again = simulation_of(simulation_text(augmented))
+    again = parse_simulation(simulation_text(augmented))
     assert again.values()["gain_of_push"] == pytest.approx(1.12, rel=0.02)
     assert with_constant_errors(again) == again
 
@@ -123,7 +123,7 @@ def test_gains_of_two_inputs_together_explain_what_neither_does_alone():
     pull = np.roll(total, 1, axis=0)
     measured = _driven(measured, np.concatenate([(total - pull) / 1.2, pull / 0.85], axis=2))
     case = set_up_case(
-        simulation_of(two.replace("[parameters.m]", '[inputs.pull]\nunit = "N"\n[parameters.m]')), measured
+        parse_simulation(two.replace("[parameters.m]", '[inputs.pull]\nunit = "N"\n[parameters.m]')), measured
     )
     verdict = fit_given(case, case.as_read(), ("input_gain@push", "cubic_stiffness@load"))
     weighed, after = weigh_unstated_errors(case, verdict)

@@ -7,19 +7,19 @@ from texts import says
 
 from gaitdisc.discovery.candidate import Candidate
 from gaitdisc.discovery.candidate_model import Part
-from gaitdisc.discovery.catalogue import known_shapes
+from gaitdisc.discovery.catalogue import read_shapes
 from gaitdisc.discovery.result import Correction, Estimate, Explanation, FoundEffect, GapSize, Whereabouts
-from gaitdisc.discovery.wording import sentence_of
+from gaitdisc.discovery.wording import write_sentence
 from gaitdisc.simulation.simulation_file import bundled
 
-SHAPE = next(one for one in known_shapes() if one.name == "one_sided_spring")
+SHAPE = next(one for one in read_shapes() if one.name == "one_sided_spring")
 WHERE = ("missing_physics", "port", "ankle_moment", "one_sided_spring", ("max(0, theta - _x0)",))
 ENGAGED = Candidate(*WHERE, {"x0": "quantiles of x"}, "theta", SHAPE.means, names=SHAPE.names)
 SHOWN = " With it, the held-out error falls from 3.09 to 0.60 deg (noise floor 0.50)."
 
 
 def sentence(base=None, parts=(ENGAGED,), **changes):
-    made = sentence_of(manufactured(**changes), base or bundled("ankle"), tuple(Part(one, {}) for one in parts))
+    made = write_sentence(manufactured(**changes), base or bundled("ankle"), tuple(Part(one, {}) for one in parts))
     return made.sentence
 
 

@@ -7,7 +7,7 @@ import pytest
 from gaitdisc.engines.engine import read_model
 from gaitdisc.engines.motion import new_name
 from gaitdisc.errors import GaitdiscError, ReadError
-from gaitdisc.simulation.expression import names, parsed
+from gaitdisc.simulation.expression import names, parse
 from gaitdisc.simulation.simulation_file import is_model
 
 
@@ -30,7 +30,7 @@ def test_a_missing_file_and_a_missing_engine_are_refused(tmp_path, monkeypatch):
 )
 def test_any_name_becomes_one_that_an_expression_knows(called):
     name = new_name(called, "joint", set())
-    assert set(names(parsed(f"2*{name} + 1"))) == {name}
+    assert set(names(parse(f"2*{name} + 1"))) == {name}
     assert new_name(called, "joint", {name}) != name
 
 

@@ -6,11 +6,11 @@ import numpy as np
 from texts import says
 
 from gaitdisc.engines.engine import read_model
-from gaitdisc.engines.expansion import FASTEST, _slowed, expanded
-from gaitdisc.engines.mapping import drafted, with_input_changed
+from gaitdisc.engines.expansion import FASTEST, _slow_speeds, expand
+from gaitdisc.engines.mapping import draft, with_input_changed
 from gaitdisc.engines.motion import Motion
-from gaitdisc.engines.own_runs import Driven, OwnRuns, Stretches, left_by, root_mean_square, stretches_of
-from gaitdisc.engines.written import written_model
+from gaitdisc.engines.own_runs import Driven, OwnRuns, Stretches, residual_by, root_mean_square, spread_stretches
+from gaitdisc.engines.written import write_model
 from gaitdisc.simulation.compiled_simulation import Drive, Rows
 from gaitdisc.simulation.measured import Measured
 from gaitdisc.simulation.parts import Term
@@ -31,7 +31,7 @@ def recorded(model):
 def test_runs_near_the_record_are_those_of_the_engine(pendulum):
     model = read_model(pendulum)
     controls, measured, whole = recorded(model)
-    linear, driven = expanded(drafted(model), model, measured, whole)
+    linear, driven = expand(draft(model), model, measured, whole)
     machine = compile_simulation(linear)
     start = whole[:, 0]
     run = machine.run(driven.drive, Rows(np.zeros(1, int), np.zeros(1, int), start), SAMPLES - 1)[0]
@@ -47,7 +47,7 @@ def test_runs_near_the_record_are_those_of_the_engine(pendulum):
     assert np.allclose(machine.rates(*point)[:, 1:], model.accelerations(at, {}), rtol=1e-9)
     assert np.allclose(pushed.rates(*point)[:, 1:], model.accelerations(at, {}, np.full((1, 1), 2.5)), rtol=1e-9)
 
-    half = expanded(with_input_changed(drafted(model), "drive", "0.5*drive"), model, measured, whole)[0]
+    half = expand(with_input_changed(draft(model), "drive", "0.5*drive"), model, measured, whole)[0]
     at = Motion(at.q, at.v, at.u / 2)
     assert np.allclose(compile_simulation(half).rates(*point)[:, 1:], model.accelerations(at, {}), rtol=1e-9)
     at = Motion(at.q, at.v, at.u * 2)
@@ -55,7 +55,7 @@ def test_runs_near_the_record_are_those_of_the_engine(pendulum):
     heavier = compile_simulation(linear.with_values({"rod_mass": 2.02}))
     wanted = model.accelerations(at, {"rod_mass": 2.02})
     assert np.allclose(heavier.rates(*point)[:, 1:], wanted, rtol=1e-3)
-    around, other = expanded(drafted(model), model, measured, whole, {"rod_mass": 2.02})
+    around, other = expand(draft(model), model, measured, whole, {"rod_mass": 2.02})
     again = compile_simulation(replace(around, parameters=around.with_values({"rod_mass": 2.02}).parameters))
     assert np.allclose(again.rates(*point[:2], other.drive.inputs[:, 70])[:, 1:], wanted, rtol=1e-9)
 
@@ -67,9 +67,9 @@ def test_a_run_beside_the_record_is_that_of_the_muscles_whose_fibres_follow(elbo
     begun = Motion(np.array([[0.2]]), np.zeros((1, 1)), u[:1])
     whole = model.run(begun, u[None], RATE)
     measured = Measured(Drive.of([u], RATE), whole[:, :, :1], ("1",), ("elbow",))
-    mapping = drafted(model)
+    mapping = draft(model)
     quick = replace(mapping, parameters=mapping.parameters[:1], equations=_rest(mapping))
-    linear, driven = expanded(quick, model, measured, whole)
+    linear, driven = expand(quick, model, measured, whole)
     first, count = 15, 40
     along = model.along(whole[0, :, :1], whole[0, :, 1:], u, RATE).at(np.array([first]))
     off = whole[0, [first]] + np.array([[0.035, 0.3]])
@@ -94,7 +94,7 @@ def _rest(mapping):
 
 def test_what_is_too_fast_for_a_run_is_made_heavier_and_comes_to_rest_at_the_same_place():
     damping = np.array([[[1200.0, 30.0], [10.0, 20.0]]])
-    factor, more = _slowed(damping)
+    factor, more = _slow_speeds(damping)
     assert np.allclose(factor @ (more + np.eye(2)), np.eye(2))
     before, after = (np.sort(np.linalg.eigvals(each[0]).real) for each in (damping, factor @ damping))
     assert np.isclose(after[1], FASTEST) and np.isclose(before[0], after[0])
@@ -105,7 +105,7 @@ def test_a_joint_whose_damping_settles_in_half_a_millisecond_can_be_followed(pen
     pendulum.write_text(stiff)
     model = read_model(pendulum)
     controls, measured, whole = recorded(model)
-    linear, driven = expanded(drafted(model), model, measured, whole)
+    linear, driven = expand(draft(model), model, measured, whole)
     aside = Rows(np.zeros(1, int), np.full(1, 20), whole[:, 20] + np.array([0.05, 0.0]))
     run, ok = compile_simulation(linear).run(driven.drive, aside, 60, substeps=2)
     own = model.run(Motion(aside.starts[:, :1], aside.starts[:, 1:], controls[:1]), controls[None, 20:81], RATE)
@@ -122,13 +122,13 @@ def test_the_true_model_meets_its_own_record_from_a_wrong_start(pendulum, tmp_pa
     whole = sprung.run(Motion(np.array([[0.3]]), np.array([[0.5]]), np.zeros((1, 1))), controls[None], 100.0)
     seen = np.rad2deg(whole[:, :, :1])
     measured = Measured(Drive.of([controls], 100.0), seen, ("1",), ("pivot",))
-    at, units = stretches_of(measured, 50.0, fewer=True), {"pivot": "deg"}
-    mapping, begun = drafted(plain, degrees=True), whole + np.array([0.02, 0.1])
+    at, units = spread_stretches(measured, 50.0, fewer=True), {"pivot": "deg"}
+    mapping, begun = draft(plain, degrees=True), whole + np.array([0.02, 0.1])
     by_hand = mapping.with_effect(Term("pivot_moment", "port", "unnamed", "-6*sin(pivot) - (pivot - sin(pivot))*6"))
-    forced = written_model(plain, by_hand)
+    forced = write_model(plain, by_hand)
     assert forced.engine.pushes and not forced.absent and forced.text == plain.path.read_text()
     models = (plain, sprung, forced.engine)
-    left = [left_by(Driven(one, mapping, measured.drive.inputs), measured, at, begun) for one in models]
+    left = [residual_by(Driven(one, mapping, measured.drive.inputs), measured, at, begun) for one in models]
     before, after, pushed = (float(root_mean_square(one)[0]) for one in left)
     assert after < 1e-4 and pushed < 1e-4 and before > 0.5
     found = OwnRuns(left[0], left[1], at, "MuJoCo", units, np.array([1e-4]), 2)
@@ -137,7 +137,7 @@ def test_the_true_model_meets_its_own_record_from_a_wrong_start(pendulum, tmp_pa
 
 def test_no_sample_is_compared_in_two_runs_and_none_at_the_ends_of_a_filtered_one():
     drive = Drive.of([np.zeros((400, 0)), np.zeros((310, 0))], 100.0)
-    at = stretches_of(Measured(drive, np.zeros((2, 400, 1)), ("1", "2"), ("x",)), 117.0, margin=17)
+    at = spread_stretches(Measured(drive, np.zeros((2, 400, 1)), ("1", "2"), ("x",)), 117.0, margin=17)
     inner = [range(first + 17, first + at.length - 17) for first in at.first]
     for trial, samples in ((0, 400), (1, 310)):
         compared = [k for one, of in zip(inner, at.trial, strict=True) if of == trial for k in one]

@@ -11,9 +11,9 @@ from texts import says
 
 from gaitdisc.engines.conventions import refuse_other_conventions, refuse_other_units
 from gaitdisc.engines.engine import read_model
-from gaitdisc.engines.mapping import drafted, other_values, read_mapping, write_mapping
+from gaitdisc.engines.mapping import draft, other_values, read_mapping, write_mapping
 from gaitdisc.engines.motion import Coordinate, Motion
-from gaitdisc.engines.tracked_files import drafted_tracked
+from gaitdisc.engines.tracked_files import draft_tracked
 from gaitdisc.engines.tracked_mapping import Tracked, read_tracked, write_tracked_mapping
 from gaitdisc.errors import GaitdiscError, SchemaError
 from gaitdisc.simulation.compiled_simulation import Drive
@@ -80,7 +80,7 @@ def test_a_number_that_is_not_the_models_is_told(pendulum):
 
 def test_a_mapping_is_no_simulation_that_runs_by_itself(pendulum):
     with pytest.raises(GaitdiscError, match=r"pendulum.xml..*to gaitdisc discover"):
-        compile_simulation(drafted(read_model(pendulum)))
+        compile_simulation(draft(read_model(pendulum)))
 
 
 def test_equations_beside_a_model_are_refused(pendulum):
@@ -100,7 +100,7 @@ def test_a_mapping_of_recorded_forces_goes_to_its_file_and_back(tmp_path):
     pytest.importorskip("opensim", reason="OpenSim is not installed: gaitdisc[opensim]")
     forces = DATA / "CMC/results_no_spring/walk_subject_Actuation_force.sto"
     model, reserves = DATA / "CMC/subject01_metabolics.osim", DATA / "gait10dof_Reserve_Actuators.xml"
-    tracked, engine = drafted_tracked(model, LOADS, forces, reserves)
+    tracked, engine = draft_tracked(model, LOADS, forces, reserves)
     assert len(engine.coordinates) == 10 and engine.mass_kg == pytest.approx(72.6, abs=0.1)
     given = replace(tracked, noise_deg=0.5, start_s=0.7)
     write_tracked_mapping(given, tmp_path / "walk.toml")
@@ -108,7 +108,7 @@ def test_a_mapping_of_recorded_forces_goes_to_its_file_and_back(tmp_path):
     assert read is not None and [one.resolve() for one in read.files] == [one.resolve() for one in given.files]
     assert (read.noise_deg, read.start_s, read.end_s) == (0.5, 0.7, float("inf"))
     with pytest.raises(GaitdiscError, match=r"which is not.*.tracked. as actuators"):
-        drafted_tracked(model, LOADS, forces)  # its reserves are in no file that is named
+        draft_tracked(model, LOADS, forces)  # its reserves are in no file that is named
 
 
 RATE_HZ, SECONDS = 100.0, 3.0

@@ -4,10 +4,10 @@ import numpy as np
 import pytest
 
 from gaitdisc.engines.engine import read_model
-from gaitdisc.engines.mapping import drafted
+from gaitdisc.engines.mapping import draft
 from gaitdisc.engines.motion import ByHand, Motion
 from gaitdisc.engines.mujoco_text import with_effect, with_value
-from gaitdisc.engines.written import written_model
+from gaitdisc.engines.written import write_model
 from gaitdisc.simulation.parts import Term
 
 from .conftest import DAMPING, INERTIA, LENGTH, MASS, PENDULUM
@@ -100,5 +100,5 @@ def test_a_tendon_is_a_place_also_where_its_spring_is_missing(pendulum):
     assert np.allclose(force, -0.3 * 4 * AT.v / (INERTIA + MASS * LENGTH**2), rtol=1e-9)
     pulled = model.accelerations(AT, {"band_stiffness": 40.0})
     assert np.abs(pulled - model.accelerations(AT, {})).min() > 0.1
-    found = written_model(model, drafted(model).with_values({"band_stiffness": 40.0}))
+    found = write_model(model, draft(model).with_values({"band_stiffness": 40.0}))
     assert 'stiffness="40.0"' in found.text and np.allclose(found.engine.accelerations(AT, {}), pulled, rtol=1e-12)

@@ -11,11 +11,11 @@ import numpy as np
 import pytest
 
 from gaitdisc.engines.engine import read_model
-from gaitdisc.engines.mapping import drafted, with_strength
+from gaitdisc.engines.mapping import draft, with_strength
 from gaitdisc.engines.motion import ByHand, Coordinate, Motion
 from gaitdisc.engines.opensim_model import with_effect, with_value
 from gaitdisc.engines.opensim_worker import serve
-from gaitdisc.engines.written import written_model
+from gaitdisc.engines.written import write_model
 from gaitdisc.errors import GaitdiscError
 from gaitdisc.simulation.parts import Term
 
@@ -80,13 +80,13 @@ def test_a_force_in_the_file_is_the_force_by_hand(model, tmp_path):
     ],
 )
 def test_opensims_own_forces_run_as_the_expression_does(model, monkeypatch, name, term, element):
-    plain, u = drafted(model), 0.2 * np.sin(np.arange(80)[None, :, None] * np.array([0.03, 0.05]))
+    plain, u = draft(model), 0.2 * np.sin(np.arange(80)[None, :, None] * np.array([0.03, 0.05]))
     mapping = plain.with_effect(Term("knee_moment", "port", name, term))
-    native = written_model(model, with_strength(plain, model, "knee_motor", 0.8) if term == "0.8" else mapping)
+    native = write_model(model, with_strength(plain, model, "knee_motor", 0.8) if term == "0.8" else mapping)
     assert element in native.text and "is written into the model" in native.notes[0]
     start = Motion(np.array([[0.2, -0.3]]), np.zeros((1, 2)), u[:, 0])
     monkeypatch.setattr("gaitdisc.engines.opensim_model.NATIVE", {})
-    other = model if term == "0.8" else written_model(model, mapping).engine
+    other = model if term == "0.8" else write_model(model, mapping).engine
     run = other.run(start, u * ([1.0, 0.8] if term == "0.8" else 1.0), 100.0)
     assert np.allclose(native.engine.run(start, u, 100.0), run, atol=1e-6)
 

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from gaitdisc.engines.motion import Motion
-from gaitdisc.engines.tracked_files import tracked_motion
+from gaitdisc.engines.tracked_files import read_tracked_motion
 from gaitdisc.engines.tracked_mapping import Tracked
 
 DATA = Path(__file__).parents[3] / "shared/data/opensim_gait10dof"
@@ -28,7 +28,9 @@ def walk():
     actuators = DATA / "gait10dof_Reserve_Actuators.xml"
     tracked = Tracked(DATA / "CMC/subject01_metabolics.osim", loads, files[0], actuators, *files[1:])
     engine = OpensimTracked(tracked)
-    motion = tracked_motion(tracked, RESULTS / "walk_subject_Kinematics_q.sto", engine.coordinates, engine.actuators)
+    motion = read_tracked_motion(
+        tracked, RESULTS / "walk_subject_Kinematics_q.sto", engine.coordinates, engine.actuators
+    )
     return engine, motion
 
 

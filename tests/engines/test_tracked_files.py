@@ -5,7 +5,7 @@ import pytest
 from texts import says
 
 from gaitdisc.engines.motion import Coordinate
-from gaitdisc.engines.tracked_files import check_loads, drafted_tracked, tracked_motion
+from gaitdisc.engines.tracked_files import check_loads, draft_tracked, read_tracked_motion
 from gaitdisc.engines.tracked_mapping import read_tracked
 from gaitdisc.errors import ChannelError, GaitdiscError, ReadError, SamplingError, SchemaError, UnitError
 
@@ -50,7 +50,7 @@ def motion(walk):
     tracked = read_tracked(walk / "leg.osim")
     assert tracked is not None
     check_loads(tracked)
-    return tracked_motion(tracked, walk / "walk.mot", JOINTS, ACTUATORS)
+    return read_tracked_motion(tracked, walk / "walk.mot", JOINTS, ACTUATORS)
 
 
 def test_degrees_become_radians_and_rates_follow_the_angles(walk):
@@ -135,12 +135,12 @@ def test_a_coordinate_of_a_name_that_nobody_else_uses_is_in_the_unit_of_the_head
     for degrees, size in (("yes", 10.0), ("no", np.radians(10.0))):
         columns = {"pelvis_ty": 1 + 0 * TIME, "tarsal_roll": size * np.sin(2 * np.pi * TIME)}
         storage(walk / "walk.mot", columns, degrees=degrees)
-        read = tracked_motion(tracked, walk / "walk.mot", own, ACTUATORS)
+        read = read_tracked_motion(tracked, walk / "walk.mot", own, ACTUATORS)
         assert np.ptp(read.q[:, 1]) == pytest.approx(2 * np.radians(10.0), rel=0.02)
     text = (walk / "walk.mot").read_text().replace("inDegrees=no\n", "")
     (walk / "walk.mot").write_text(text)
     with pytest.raises(UnitError, match=r"walk.mot.*angles are in degrees.*not"):
-        tracked_motion(tracked, walk / "walk.mot", own, ACTUATORS)
+        read_tracked_motion(tracked, walk / "walk.mot", own, ACTUATORS)
 
 
 @pytest.mark.parametrize("name", ["walk.c3d", "walk.trc", "walk.csv"])
@@ -149,7 +149,7 @@ def test_markers_in_the_place_of_angles_are_refused(walk, name):
     tracked = read_tracked(walk / "leg.osim")
     assert tracked is not None
     with pytest.raises(ReadError, match=rf"{name}.*OpenSim's"):
-        tracked_motion(tracked, walk / name, JOINTS, ACTUATORS)
+        read_tracked_motion(tracked, walk / name, JOINTS, ACTUATORS)
 
 
 def test_the_forces_themselves_in_the_place_of_external_loads_are_refused(walk):
@@ -169,4 +169,4 @@ def test_files_that_do_not_fit_are_refused_before_a_model_is_loaded(tmp_path):
         (model, tmp_path / "grf.mot"): r"grf\.mot .*\.xml",
     }.items():
         with pytest.raises(GaitdiscError, match=words):
-            drafted_tracked(*given)
+            draft_tracked(*given)

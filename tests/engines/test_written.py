@@ -8,9 +8,9 @@ import pytest
 from texts import says
 
 from gaitdisc.engines.engine import read_model
-from gaitdisc.engines.mapping import drafted, with_input_changed, with_strength
+from gaitdisc.engines.mapping import draft, with_input_changed, with_strength
 from gaitdisc.engines.motion import Motion
-from gaitdisc.engines.written import loaded_beside, written_model
+from gaitdisc.engines.written import load_beside, write_model
 from gaitdisc.simulation.parts import Term
 
 from .conftest import PENDULUM
@@ -23,12 +23,12 @@ def term(name, text):
 
 def test_what_has_a_form_is_written_and_what_has_none_is_told(pendulum):
     model = read_model(pendulum)
-    mapping = drafted(model).with_values({"rod_mass": 2.2})
+    mapping = draft(model).with_values({"rod_mass": 2.2})
     mapping = mapping.with_effect(term("one_sided_spring", "-4.5*max(0, pivot - 0.1)"))
     mapping = mapping.with_effect(term("gravity_moment", "-0.5*sin(pivot)"))
     mapping = mapping.with_effect(term("coulomb_friction", "-0.4*sign(pivot_speed)"))
     mapping = with_strength(mapping, model, "drive", 0.8)
-    found = written_model(model, with_input_changed(mapping, "drive", "delay(drive, 0.02)"))
+    found = write_model(model, with_input_changed(mapping, "drive", "delay(drive, 0.02)"))
     assert "the user's own words stay" in found.text
     assert 'mass="2.2"' in found.text and "frictionloss" in found.text
     assert float(re.search(r'stiffness="([^"]*)"', found.text)[1]) == pytest.approx(4.5)
@@ -43,7 +43,7 @@ def test_a_form_that_is_not_the_expression_is_not_written(pendulum):
     """The term is a spring on the speed: what the name says is written would move the pendulum otherwise."""
     model = read_model(pendulum)
     wrong = term("linear_stiffness", "-4*pivot*pivot_speed**2 - pivot")
-    found = written_model(model, drafted(model).with_effect(wrong))
+    found = write_model(model, draft(model).with_effect(wrong))
     assert found.text == PENDULUM
     assert "would differ by" in found.notes[0]
 
@@ -53,11 +53,11 @@ def test_limits_of_a_control_are_written_as_its_range_and_act_at_each_step(pendu
     """A motor far beyond its limit gives gear times the limit, whatever a wider range of the file allows."""
     pendulum.write_text(PENDULUM.replace("gear=", 'ctrlrange="-2000 0.9" gear='))
     model = read_model(pendulum)
-    above = with_input_changed(drafted(model), "drive", f"min(drive, {high})")
-    found = written_model(model, with_input_changed(above, "drive", f"max(drive, {low})"))
+    above = with_input_changed(draft(model), "drive", f"min(drive, {high})")
+    found = write_model(model, with_input_changed(above, "drive", f"max(drive, {low})"))
     assert f'ctrlrange="{low} {high}"' in found.text and found.definitions == ()
-    soft = with_input_changed(drafted(model), "drive", "min(drive, 0.5 + 0.1*drive)")
-    assert written_model(model, soft).definitions == soft.definitions  # that is more than a limit
+    soft = with_input_changed(draft(model), "drive", "min(drive, 0.5 + 0.1*drive)")
+    assert write_model(model, soft).definitions == soft.definitions  # that is more than a limit
     start = Motion(np.array([[0.3]]), np.zeros((1, 1)), np.zeros((1, 1)))
     for control, acts in ((5.0, high), (-5.0, max(low, -5.0)), (0.1, 0.1)):
         run, wanted = (
@@ -72,14 +72,14 @@ def test_limits_of_a_control_are_written_as_its_range_and_act_at_each_step(pendu
 
 def test_a_servo_whose_control_is_no_force_keeps_its_numbers(pendulum):
     pendulum.write_text(PENDULUM.replace('<motor name="drive"', '<position kp="3" name="drive"'))
-    mapping = with_strength(drafted(read_model(pendulum)), read_model(pendulum), "drive", 0.8)
+    mapping = with_strength(draft(read_model(pendulum)), read_model(pendulum), "drive", 0.8)
     assert mapping.definitions == (("replaced_drive", "0.8*drive"),)
 
 
 def test_files_that_lie_beside_the_model_are_found(pendulum):
     (pendulum.parent / "joint.xml").write_text('<mujoco><option timestep="0.003"/></mujoco>')
     text = PENDULUM.replace("<worldbody>", '<include file="joint.xml"/><worldbody>')
-    assert loaded_beside(pendulum, text).coordinates[0].name == "pivot"
+    assert load_beside(pendulum, text).coordinates[0].name == "pivot"
 
 
 @pytest.fixture(autouse=True)

@@ -5,7 +5,7 @@ import pytest
 from texts import says
 
 from gaitdisc.channel import Channel
-from gaitdisc.ingest.c3d_kinetics import body_mass, body_measures_of, house_kinetics, read_body_measures
+from gaitdisc.ingest.c3d_kinetics import body_mass, find_body_measures, house_kinetics, read_body_measures
 from gaitdisc.ingest.c3d_parameters import C3DParameters
 from gaitdisc.ingest.reading import read_trial
 
@@ -146,11 +146,11 @@ def parameters(**numbers: float) -> C3DParameters:
 
 @pytest.mark.parametrize(("number", "unit"), [(102.0, "mm"), (10.2, "cm"), (0.102, "m")])
 def test_a_length_is_read_in_the_unit_that_makes_it_one(number, unit):
-    assert dict(body_measures_of(parameters(RKNEEWIDTH=number)).knee_width_m) == {"r": pytest.approx(0.102)}
+    assert dict(find_body_measures(parameters(RKNEEWIDTH=number)).knee_width_m) == {"r": pytest.approx(0.102)}
 
 
 def test_zero_and_nonsense_are_not_measured():
-    found = body_measures_of(parameters(RKNEEWIDTH=0.0, LKNEEWIDTH=9000.0, INTERASISDISTANCE=float("nan")))
+    found = find_body_measures(parameters(RKNEEWIDTH=0.0, LKNEEWIDTH=9000.0, INTERASISDISTANCE=float("nan")))
     assert (dict(found.knee_width_m), found.inter_asis_m, found.mass_kg) == ({}, None, None)
 
 

@@ -12,8 +12,8 @@ from gaitdisc.ingest.c3d_labels import (
     LabelMap,
     event_kind,
     file_events,
-    made_unique,
-    named_people,
+    list_people_names,
+    make_unique,
     without_people,
     without_prefix,
 )
@@ -22,13 +22,15 @@ from gaitdisc.ingest.c3d_parameters import C3DParameters
 
 @given(st.lists(st.sampled_from(["", "a", "b", "a_1", "a_2", "point_1"]), max_size=12))
 def test_no_two_names_are_equal(labels):
-    names = made_unique(labels, "point")
+    names = make_unique(labels, "point")
     assert len(set(names)) == len(labels)
     assert all(names)
 
 
 def test_names_of_people_are_removed():
-    people = named_people(C3DParameters({("SUBJECTS", "NAMES"): ("Anna",), ("POINT", "LABELS"): ("Bert:LASI", "C7")}))
+    people = list_people_names(
+        C3DParameters({("SUBJECTS", "NAMES"): ("Anna",), ("POINT", "LABELS"): ("Bert:LASI", "C7")})
+    )
     assert set(people) == {"Anna", "Bert"}
     assert without_people("anna: EMG 1", people) == "EMG 1"
     assert without_people("Annabel", people) == "Annabel"

@@ -9,7 +9,7 @@ from scipy.spatial.transform import Rotation
 from texts import says
 
 from gaitdisc.errors import ReadError, UnitError
-from gaitdisc.ingest.c3d import read_c3d, unscaled_channels
+from gaitdisc.ingest.c3d import list_unscaled, read_c3d
 from gaitdisc.ingest.c3d_labels import LabelMap
 from gaitdisc.ingest.c3d_parameters import C3DParameters
 from gaitdisc.ingest.c3d_points import length_unit, point_streams
@@ -284,6 +284,6 @@ def test_offsets_are_held_to_the_same_and_zero_is_one():
             ("ANALOG", "OFFSET"): np.array([0.0, 0.0, np.nan]),
         }
     )
-    columns, (finding,) = unscaled_channels(parameters, 3)
+    columns, (finding,) = list_unscaled(parameters, 3)
     assert columns == {1, 2}
     assert says(finding.what, "ANALOG:SCALE", "#2", "0; ANALOG:OFFSET", "#3")

@@ -8,10 +8,10 @@ from gaitdisc.errors import ChannelError, UnitError
 from gaitdisc.ingest.columns import (
     check_written_names,
     column_in_unit,
-    mapped_label,
-    named_channel,
+    find_stream,
+    map_label,
+    name_channel,
     split_unit,
-    stream_of,
 )
 from gaitdisc.ingest.storage import StorageHeader, naming_findings, storage_columns
 
@@ -23,11 +23,11 @@ def test_units_stand_in_brackets_at_the_end():
 
 
 def test_labels_are_mapped_exactly_first_and_then_by_likeness_unless_two_are_alike():
-    assert mapped_label("EMG 1", {"EMG 1": "a", "emg1": "b"}) == "a"
-    assert mapped_label("emg-1", {"EMG 1": "a"}) == "a"
-    assert mapped_label("emg-1", {"EMG 1": "a", "emg1": "b"}) is None
-    assert mapped_label("x", None) is None
-    assert mapped_label("--", {"..": "a"}) is None
+    assert map_label("EMG 1", {"EMG 1": "a", "emg1": "b"}) == "a"
+    assert map_label("emg-1", {"EMG 1": "a"}) == "a"
+    assert map_label("emg-1", {"EMG 1": "a", "emg1": "b"}) is None
+    assert map_label("x", None) is None
+    assert map_label("--", {"..": "a"}) is None
 
 
 @pytest.mark.parametrize(
@@ -44,7 +44,7 @@ def test_labels_are_mapped_exactly_first_and_then_by_likeness_unless_two_are_ali
     ],
 )
 def test_names_tell_quantities(name, quantity, unit, side):
-    channel = named_channel(name)
+    channel = name_channel(name)
     assert (channel.quantity, channel.unit, channel.side) == (quantity, unit, side)
 
 
@@ -66,23 +66,23 @@ def test_names_tell_quantities(name, quantity, unit, side):
     ],
 )
 def test_stated_units_are_converted_to_those_inside(name, unit, inside, one):
-    column = column_in_unit(name, named_channel(name), unit, "a.csv")
+    column = column_in_unit(name, name_channel(name), unit, "a.csv")
     assert column.channel.unit == inside
-    assert column.converted(np.array([1.0]))[0] == pytest.approx(one, rel=1e-12)
+    assert column.convert(np.array([1.0]))[0] == pytest.approx(one, rel=1e-12)
 
 
 def test_the_rate_of_an_angle_is_not_the_angle():
-    column = column_in_unit("x", named_channel("knee_angle_r"), "deg/s", "a.csv")
+    column = column_in_unit("x", name_channel("knee_angle_r"), "deg/s", "a.csv")
     assert (column.channel.name, column.channel.quantity) == ("knee_angle_r/speed", "signal")
 
 
 def test_an_unknown_unit_and_one_of_another_quantity_are_refused():
     with pytest.raises(UnitError, match=r"a\.csv.*'F'.*'Nn'.*'N'"):
-        column_in_unit("F", named_channel("ground_force_r_vy"), "Nn", "a.csv")
+        column_in_unit("F", name_channel("ground_force_r_vy"), "Nn", "a.csv")
     with pytest.raises(UnitError, match=r"'k'.*knee_angle_r.*'mm'"):
-        column_in_unit("k", named_channel("knee_angle_r"), "mm", "a.csv")
+        column_in_unit("k", name_channel("knee_angle_r"), "mm", "a.csv")
     with pytest.raises(UnitError, match=r"'skin'.*found 'K'; temperatures must be in degC.*by an offset"):
-        column_in_unit("skin", named_channel("skin"), "K", "a.csv")
+        column_in_unit("skin", name_channel("skin"), "K", "a.csv")
 
 
 def test_names_that_a_text_table_cannot_hold_are_refused():
@@ -118,7 +118,7 @@ def test_a_torque_is_a_moment_whatever_its_axis(stem):
     for axis in "xyz":
         channel = _column(f"{stem}_{axis}", "ground reactions").channel
         assert (channel.quantity, channel.unit) == ("moment", "N m")
-        assert stream_of(channel) == "forces"
+        assert find_stream(channel) == "forces"
 
 
 @pytest.mark.parametrize(

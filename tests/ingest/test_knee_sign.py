@@ -7,7 +7,7 @@ import pytest
 from texts import says
 
 from gaitdisc.channel import Channel
-from gaitdisc.ingest.columns import named_channel
+from gaitdisc.ingest.columns import name_channel
 from gaitdisc.ingest.plausible import with_flexion_positive
 from gaitdisc.ingest.reading import read_trial
 from gaitdisc.ingest.storage import write_storage
@@ -19,7 +19,7 @@ GAIT = 20 + 35 * np.sin(np.linspace(0, 6 * np.pi, 300))  # -15 to 55 deg
 
 
 def _walk(**knees):
-    channels = tuple(named_channel(name) for name in knees)
+    channels = tuple(name_channel(name) for name in knees)
     return Recording(np.arange(300) / 100, np.column_stack(list(knees.values())), channels, source=Source("walk.mot"))
 
 
@@ -84,7 +84,7 @@ def test_a_few_absurd_cells_decide_nothing():
 def test_speed_and_generalised_moment_go_with_the_knee():
     speeds = Recording(np.arange(300) / 100, GAIT[:, None], (Channel("knee_angle_r/speed", "signal", "deg/s", "r"),))
     moments = Recording(
-        np.arange(300) / 100, GAIT[:, None], (named_channel("knee_angle_r_moment"),), source=Source(reader="sto")
+        np.arange(300) / 100, GAIT[:, None], (name_channel("knee_angle_r_moment"),), source=Source(reader="sto")
     )
     streams = {"kinematics": _walk(knee_angle_r=-GAIT), "signals": speeds, "moments": moments}
     turned, (finding,) = with_flexion_positive(streams)

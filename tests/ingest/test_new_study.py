@@ -7,11 +7,11 @@ from texts import says
 
 from gaitdisc.channel import Channel, vocabulary
 from gaitdisc.errors import ReadError, SchemaError
-from gaitdisc.ingest.new_study import _found_trials, found_study, recording_files, stands
+from gaitdisc.ingest.new_study import _read_drafts, draft_study, recording_files, stands
 from gaitdisc.ingest.reading import read_planned_trial
 from gaitdisc.ingest.storage import write_storage
 from gaitdisc.ingest.study import Conditions, Participant, PlannedTrial, Study
-from gaitdisc.ingest.study_file import grown_study, load_study, write_study
+from gaitdisc.ingest.study_file import grow_study, load_study, write_study
 from gaitdisc.ingest.study_settings import ANGLES
 from gaitdisc.recording import Event, Recording, Trial
 
@@ -29,7 +29,7 @@ def _walk(path, emg=False, channels=CHANNELS):
 
 
 def test_the_draft_of_a_real_folder_can_be_used_as_it_is(gait_data, tmp_path):
-    study, notes = found_study(gait_data / "exotendon_run", tmp_path)
+    study, notes = draft_study(gait_data / "exotendon_run", tmp_path)
     study = load_study(write_study(study, tmp_path))
     assert (study.conditions.nominal, study.conditions.device) == ("natural", "exotendon")
     assert [each.id for each in study.participants] == ["P01", "welk002"]
@@ -45,7 +45,7 @@ def test_the_draft_of_a_real_folder_can_be_used_as_it_is(gait_data, tmp_path):
 
 
 def test_files_of_one_walk_are_found_together(gait_data):
-    study, notes = found_study(gait_data / "opensim_walks" / "mrs_emg_walking")
+    study, notes = draft_study(gait_data / "opensim_walks" / "mrs_emg_walking")
     (trial,) = study.participants[0].trials
     assert len(trial.files) == 5
     assert len(study.models.emg) == 24
@@ -59,7 +59,7 @@ def test_folders_become_people_and_names_pseudonyms(tmp_path):
         for condition in ("noexo", "exo"):
             _walk(tmp_path / "raw" / person / f"{condition}.mot", emg=True)
     (tmp_path / "raw" / "S02" / "broken_exo.mot").write_text("nothing")
-    study, notes = found_study(tmp_path / "raw", tmp_path / "study")
+    study, notes = draft_study(tmp_path / "raw", tmp_path / "study")
     assert {each.id for each in study.participants} == {"P01", "S02"}
     assert study.one_condition_only() == ()
     assert study.participant("S02").trials[0].files == ("../raw/S02/noexo.mot", "../raw/S02/noexo_emg.sto")
@@ -75,7 +75,7 @@ def test_angles_that_not_all_have_and_several_words_are_reported(tmp_path):
     _walk(tmp_path / "S1_baseline.mot")
     _walk(tmp_path / "S1_nominal.mot", channels=CHANNELS[:6])
     _walk(tmp_path / "S1_exo.mot", emg=True)
-    study, notes = found_study(tmp_path)
+    study, notes = draft_study(tmp_path)
     assert study.models.emg == ()
     assert set(study.models.angles) == {channel.name for channel in CHANNELS[:6]} & set(ANGLES)
     text = "\n".join(notes)
@@ -87,7 +87,7 @@ def test_angles_that_not_all_have_and_several_words_are_reported(tmp_path):
 def test_files_that_do_not_go_together_are_reported(tmp_path):
     _walk(tmp_path / "S1" / "exo_ik.mot")
     _walk(tmp_path / "S1" / "exo_coordinates.mot")
-    study, notes = found_study(tmp_path)
+    study, notes = draft_study(tmp_path)
     assert len(study.participants[0].trials[0].files) == 1
     assert any("both contain" in note for note in notes)
 
@@ -97,20 +97,20 @@ def test_the_way_to_the_folder_does_not_matter_but_hidden_folders_are_passed_ove
     _walk(tmp_path / "lab" / ".trash" / "exo.mot")
     (tmp_path / "here").mkdir()
     monkeypatch.chdir(tmp_path / "here")
-    study, _ = found_study("../lab")
+    study, _ = draft_study("../lab")
     assert [trial.files for trial in study.participants[0].trials] == [("natural.mot",)]
 
 
 def test_folders_without_recordings_are_refused(tmp_path):
     with pytest.raises(ReadError, match="none must be a folder"):
-        found_study(tmp_path / "none")
+        draft_study(tmp_path / "none")
     (tmp_path / "a.mot").write_text("x")
     with pytest.raises(ReadError, match=r"none.*left.*a\.mot"):
-        found_study(tmp_path)
+        draft_study(tmp_path)
 
 
 def test_folders_of_a_laboratory_need_no_edit(gait_data, tmp_path):
-    study, notes = found_study(gait_data / "young_straight_and_turn", tmp_path)
+    study, notes = draft_study(gait_data / "young_straight_and_turn", tmp_path)
     study = load_study(write_study(study, tmp_path))
     assert study.conditions.words == ("straight", "turn") and study.conditions.device is None
     words = [sorted(trial.condition for trial in person.trials) for person in study.participants]
@@ -121,7 +121,7 @@ def test_folders_of_a_laboratory_need_no_edit(gait_data, tmp_path):
 
 
 def test_a_folder_without_any_word_is_one_condition(gait_data, tmp_path):
-    study, notes = found_study(gait_data / "treadmill_walk_ik", tmp_path)
+    study, notes = draft_study(gait_data / "treadmill_walk_ik", tmp_path)
     assert [trial.condition for trial in study.participants[0].trials] == ["walking"] * 3
     assert any(says(note, "'walking'") for note in notes)
 
@@ -137,7 +137,7 @@ def test_sessions_groups_kinds_and_standing_are_found(tmp_path):
     _walk(tmp_path / "controls" / "S02_2024-06-01" / "shod_b.mot")
     still = Recording(TIME, np.full((300, len(CHANNELS)), 3.0), CHANNELS)
     write_storage(still, tmp_path / "controls" / "S02_2024-03-01" / "a7.mot")
-    study, notes = found_study(tmp_path)
+    study, notes = draft_study(tmp_path)
     assert [(person.id, person.group) for person in study.participants] == [("S01", "patients"), ("S02", "controls")]
     assert study.conditions.words == ("barefoot", "shod")
     assert set(study.sessions) == {"pre", "post", "session 1", "session 2"}
@@ -155,7 +155,7 @@ def test_sessions_groups_kinds_and_standing_are_found(tmp_path):
 def test_what_no_name_shows_is_listed_with_the_one_line_for_all(tmp_path):
     for name in ("fast1", "fast2", "a1", "a2"):
         _walk(tmp_path / "S01" / f"{name}.mot")
-    study, notes = found_study(tmp_path)
+    study, notes = draft_study(tmp_path)
     assert [trial.condition for trial in study.participants[0].trials].count("unknown") == 2
     (said,) = [note for note in notes if "condition unknown" in note]
     assert says(said, "S01/a1.mot, S01/a2.mot", "[conditions]", '= "fast"')
@@ -170,7 +170,7 @@ def test_mass_sex_and_stature_come_from_a_table_beside_the_folders(tmp_path):
         _walk(tmp_path / "raw" / person / "walk.mot")
     table = {"participant_id": ["sub-01", "sub-02"], "sex": ["F", "M"], "weight": [61.3, "n/a"], "height": [172, 181]}
     pd.DataFrame(table).to_csv(tmp_path / "raw" / "participants.tsv", sep="\t", index=False)
-    study, notes = found_study(tmp_path / "raw", tmp_path / "study")
+    study, notes = draft_study(tmp_path / "raw", tmp_path / "study")
     study = load_study(write_study(study, tmp_path / "study.toml"))
     found = {one.id: (one.mass_kg, one.height_m, one.sex) for one in study.participants}
     assert found == {"sub-01": (61.3, 1.72, "f"), "sub-02": (None, 1.81, "m"), "sub-03": (None, None, "")}
@@ -181,7 +181,7 @@ def test_mass_sex_and_stature_come_from_a_table_beside_the_folders(tmp_path):
 
 
 def test_the_mass_of_a_real_manifest(gait_data, tmp_path):
-    study, _ = found_study(gait_data / "young_straight_and_turn", tmp_path)
+    study, _ = draft_study(gait_data / "young_straight_and_turn", tmp_path)
     assert [round(one.mass_kg or 0, 1) for one in study.participants[:2]] == [32.1, 45.8]
     assert all(one.mass_kg for one in study.participants)
 
@@ -202,7 +202,7 @@ def test_who_walks_straight_along_an_axis_does_not_stand():
 def test_a_draft_keeps_no_samples(tmp_path):
     _walk(tmp_path / "S1_exo.mot", emg=True)
     _walk(tmp_path / "S1_noexo.mot", emg=True)
-    (one, _) = _found_trials(tmp_path, recording_files(tmp_path), [], {})
+    (one, _) = _read_drafts(tmp_path, recording_files(tmp_path), [], {})
     assert not [value for value in vars(one).values() if isinstance(value, Trial | Recording)]
 
 
@@ -212,7 +212,7 @@ def test_one_name_in_two_groups_is_two_people(tmp_path):
         _walk(raw / group / "Smith" / "walk.mot")
         _walk(raw / group / "S07_walk.mot")
     (raw / "participants.tsv").write_text("participant_id\tweight\nSmith\t61.3\n")
-    study, notes = found_study(raw, tmp_path / "study")
+    study, notes = draft_study(raw, tmp_path / "study")
     found = {one.trials[0].files[0].removeprefix("../raw/"): one for one in study.participants}
     assert {file: one.group for file, one in found.items()} == {file: file.split("/")[0] for file in found}
     assert len(study.participants) == len({one.id for one in study.participants}) == 4
@@ -224,7 +224,7 @@ def test_one_name_in_two_groups_is_two_people(tmp_path):
 def test_trials_of_no_group_are_those_of_the_only_person_of_that_name(tmp_path):
     for file in ("controls/S07/walk.mot", "S07/walk2.mot"):
         _walk(tmp_path / file)
-    (person,) = found_study(tmp_path)[0].participants
+    (person,) = draft_study(tmp_path)[0].participants
     assert (person.id, person.group, len(person.trials)) == ("S07", "controls", 2)
 
 
@@ -253,7 +253,7 @@ def test_a_person_keeps_the_pseudonym_and_edits_and_a_new_one_gets_another(study
         },
         others=("turn",), P01={"height_m": 1.6}, P02={"age_years": 30},
     ).placed(tmp_path)  # fmt: skip
-    grown = grown_study(study, draft)
+    grown = grow_study(study, draft)
     assert [one.id for one in grown.participants] == ["P01", "P02"]
     zoe, anna = grown.participants
     assert [trial.files for trial in zoe.trials] == [("zoe/1.c3d",), ("zoe/2.c3d",), ("zoe/3.c3d",)]
@@ -263,16 +263,16 @@ def test_a_person_keeps_the_pseudonym_and_edits_and_a_new_one_gets_another(study
 
 
 def test_nothing_new_is_the_same_study_and_files_of_a_trial_join_it(study, tmp_path):
-    assert grown_study(study, study) == study
+    assert grow_study(study, study) == study
     draft = study_of({"P07": [walk("zoe/1.c3d", "zoe/1_ik.mot")]}).placed(tmp_path)
-    (zoe,) = grown_study(study, draft).participants
+    (zoe,) = grow_study(study, draft).participants
     assert [trial.files for trial in zoe.trials] == [("zoe/1.c3d", "zoe/1_ik.mot"), ("zoe/2.c3d",)]
 
 
 def test_sessions_of_the_draft_come_behind_and_what_does_not_fit_is_refused(study, tmp_path):
     own = study_of({"P01": [walk("zoe/1.c3d", session="pre")]}, ("pre",)).placed(tmp_path)
     draft = study_of({"P01": [walk("zoe/9.c3d", session="post")]}, ("pre", "post")).placed(tmp_path)
-    assert grown_study(own, draft).sessions == ("pre", "post")
+    assert grow_study(own, draft).sessions == ("pre", "post")
     stray = (Participant(id="P01", trials=(walk("zoe/9.c3d", session="later"),)),)
     with pytest.raises(SchemaError, match="later"):
-        grown_study(own, draft.model_copy(update={"participants": stray}).placed(tmp_path))
+        grow_study(own, draft.model_copy(update={"participants": stray}).placed(tmp_path))

@@ -11,8 +11,8 @@ from gaitdisc.ingest.people_table import (
     condition_word,
     group_word,
     kind_of_trial,
-    measured_people,
     person_word,
+    read_people,
     session_word,
     walk_key,
     walk_place,
@@ -23,7 +23,7 @@ from gaitdisc.ingest.people_table import (
 def _read(tmp_path, text, name="participants.tsv"):
     (tmp_path / name).write_text(text, encoding="utf-8")
     notes: list[str] = []
-    return measured_people(tmp_path, [Path(name)], notes), notes
+    return read_people(tmp_path, [Path(name)], notes), notes
 
 
 def test_a_table_as_bids_has_it(tmp_path):

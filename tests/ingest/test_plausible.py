@@ -11,7 +11,7 @@ from gaitdisc.errors import ReadError
 from gaitdisc.ingest.plausible import plausible_ranges, without_frozen, without_impossible
 from gaitdisc.ingest.reading import read_trial
 from gaitdisc.recording import Recording, Source
-from gaitdisc.units import known_units
+from gaitdisc.units import list_units
 
 
 def _of(channel, *values):
@@ -74,7 +74,7 @@ def test_the_table_of_ranges_uses_known_words_and_covers_the_vocabulary():
     with (schema_folder() / "ranges.csv").open(encoding="utf-8", newline="") as file:
         rows = list(csv.DictReader(file))
     assert {row["quantity"] for row in rows} == set(QUANTITIES) - {"signal"}
-    assert {row["unit"] for row in rows} <= set(known_units())
+    assert {row["unit"] for row in rows} <= set(list_units())
     assert all(one.low < one.high for one in plausible_ranges())
     assert [c.name for c in vocabulary().channels if not any(one.covers(c) for one in plausible_ranges())] == []
 

@@ -10,8 +10,8 @@ from gaitdisc.channel import vocabulary
 from gaitdisc.errors import UnitError
 from gaitdisc.ingest.reading import read_trial
 from gaitdisc.ingest.stated_units import (
-    copied_coordinate_unit,
     distance_from_origin,
+    find_copied_unit,
     per_kg_findings,
     plausible_unit,
     refuse_other_unit,
@@ -86,11 +86,11 @@ def test_ankles_alone_leave_a_doubt_not_a_refusal():
 def test_a_copied_coordinate_follows_its_knee_in_either_unit():
     knee = _walk_deg()[:, 2]
     angles = {"knee_angle_r": knee}
-    assert copied_coordinate_unit("knee_angle_r_beta", np.radians(knee), angles) == "rad"
-    assert copied_coordinate_unit("knee_angle_r_beta", knee, angles) == "deg"
-    assert copied_coordinate_unit("knee_angle_r_beta", knee[::-1] ** 2, angles) is None
-    assert copied_coordinate_unit("knee_angle_l_beta", knee, angles) is None
-    assert copied_coordinate_unit("knee_angle_r_beta", np.full(200, np.nan), angles) is None
+    assert find_copied_unit("knee_angle_r_beta", np.radians(knee), angles) == "rad"
+    assert find_copied_unit("knee_angle_r_beta", knee, angles) == "deg"
+    assert find_copied_unit("knee_angle_r_beta", knee[::-1] ** 2, angles) is None
+    assert find_copied_unit("knee_angle_l_beta", knee, angles) is None
+    assert find_copied_unit("knee_angle_r_beta", np.full(200, np.nan), angles) is None
 
 
 def belt(peak_n, pattern=((60, 1.0), (40, 0.0))):

@@ -8,7 +8,7 @@ from texts import says
 
 from gaitdisc.channel import Channel, vocabulary
 from gaitdisc.errors import ChannelError, ReadError, SamplingError, UnitError
-from gaitdisc.ingest.storage import parsed_header, read_storage, write_storage
+from gaitdisc.ingest.storage import parse_header, read_storage, write_storage
 from gaitdisc.recording import Recording
 
 BODY = "time\tknee_angle_r\tpelvis_tx\n" + "".join(f"{i / 100}\t{30 + 30 * np.sin(i)}\t{i}\n" for i in range(60))
@@ -161,7 +161,7 @@ def test_more_rows_than_the_header_claims_are_reported(tmp_path):
 
 def test_both_styles_at_once_as_in_the_emg_file_of_an_example():
     lines = ["EMG.mot", "nRows=4", "nColumns=3", "", "name EMG.mot", "datacolumns 3", "datarows 5", "range 0.1 4.6"]
-    header = parsed_header([*lines, "endheader", "Time\tHamL_r\tTA_r\t", "0\t1\t2"], "EMG.mot")
+    header = parse_header([*lines, "endheader", "Time\tHamL_r\tTA_r\t", "0\t1\t2"], "EMG.mot")
     assert header.title == "EMG.mot"
     assert header.labels == ("Time", "HamL_r", "TA_r")
     assert (header.rows, header.columns) == ((4, 5), (3, 3))
@@ -171,18 +171,18 @@ def test_both_styles_at_once_as_in_the_emg_file_of_an_example():
 
 @pytest.mark.parametrize(("word", "degrees"), [("yes", True), ("no", False), ("YES ", True), (" n", False)])
 def test_in_degrees_is_read(word, degrees):
-    assert parsed_header([f"inDegrees={word}", "EndHeader", "", "time a b", "0 1 2"], "a.mot").degrees is degrees
+    assert parse_header([f"inDegrees={word}", "EndHeader", "", "time a b", "0 1 2"], "a.mot").degrees is degrees
 
 
 def test_comments_blank_lines_and_blanks_between_labels_are_read():
     lines = ["Coordinates", "", "Angles are in degrees (inDegrees).", "endheader", "", "time  a   b"]
-    header = parsed_header(lines, "a.mot")
+    header = parse_header(lines, "a.mot")
     assert (header.labels, header.separator, header.body_line) == (("time", "a", "b"), " ", 7)
 
 
 def test_columns_that_we_wrote_ourselves_describe_themselves():
     lines = ["x", "column 2=emg [V] r", "column 3=signal [deg/s]", "endheader", "time\ta\tb\tc"]
-    assert parsed_header(lines, "a.sto").own == {2: ("emg", "V", "r"), 3: ("signal", "deg/s", "")}
+    assert parse_header(lines, "a.sto").own == {2: ("emg", "V", "r"), 3: ("signal", "deg/s", "")}
 
 
 @pytest.mark.parametrize(
@@ -201,5 +201,5 @@ def test_columns_that_we_wrote_ourselves_describe_themselves():
 )
 def test_what_is_no_header_is_refused_with_its_line(lines, words):
     with pytest.raises(ReadError, match=words) as refusal:
-        parsed_header(lines, "a.mot")
+        parse_header(lines, "a.mot")
     assert str(refusal.value).startswith("a.mot")

@@ -14,7 +14,7 @@ from gaitdisc.ingest.study import (
     check_participants,
     check_sessions,
 )
-from gaitdisc.ingest.study_file import line_of, load_study, schema_error
+from gaitdisc.ingest.study_file import find_line, load_study, schema_error
 from gaitdisc.ingest.study_settings import Models, check_channels, check_variables, refuse
 
 TEXT = """title = "t"
@@ -229,4 +229,4 @@ detector.name = 1
     ],
 )
 def test_the_line_of_a_key_or_of_its_table(place, line):
-    assert line_of(NESTED, place) == line
+    assert find_line(NESTED, place) == line

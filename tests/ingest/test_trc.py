@@ -5,7 +5,7 @@ import pytest
 from texts import says
 
 from gaitdisc.errors import ChannelError, ReadError, SamplingError, UnitError
-from gaitdisc.ingest.trc import parsed_trc_header, read_trc
+from gaitdisc.ingest.trc import parse_trc_header, read_trc
 
 ROWS = "".join(f"{i + 1}\t{i / 100:.3f}\t{i}\t2\t3\t{10 * i + 1}\t\t30\n" for i in range(10))
 TEXT = (
@@ -96,4 +96,4 @@ def test_wrong_counts_that_do_no_harm_are_reported(tmp_path):
 
 def test_a_header_without_markers_is_refused():
     with pytest.raises(ReadError, match=r"name its markers in line 4"):
-        parsed_trc_header([*TEXT.split("\n")[:3], "Frame#\tTime\t\t"], "a.trc")
+        parse_trc_header([*TEXT.split("\n")[:3], "Frame#\tTime\t\t"], "a.trc")

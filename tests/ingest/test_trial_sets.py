@@ -10,9 +10,9 @@ from gaitdisc.ingest.trial_sets import (
     is_static,
     is_walk,
     not_compared,
-    refused_participant,
     static_trial,
     trial_sets,
+    why_refused,
 )
 from gaitdisc.recording.trial import BodyMeasures
 
@@ -81,7 +81,7 @@ def test_models_compare_one_walk_of_each_of_one_session(trials, message):
     person = _person("P01", *trials)
     study = _study(person, nominal="free", device="exo")
     assert message in not_compared(study, person) and bool(message) == bool(not_compared(study, person))
-    assert refused_participant(study, person) == ""
+    assert why_refused(study, person) == ""
 
 
 def test_who_lacks_a_condition_is_refused_but_not_a_group_that_never_has_it():
@@ -91,18 +91,16 @@ def test_who_lacks_a_condition_is_refused_but_not_a_group_that_never_has_it():
     )
     treated = _person("P04", _trial("free"), _trial("exo"), group="patient")
     study = _study(lacking, control, patient, treated, nominal="free", device="exo")
-    refused = {person.id: bool(refused_participant(study, person)) for person in study.participants}
+    refused = {person.id: bool(why_refused(study, person)) for person in study.participants}
     assert refused == {"P01": True, "P02": False, "P03": True, "P04": False}
-    assert says(refused_participant(study, lacking), "'free'", "'exo'; P01", "1", "'free'")
+    assert says(why_refused(study, lacking), "'free'", "'exo'; P01", "1", "'free'")
 
 
 def test_nobody_without_a_walk_is_reported():
     person = _person("P01", _trial("static"), _trial("unknown"))
-    said = refused_participant(_study(person, nominal="straight", others=("turn",)), person)
+    said = why_refused(_study(person, nominal="straight", others=("turn",)), person)
     assert says(said, "'straight'", "'turn'; P01", "2 trials")
-    assert (
-        refused_participant(_study(person, nominal="a"), _person("P02", excluded="ill")) == "excluded in the study: ill"
-    )
+    assert why_refused(_study(person, nominal="a"), _person("P02", excluded="ill")) == "excluded in the study: ill"
 
 
 def _saved(tmp_path, **texts):
@@ -116,14 +114,14 @@ def test_one_recording_under_two_people_conditions_or_sessions_is_refused(tmp_pa
     for trials in ((_trial("walk", file="c.c3d"),), (_trial("turn", file="c.c3d"),)):
         other = _person("P02", *trials)
         study = _study(first, other, nominal="walk", others=("turn",)).placed(tmp_path)
-        said = refused_participant(study, first)
+        said = why_refused(study, first)
         assert said.startswith(f"P01 walk and P02 {trials[0].condition} are the same recording: ")
-        assert refused_participant(study, other).startswith("P02 ")
+        assert why_refused(study, other).startswith("P02 ")
     both = _person("P01", _trial("walk", file="b.c3d"), _trial("turn", file="d.c3d"))
     study = _study(both, nominal="walk", others=("turn",)).placed(tmp_path)
-    assert says(refused_participant(study, both), "P01 walk", "P01 turn")
+    assert says(why_refused(study, both), "P01 walk", "P01 turn")
     visits = _person("P01", _trial("walk", "before", "a.c3d"), _trial("walk", "after", "c.c3d"))
-    assert "are the same recording" in refused_participant(_study(visits, nominal="walk").placed(tmp_path), visits)
+    assert "are the same recording" in why_refused(_study(visits, nominal="walk").placed(tmp_path), visits)
 
 
 def test_parts_of_one_file_and_one_static_trial_of_two_sessions_are_no_repetition(tmp_path):
@@ -135,7 +133,7 @@ def test_parts_of_one_file_and_one_static_trial_of_two_sessions_are_no_repetitio
     for trials in (cut, parts, stands):
         person = _person("P01", *trials)
         study = _study(person, nominal="walk", others=("turn",)).placed(tmp_path)
-        assert refused_participant(study, person) == ""
+        assert why_refused(study, person) == ""
 
 
 @pytest.mark.parametrize(
@@ -152,9 +150,9 @@ def test_two_bodies_in_one_session_are_refused_and_a_child_that_grew_is_not(monk
         "gaitdisc.ingest.trial_sets.body_measures_in", lambda path: BodyMeasures(**{measure: files[path.name]})
     )
     one = _person("P01", _trial("walk", file="1.c3d"), _trial("walk", file="2.c3d"))
-    assert refused_participant(_study(one, nominal="walk"), one).startswith(said)
+    assert why_refused(_study(one, nominal="walk"), one).startswith(said)
     grown = _person("P01", _trial("walk", "before", "1.c3d"), _trial("walk", "after", "2.c3d"))
-    assert refused_participant(_study(grown, nominal="walk"), grown) == ""
+    assert why_refused(_study(grown, nominal="walk"), grown) == ""
     if measure == "mass_kg":  # what the study says goes before the files
         stated = one.model_copy(update={"mass_kg": 36.0})
-        assert refused_participant(_study(stated, nominal="walk"), stated) == ""
+        assert why_refused(_study(stated, nominal="walk"), stated) == ""

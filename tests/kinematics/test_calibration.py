@@ -30,7 +30,7 @@ from manufactured_body import (
 from texts import says
 
 from gaitdisc.errors import ChannelError, SamplingError, SchemaError, ShapeError
-from gaitdisc.kinematics.calibration import calibrated, exchanged_in_static, landmark_order
+from gaitdisc.kinematics.calibration import calibrate_body, find_exchanged_in_static, landmark_order
 from gaitdisc.kinematics.functional_hips import functional_hips, sphere_centre
 from gaitdisc.kinematics.marker_set import MarkerSet, marker_set
 from gaitdisc.kinematics.markers import marker_labels, marker_places
@@ -48,7 +48,7 @@ def with_methods(name: str, **methods: str) -> MarkerSet:
 
 def test_joint_centres_and_landmarks_lie_where_the_bones_have_them():
     for name, body in (("plug_in_gait", PLUG_IN_GAIT), ("rajagopal", RAJAGOPAL), ("gait2354", GAIT2354)):
-        points = calibrated(static_of(body), marker_set(name), MEASURES).points
+        points = calibrate_body(static_of(body), marker_set(name), MEASURES).points
         for side in "lr":
             np.testing.assert_allclose(points["pelvis"][f"hip_{side}"], harrington_hip(WIDTH, DEPTH, side), atol=1e-9)
             np.testing.assert_allclose(points[f"thigh_{side}"][f"hip_{side}"], 0, atol=1e-9)
@@ -59,7 +59,7 @@ def test_joint_centres_and_landmarks_lie_where_the_bones_have_them():
 
 def test_the_measured_distance_of_the_spines_comes_before_that_of_the_markers():
     measures = BodyMeasures(inter_asis_m=0.22)
-    calibration = calibrated(static_of(RAJAGOPAL), marker_set("rajagopal"), measures)
+    calibration = calibrate_body(static_of(RAJAGOPAL), marker_set("rajagopal"), measures)
     np.testing.assert_allclose(calibration.points["pelvis"]["hip_r"], harrington_hip(0.22, DEPTH, "r"), atol=1e-9)
     said = [finding.what for finding in calibration.findings if finding.kind == "pelvis width"]
     assert len(said) == 1 and says(said[0], "iliac spines", "220 mm", "240 mm")
@@ -68,14 +68,14 @@ def test_the_measured_distance_of_the_spines_comes_before_that_of_the_markers():
 def test_hips_after_davis_need_leg_lengths():
     chosen = with_methods("plug_in_gait", hip="davis")
     with pytest.raises(ChannelError, match=r"both.*static\.c3d.*none"):
-        calibrated(static_of(PLUG_IN_GAIT), chosen, MEASURES)
+        calibrate_body(static_of(PLUG_IN_GAIT), chosen, MEASURES)
     legs = BodyMeasures(
         marker_diameter_m=2 * RADIUS,
         leg_length_m={"l": 0.80, "r": 0.82},
         knee_width_m=MEASURES.knee_width_m,
         ankle_width_m=MEASURES.ankle_width_m,
     )
-    points = calibrated(static_of(PLUG_IN_GAIT), chosen, legs).points
+    points = calibrate_body(static_of(PLUG_IN_GAIT), chosen, legs).points
     expected = davis_hip(WIDTH, 0.81, 0.82, RADIUS, "r")
     np.testing.assert_allclose(points["pelvis"]["hip_r"], expected, atol=1e-9)
 
@@ -83,16 +83,16 @@ def test_hips_after_davis_need_leg_lengths():
 def test_plug_in_gait_takes_its_own_hips_where_leg_lengths_are_known():
     legs = replace(MEASURES, leg_length_m={"l": 0.80, "r": 0.82})
     static, chosen = static_of(PLUG_IN_GAIT), marker_set("plug_in_gait")
-    davis = calibrated(static, chosen, legs)
+    davis = calibrate_body(static, chosen, legs)
     expected = davis_hip(WIDTH, 0.81, 0.82, RADIUS, "r")
     np.testing.assert_allclose(davis.points["pelvis"]["hip_r"], expected, atol=1e-9)
     assert not [finding for finding in davis.findings if finding.kind == "hip"]
-    without_legs = calibrated(static, chosen, MEASURES)
+    without_legs = calibrate_body(static, chosen, MEASURES)
     place = harrington_hip(WIDTH, DEPTH, "r")
     np.testing.assert_allclose(without_legs.points["pelvis"]["hip_r"], place, atol=1e-9)
     said = [finding.what for finding in without_legs.findings if finding.kind == "hip"]
     assert len(said) == 1 and says(said[0], "Harrington, not Davis", "static.c3d")
-    other = calibrated(static, chosen.with_hip("harrington"), legs)
+    other = calibrate_body(static, chosen.with_hip("harrington"), legs)
     np.testing.assert_allclose(other.points["pelvis"]["hip_r"], place, atol=1e-9)
     with pytest.raises(SchemaError, match=r"hip.*harrington.*'davies'"):
         chosen.with_hip("davies")
@@ -100,21 +100,21 @@ def test_plug_in_gait_takes_its_own_hips_where_leg_lengths_are_known():
 
 def test_medial_markers_make_a_midpoint_and_without_them_the_width_is_needed():
     chosen = marker_set("helen_hayes")
-    both = calibrated(static_of(HELEN_HAYES), chosen)
+    both = calibrate_body(static_of(HELEN_HAYES), chosen)
     medial = [f"{side}.{name}.Medial" for side in "LR" for name in ("Knee", "Ankle")]
     lateral = without(static_of(HELEN_HAYES), *medial)
-    one = calibrated(lateral, chosen, MEASURES)
+    one = calibrate_body(lateral, chosen, MEASURES)
     for segment in both.points:
         for name in set(both.points[segment]) & set(one.points[segment]):
             np.testing.assert_allclose(one.points[segment][name], both.points[segment][name], atol=1e-9)
     with pytest.raises(ChannelError, match=r"neither static\.c3d.*'l'"):
-        calibrated(lateral, chosen)
+        calibrate_body(lateral, chosen)
 
 
 def test_a_width_is_taken_from_both_markers_where_nobody_measured_it():
     """Plug-in Gait's chord on a person who also wears a medial malleolus marker."""
     plain = with_methods("helen_hayes", knee="chord", ankle="chord")
-    found = calibrated(static_of(HELEN_HAYES), plain, BodyMeasures(marker_diameter_m=2 * RADIUS))
+    found = calibrate_body(static_of(HELEN_HAYES), plain, BodyMeasures(marker_diameter_m=2 * RADIUS))
     widths = [finding.what for finding in found.findings if finding.kind == "width"]
     assert f"width of knee_r {KNEE_WIDTH * 1000:.0f} mm from its two markers" in widths
     assert f"width of ankle_l {ANKLE_WIDTH * 1000:.0f} mm from its two markers" in widths
@@ -123,7 +123,7 @@ def test_a_width_is_taken_from_both_markers_where_nobody_measured_it():
 
 def test_a_diameter_that_is_not_known_is_said_once():
     measures = BodyMeasures(knee_width_m=MEASURES.knee_width_m, ankle_width_m=MEASURES.ankle_width_m)
-    found = calibrated(static_of(PLUG_IN_GAIT), marker_set("plug_in_gait"), measures)
+    found = calibrate_body(static_of(PLUG_IN_GAIT), marker_set("plug_in_gait"), measures)
     (said,) = (finding.what for finding in found.findings if finding.kind == "marker diameter")
     assert says(said, "known", "14 mm")
 
@@ -133,44 +133,44 @@ def test_the_person_may_stand_still_in_a_part_of_the_trial_only():
     still = static_of(RAJAGOPAL)
     values = np.concatenate([moving.values, still.values, moving.values])
     static = Recording(np.arange(300) / 100, values, still.channels, source=still.source)
-    points = calibrated(static, marker_set("rajagopal")).points
+    points = calibrate_body(static, marker_set("rajagopal")).points
     np.testing.assert_allclose(points["thigh_r"]["knee_r"], [0, -THIGH, 0], atol=1e-9)
 
 
 def test_a_marker_with_gaps_and_one_frame_are_enough():
     static = static_of(RAJAGOPAL)
     lost = with_column(static, "RCAL.x", np.nan, slice(10, None))
-    expected = calibrated(static, marker_set("rajagopal")).points["foot_r"]["heel_r"]
+    expected = calibrate_body(static, marker_set("rajagopal")).points["foot_r"]["heel_r"]
     for recording in (lost, static.between(0, 0.005)):
-        found = calibrated(recording, marker_set("rajagopal")).points["foot_r"]["heel_r"]
+        found = calibrate_body(recording, marker_set("rajagopal")).points["foot_r"]["heel_r"]
         np.testing.assert_allclose(found, expected, atol=1e-9)
 
 
 def test_a_marker_missing_in_the_static_trial_is_named():
     with pytest.raises(ChannelError, match=r"rajagopal; static\.c3d.*no RMFC"):
-        calibrated(without(static_of(RAJAGOPAL), "RMFC"), marker_set("rajagopal"))
+        calibrate_body(without(static_of(RAJAGOPAL), "RMFC"), marker_set("rajagopal"))
 
 
 def test_a_marker_never_seen_in_the_static_trial_is_missing():
     static = static_of(RAJAGOPAL)
     with pytest.raises(ChannelError, match=r"static\.c3d has no RMFC\."):
-        calibrated(with_column(static, "RMFC.x", np.nan), marker_set("rajagopal"))
+        calibrate_body(with_column(static, "RMFC.x", np.nan), marker_set("rajagopal"))
 
 
 def test_too_few_markers_to_follow_a_segment_are_refused():
     static = without(static_of(GAIT2354), "R.Thigh.Front")
     with pytest.raises(ChannelError, match=r"thigh_r.*3 points.*R\.Thigh\.Upper, R\.Thigh\.Rear.*no"):
-        calibrated(static, marker_set("gait2354"))
+        calibrate_body(static, marker_set("gait2354"))
 
 
 def test_a_walk_is_no_static_trial():
     with pytest.raises(SamplingError, match=r"walk\.c3d"):
-        calibrated(markers_of(known_angles(200), RAJAGOPAL), marker_set("rajagopal"))
+        calibrate_body(markers_of(known_angles(200), RAJAGOPAL), marker_set("rajagopal"))
 
 
 def test_a_mirrored_static_trial_is_refused():
     with pytest.raises(ShapeError, match=r"static\.c3d.*left.*right"):
-        calibrated(static_of(RAJAGOPAL, Laboratory(np.diag([-1.0, 1, 1]))), marker_set("rajagopal"))
+        calibrate_body(static_of(RAJAGOPAL, Laboratory(np.diag([-1.0, 1, 1]))), marker_set("rajagopal"))
 
 
 @pytest.mark.parametrize(
@@ -183,7 +183,7 @@ def test_a_mirrored_static_trial_is_refused():
 )
 def test_two_exchanged_labels_spoil_their_segments_alone_and_are_named(pair, spoiled):
     static = renamed(static_of(RAJAGOPAL), dict(zip(pair, pair[::-1], strict=True)))
-    found = calibrated(static, marker_set("rajagopal"))
+    found = calibrate_body(static, marker_set("rajagopal"))
     (said,) = (one for one in found.findings if one.kind == "exchanged markers")
     assert all(label in said.what for label in pair)
     assert (said.severity, said.file, found.spoiled) == ("warning", "static.c3d", spoiled)
@@ -192,7 +192,7 @@ def test_two_exchanged_labels_spoil_their_segments_alone_and_are_named(pair, spo
 def test_labels_that_no_single_exchange_puts_right_are_refused():
     static = renamed(static_of(RAJAGOPAL), {"RCAL": "RTOE", "RTOE": "RCAL", "LCAL": "LTOE", "LTOE": "LCAL"})
     with pytest.raises(ShapeError, match=r"static\.c3d .TOE.*not.*.CAL \(200 mm\)"):
-        calibrated(static, marker_set("rajagopal"))
+        calibrate_body(static, marker_set("rajagopal"))
 
 
 def test_landmarks_on_a_line_are_refused():
@@ -203,7 +203,7 @@ def test_landmarks_on_a_line_are_refused():
         for label in ("LPSI", "RPSI"):
             values[:, static.index(f"{label}.{axis}")] = middle
     with pytest.raises(ShapeError, match="landmarks"):
-        calibrated(static.with_values(values), marker_set("rajagopal"))
+        calibrate_body(static.with_values(values), marker_set("rajagopal"))
 
 
 BODIES = {"plug_in_gait": PLUG_IN_GAIT, "rajagopal": RAJAGOPAL}
@@ -224,7 +224,7 @@ def circled(name: str, flexion: float = 25.0, adduction: float = 20.0) -> Record
 
 def body(name: str, wrong_m: float = 0.0):
     """Calibration of a person whose hips the landmarks place by so much beside where they are, and the true hips."""
-    right = calibrated(static_of(BODIES[name]), marker_set(name).with_hip("harrington"), MEASURES)
+    right = calibrate_body(static_of(BODIES[name]), marker_set(name).with_hip("harrington"), MEASURES)
     true = {joint: place for joint, place in right.points["pelvis"].items() if joint.startswith("hip")}
     points = dict(right.points)
     points["pelvis"] = {k: place + wrong_m * (k in true) for k, place in right.points["pelvis"].items()}
@@ -281,7 +281,7 @@ def test_one_plane_or_none_keeps_the_hip_of_the_landmarks(flexion, adduction, wo
 def test_a_body_calibrated_with_them_has_its_joints_there():
     _, true = body("rajagopal")
     moved = {joint: place + np.array([0.01, -0.01, 0.0]) for joint, place in true.items()}
-    found = calibrated(static_of(RAJAGOPAL), marker_set("rajagopal"), MEASURES, moved)
+    found = calibrate_body(static_of(RAJAGOPAL), marker_set("rajagopal"), MEASURES, moved)
     for joint, place in moved.items():
         np.testing.assert_allclose(found.points["pelvis"][joint], place, atol=1e-12)
     standing = motion(static_of(RAJAGOPAL), found)
@@ -307,7 +307,7 @@ def test_exchanges_of_two_plug_in_gait_markers_are_found_and_named(places):
     for pair in [*itertools.combinations(places, 2)][::4]:
         wrong = {**places, pair[0]: places[pair[1]], pair[1]: places[pair[0]]}
         assert min(landmark_order(PIG, wrong, UP))[0] <= 0, pair
-        assert exchanged_in_static(PIG, wrong, UP) == pair
+        assert find_exchanged_in_static(PIG, wrong, UP) == pair
 
 
 @pytest.mark.parametrize("turn_deg", [-70, -30, 30, 70])

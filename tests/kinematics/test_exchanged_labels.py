@@ -16,7 +16,7 @@ from manufactured_body import (
 from texts import says
 
 from gaitdisc.errors import ShapeError
-from gaitdisc.kinematics.calibration import calibrated
+from gaitdisc.kinematics.calibration import calibrate_body
 from gaitdisc.kinematics.marker_set import marker_set
 from gaitdisc.kinematics.motion import motion
 
@@ -52,7 +52,7 @@ def said(found):
     ],
 )
 def test_half_a_second_is_missing_and_said_and_all_else_is_exact(name, pair, lost):
-    calibration = calibrated(static_of(SETS[name]), marker_set(name), MEASURES)
+    calibration = calibrate_body(static_of(SETS[name]), marker_set(name), MEASURES)
     span = slice(40, 90)
     found = motion(exchanged(markers_of(KNOWN, SETS[name]), pair, span), calibration, (1, 0, 0))
     (one,) = said(found)
@@ -73,7 +73,7 @@ def test_heel_and_toe_are_told_apart_on_a_foot_whose_ankle_lies_on_their_line():
     places = {segment: dict(own) for segment, own in PLUG_IN_GAIT.items()}
     for side in "LR":
         places[f"foot_{side.lower()}"] = {f"{side}HEE": np.array([-0.1, 0, 0]), f"{side}TOE": np.array([0.1, 0, 0])}
-    calibration = calibrated(static_of(places), marker_set("plug_in_gait"), MEASURES)
+    calibration = calibrate_body(static_of(places), marker_set("plug_in_gait"), MEASURES)
     clean = motion(markers_of(KNOWN, places), calibration, (1, 0, 0))
     assert not said(clean) and np.isnan(clean.angles["ankle_angle_r"]).all()
     for pair in (("RHEE", "RTOE"), ("LHEE", "RHEE")):
@@ -82,7 +82,7 @@ def test_heel_and_toe_are_told_apart_on_a_foot_whose_ankle_lies_on_their_line():
 
 
 def test_a_whole_walk_with_heel_and_toe_exchanged_loses_that_ankle_alone():
-    calibration = calibrated(static_of(PLUG_IN_GAIT), marker_set("plug_in_gait"), MEASURES)
+    calibration = calibrate_body(static_of(PLUG_IN_GAIT), marker_set("plug_in_gait"), MEASURES)
     found = motion(exchanged(markers_of(KNOWN, PLUG_IN_GAIT), ("RHEE", "RTOE")), calibration, (1, 0, 0))
     assert says(said(found)[0].what, "RHEE", "RTOE", "120 of 120 frames: 0", "mm")
     assert np.isnan(found.angles["ankle_angle_r"]).all()
@@ -94,14 +94,14 @@ def test_a_whole_walk_with_heel_and_toe_exchanged_loses_that_ankle_alone():
 def test_the_same_labels_exchanged_in_both_trials_are_said_of_the_static_one():
     static = exchanged(static_of(PLUG_IN_GAIT), ("RHEE", "RTOE"))
     walk = exchanged(markers_of(KNOWN, PLUG_IN_GAIT), ("RHEE", "RTOE"))
-    found = motion(walk, calibrated(static, marker_set("plug_in_gait"), MEASURES), (1, 0, 0))
+    found = motion(walk, calibrate_body(static, marker_set("plug_in_gait"), MEASURES), (1, 0, 0))
     assert says(said(found)[0].what, "RHEE", "RTOE", "static trial corrects")
     assert np.isnan(found.angles["ankle_angle_r"]).all()
     np.testing.assert_allclose(found.angles["ankle_angle_l"], KNOWN["ankle_angle_l"], atol=1e-6)
 
 
 def test_a_pelvis_that_never_fits_refuses_the_trial_and_names_the_labels():
-    calibration = calibrated(static_of(PLUG_IN_GAIT), marker_set("plug_in_gait"), MEASURES)
+    calibration = calibrate_body(static_of(PLUG_IN_GAIT), marker_set("plug_in_gait"), MEASURES)
     walk = exchanged(markers_of(KNOWN, PLUG_IN_GAIT), ("RASI", "LASI"))
     with pytest.raises(ShapeError, match=r"LASI.*RASI.*corrects"):
         motion(walk, calibration, (1, 0, 0))
@@ -112,7 +112,7 @@ def test_skin_that_slides_by_15_mm_is_no_exchange():
     markers = markers_of(KNOWN, PLUG_IN_GAIT)
     slide = 0.015 * np.sin(2 * np.pi * markers.time)[:, None]
     thigh = np.array([name[1:4] in ("THI", "KNE") for name in markers.names])
-    found = motion(markers.with_values(markers.values + slide * thigh), calibrated(
+    found = motion(markers.with_values(markers.values + slide * thigh), calibrate_body(
         static_of(PLUG_IN_GAIT), marker_set("plug_in_gait"), MEASURES), (1, 0, 0))  # fmt: skip
     assert not [one for one in found.findings if one.kind in ("exchanged markers", "broken segment")]
     assert np.isfinite(found.angles.values).all()

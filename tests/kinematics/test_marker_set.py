@@ -7,9 +7,9 @@ import pytest
 from manufactured_body import MEASURES, PLUG_IN_GAIT, known_angles, markers_of, renamed, static_of
 
 from gaitdisc.errors import ChannelError, ReadError, SchemaError
-from gaitdisc.kinematics.marker_set import marker_set, read_marker_set, recognised_marker_set, shipped_marker_sets
+from gaitdisc.kinematics.marker_set import marker_set, read_marker_set, read_marker_sets, recognise_marker_set
 from gaitdisc.kinematics.markers import marker_labels
-from gaitdisc.kinematics.motion import moved_body
+from gaitdisc.kinematics.motion import move_body
 
 OWN = """
 title = "Our laboratory"
@@ -44,8 +44,8 @@ def written(tmp_path, text: str):
 
 
 def test_the_sets_that_come_along():
-    assert list(shipped_marker_sets()) == ["gait2354", "helen_hayes", "oxford_foot", "plug_in_gait", "rajagopal"]
-    for one in shipped_marker_sets().values():
+    assert list(read_marker_sets()) == ["gait2354", "helen_hayes", "oxford_foot", "plug_in_gait", "rajagopal"]
+    for one in read_marker_sets().values():
         assert one.title
         assert one.citation
 
@@ -60,7 +60,7 @@ def test_a_laboratory_writes_its_own_in_twenty_lines(tmp_path):
     known = known_angles(60)
     path = written(tmp_path, OWN)
     markers, static = renamed(markers_of(known, PLUG_IN_GAIT), own), renamed(static_of(PLUG_IN_GAIT), own)
-    angles = moved_body(markers, static, path, MEASURES, (1, 0, 0)).angles
+    angles = move_body(markers, static, path, MEASURES, (1, 0, 0)).angles
     for name, values in known.items():
         assert abs(angles[name] - values).max() < 1e-9, name
 
@@ -112,15 +112,15 @@ def test_a_bad_set_gets_one_clear_error(tmp_path, change, words):
 
 def test_recognition_prefers_the_set_with_more_of_the_markers():
     plain = marker_labels(static_of(PLUG_IN_GAIT))
-    assert recognised_marker_set(plain, plain).name == "plug_in_gait"
+    assert recognise_marker_set(plain, plain).name == "plug_in_gait"
     foot = [f"{side}{name}" for side in "LR" for name in ("HFB", "TUB", "SHN", "MMA", "P1M", "P5M", "LCA", "STL")]
-    assert recognised_marker_set([*plain, *foot], [*plain, *foot]).name == "oxford_foot"
+    assert recognise_marker_set([*plain, *foot], [*plain, *foot]).name == "oxford_foot"
 
 
 def test_labels_of_no_set_name_the_nearest_one():
     plain = [label for label in marker_labels(static_of(PLUG_IN_GAIT)) if label != "RTHI"]
     with pytest.raises(ChannelError, match=r"a\.c3d.*RASI.*plug_in_gait.*RTHI"):
-        recognised_marker_set(plain, plain, "a.c3d")
+        recognise_marker_set(plain, plain, "a.c3d")
 
 
 def test_the_first_choice_that_is_there_is_the_landmark():
@@ -132,12 +132,12 @@ def test_the_first_choice_that_is_there_is_the_landmark():
 
 def test_a_medial_marker_on_one_side_only_is_not_enough_for_a_midpoint():
     chosen = marker_set("helen_hayes")
-    assert "thigh_wand" in chosen.needed_landmarks(["RKNM"])
-    assert "knee_medial" in chosen.needed_landmarks(["RKNM", "LKNM"])
+    assert "thigh_wand" in chosen.list_needed_landmarks(["RKNM"])
+    assert "knee_medial" in chosen.list_needed_landmarks(["RKNM", "LKNM"])
 
 
 def test_no_alias_means_two_markers_of_a_set():
-    for one in shipped_marker_sets().values():
+    for one in read_marker_sets().values():
         for marker in one.markers():
             assert one.names([marker]) == {marker: marker}
 

@@ -28,12 +28,12 @@ from gaitdisc.errors import ChannelError, ShapeError
 from gaitdisc.ingest.c3d import C3DReader
 from gaitdisc.ingest.c3d_kinetics import read_body_measures
 from gaitdisc.ingest.reading import read_trial
-from gaitdisc.kinematics.calibration import calibrated
+from gaitdisc.kinematics.calibration import calibrate_body
 from gaitdisc.kinematics.marker_set import marker_set
 from gaitdisc.kinematics.markers import WalkingFrame
-from gaitdisc.kinematics.motion import angles_of_poses, chosen_marker_set, motion, moved_body
+from gaitdisc.kinematics.motion import angles_of_poses, choose_marker_set, motion, move_body
 from gaitdisc.kinematics.pose import Pose
-from gaitdisc.kinematics.segment_poses import carried_joint
+from gaitdisc.kinematics.segment_poses import carry_joint
 from gaitdisc.recording import Recording
 
 PIG_ENDS = ("ASI", "THI", "KNE", "TIB", "ANK", "HEE", "TOE")
@@ -61,16 +61,16 @@ def test_known_angles_are_recovered_by_every_set(name, joints):
     known = known_angles(150)
     markers, static = markers_of(known, SETS[name]), static_of(SETS[name])
     check_angles(
-        moved_body(markers, static, replace(marker_set(name), joints=joints), MEASURES, (1, 0, 0)).angles, known
+        move_body(markers, static, replace(marker_set(name), joints=joints), MEASURES, (1, 0, 0)).angles, known
     )
 
 
 @pytest.mark.parametrize("name", SETS)
 def test_the_set_is_recognised_and_said(name):
     static = static_of(SETS[name])
-    chosen = chosen_marker_set(static, static)
+    chosen = choose_marker_set(static, static)
     assert chosen.name == name
-    found = motion(static, calibrated(static, chosen, MEASURES))
+    found = motion(static, calibrate_body(static, chosen, MEASURES))
     assert found.calibration.marker_set.name == name
     assert any(finding.kind == "marker set" and finding.what.startswith(name) for finding in found.findings)
 
@@ -83,26 +83,26 @@ def test_angles_do_not_depend_on_the_laboratory(seed):
     here, there = laboratory(seed), laboratory(seed + 1)
     markers = markers_of(known, PLUG_IN_GAIT, here)
     forward = here.axes @ [1, 0, 0]
-    check_angles(moved_body(markers, static_of(PLUG_IN_GAIT, there), None, MEASURES, tuple(forward)).angles, known)
+    check_angles(move_body(markers, static_of(PLUG_IN_GAIT, there), None, MEASURES, tuple(forward)).angles, known)
 
 
 @pytest.mark.parametrize("seed", range(3))
 def test_the_direction_of_walking_is_found(seed):
     """The pelvis goes straight on, so forward is found exactly, and with it pelvis and foot progression."""
     known, here = known_angles(200, seed), laboratory(seed)
-    found = moved_body(markers_of(known, RAJAGOPAL, here), static_of(RAJAGOPAL), None).angles
+    found = move_body(markers_of(known, RAJAGOPAL, here), static_of(RAJAGOPAL), None).angles
     check_angles(found, known, 1e-6)
 
 
 def test_poses_are_those_of_the_body():
     known, here = known_angles(60), laboratory(4)
-    found = motion(markers_of(known, RAJAGOPAL, here), calibrated(static_of(RAJAGOPAL), marker_set("rajagopal")))
+    found = motion(markers_of(known, RAJAGOPAL, here), calibrate_body(static_of(RAJAGOPAL), marker_set("rajagopal")))
     for segment, (origin, rotation) in body_frames(known).items():
         np.testing.assert_allclose(found.poses[segment].rotation, here.axes @ rotation, atol=1e-9, err_msg=segment)
         expected = origin @ here.axes.T + here.origin
         np.testing.assert_allclose(found.poses[segment].origin, expected, atol=1e-9, err_msg=segment)
     for joint, segment in (("knee_l", "shank_l"), ("ankle_r", "foot_r")):
-        centre = carried_joint(joint, found.poses, found.calibration)
+        centre = carry_joint(joint, found.poses, found.calibration)
         np.testing.assert_allclose(centre, found.poses[segment].origin, atol=1e-9)
     assert max(residual.max() for residual in found.residual_m.values()) < 1e-9
 
@@ -111,14 +111,14 @@ def test_foot_progression_is_the_way_the_toes_point():
     """Standing with the right foot turned out by 20 deg and the left one turned in by 5."""
     known = {name: np.zeros(150) for name in known_angles(2)}
     known["ankle_rotation_r"][:], known["ankle_rotation_l"][:] = -20.0, 5.0
-    angles = moved_body(markers_of(known, RAJAGOPAL), static_of(RAJAGOPAL), None).angles
+    angles = move_body(markers_of(known, RAJAGOPAL), static_of(RAJAGOPAL), None).angles
     np.testing.assert_allclose(angles["foot_progression_angle_r"], -20.0, atol=1e-6)
     np.testing.assert_allclose(angles["foot_progression_angle_l"], 5.0, atol=1e-6)
 
 
 def test_the_pelvis_is_followed_in_the_walker_s_frame():
     here = laboratory(1)
-    angles = moved_body(markers_of(known_angles(150), RAJAGOPAL, here), static_of(RAJAGOPAL), None).angles
+    angles = move_body(markers_of(known_angles(150), RAJAGOPAL, here), static_of(RAJAGOPAL), None).angles
     np.testing.assert_allclose(np.diff(angles["pelvis_tx"]), 0.013, atol=1e-8)
     up = here.axes @ [0, 1, 0]
     np.testing.assert_allclose(angles["pelvis_ty"] * up.sum(), 0.95 * up.sum() + here.origin @ up * up.sum(), atol=1e-8)
@@ -127,7 +127,7 @@ def test_the_pelvis_is_followed_in_the_walker_s_frame():
 def test_missing_markers_are_bridged_and_counted():
     known = known_angles(150)
     markers = with_column(markers_of(known, RAJAGOPAL), "RTH2", np.nan, slice(20, 50))
-    found = motion(markers, calibrated(static_of(RAJAGOPAL), marker_set("rajagopal")), (1, 0, 0))
+    found = motion(markers, calibrate_body(static_of(RAJAGOPAL), marker_set("rajagopal")), (1, 0, 0))
     check_angles(found.angles, known)
     bridged = next(finding for finding in found.findings if finding.kind == "bridged")
     assert says(bridged.what, "thigh_r", "missing", "30 of 150 frames")
@@ -144,7 +144,7 @@ def test_joints_carry_a_segment_that_has_lost_its_markers():
     markers = markers_of(known, RAJAGOPAL)
     for label in ("RTB1", "RTB2", "RTB3"):
         markers = with_column(markers, label, np.nan, slice(60, 70))
-    found = motion(markers, calibrated(static_of(RAJAGOPAL), marker_set("rajagopal")), (1, 0, 0))
+    found = motion(markers, calibrate_body(static_of(RAJAGOPAL), marker_set("rajagopal")), (1, 0, 0))
     check_angles(found.angles, known, 1e-6)
 
 
@@ -153,7 +153,7 @@ def test_a_marker_of_three_on_the_pelvis_is_bridged_by_the_legs(lost):
     """Plug-in Gait has three markers there; where one is missing, both hips carry the other two."""
     known = known_angles(150)
     markers = with_column(markers_of(known, PLUG_IN_GAIT), lost, np.nan, slice(20, 50))
-    found = motion(markers, calibrated(static_of(PLUG_IN_GAIT), marker_set("plug_in_gait"), MEASURES), (1, 0, 0))
+    found = motion(markers, calibrate_body(static_of(PLUG_IN_GAIT), marker_set("plug_in_gait"), MEASURES), (1, 0, 0))
     check_angles(found.angles, known, 1e-6)
     assert any(finding.kind == "bridged" and "30 of 150 frames" in finding.what for finding in found.findings)
     assert found.angles.suspect is not None
@@ -163,7 +163,7 @@ def test_a_marker_of_three_on_the_pelvis_is_bridged_by_the_legs(lost):
 def test_where_too_few_markers_are_left_the_angles_are_missing_and_said():
     known = known_angles(150)
     markers = with_column(markers_of(known, PLUG_IN_GAIT), "RTHI", np.nan, slice(20, 50))
-    found = motion(markers, calibrated(static_of(PLUG_IN_GAIT), marker_set("plug_in_gait"), MEASURES), (1, 0, 0))
+    found = motion(markers, calibrate_body(static_of(PLUG_IN_GAIT), marker_set("plug_in_gait"), MEASURES), (1, 0, 0))
     missing = {name: int(np.isnan(found.angles[name]).sum()) for name in found.angles.names}
     assert missing["knee_angle_r"] == missing["hip_flexion_r"] == 30
     assert missing["knee_angle_l"] == missing["pelvis_tilt"] == 0
@@ -174,17 +174,19 @@ def test_where_too_few_markers_are_left_the_angles_are_missing_and_said():
 
 def test_a_static_trial_of_another_person_is_said():
     taller = {segment: {label: 1.2 * place for label, place in part.items()} for segment, part in RAJAGOPAL.items()}
-    found = motion(markers_of(known_angles(60), RAJAGOPAL), calibrated(static_of(taller), marker_set("rajagopal")))
+    found = motion(markers_of(known_angles(60), RAJAGOPAL), calibrate_body(static_of(taller), marker_set("rajagopal")))
     said = [finding.what for finding in found.findings if finding.kind == "another shape"]
     assert says(said[0], "the static")
-    same = motion(markers_of(known_angles(60), RAJAGOPAL), calibrated(static_of(RAJAGOPAL), marker_set("rajagopal")))
+    same = motion(
+        markers_of(known_angles(60), RAJAGOPAL), calibrate_body(static_of(RAJAGOPAL), marker_set("rajagopal"))
+    )
     assert not [finding for finding in same.findings if finding.kind == "another shape"]
 
 
 def test_an_ankle_apart_from_the_line_of_a_foot_that_rolls_is_said():
     known, swing = known_angles(150), np.arange(150) > 100
     roll = {**known, "ankle_rotation_r": np.full(150, -35.0), "ankle_inversion_r": 35.0 * swing}
-    seen = [moved_body(markers_of(one, PLUG_IN_GAIT), static_of(PLUG_IN_GAIT), None, MEASURES) for one in (known, roll)]
+    seen = [move_body(markers_of(one, PLUG_IN_GAIT), static_of(PLUG_IN_GAIT), None, MEASURES) for one in (known, roll)]
     plain, said = ([one for one in moved.findings if one.kind == "rolled foot"] for moved in seen)
     assert not plain and len(said) == 1
     assert says(said[0].what, "ankle_angle_r", "deg from the line heel to toe")
@@ -203,13 +205,13 @@ EXCHANGED = {f"{side}{end}": f"{other}{end}" for side, other in ("LR", "RL") for
     ids=["mirrored", "sides exchanged", "a marker less"],
 )
 def test_markers_that_do_not_fit_the_static_trial_are_refused(markers, error, words):
-    calibration = calibrated(static_of(PLUG_IN_GAIT), marker_set("plug_in_gait"), MEASURES)
+    calibration = calibrate_body(static_of(PLUG_IN_GAIT), marker_set("plug_in_gait"), MEASURES)
     with pytest.raises(error, match=words):
         motion(markers, calibration)
 
 
 STRANGE = renamed(WALK, {"RTHI": "Q1", "LKNE": "Q2"})
-ANGLES = moved_body(markers_of(known_angles(60), RAJAGOPAL), static_of(RAJAGOPAL)).angles
+ANGLES = move_body(markers_of(known_angles(60), RAJAGOPAL), static_of(RAJAGOPAL)).angles
 
 
 @pytest.mark.parametrize(
@@ -230,12 +232,12 @@ ANGLES = moved_body(markers_of(known_angles(60), RAJAGOPAL), static_of(RAJAGOPAL
 )
 def test_without_the_markers_of_one_set_in_both_trials_a_body_is_not_followed(markers, static, given_set, words):
     with pytest.raises(ChannelError, match=words):
-        moved_body(markers, static, given_set, MEASURES)
+        move_body(markers, static, given_set, MEASURES)
 
 
 def test_a_plane_in_which_nobody_walks_is_refused():
     with pytest.raises(ShapeError, match=r"40 mm.*none.*joints = \"free\""):
-        moved_body(WALK, static_of(PLUG_IN_GAIT), "plug_in_gait", MEASURES, (0, 0, 1), "planar")
+        move_body(WALK, static_of(PLUG_IN_GAIT), "plug_in_gait", MEASURES, (0, 0, 1), "planar")
 
 
 @pytest.fixture(scope="module")
@@ -244,7 +246,7 @@ def person(gait_data):
         path = gait_data / "young_static" / "HC030A" / "HC030A01.c3d"
         static = read_trial(path, reader=reader)
         walk = read_trial(gait_data / "young_straight_and_turn/HC030A/straight/HC030A05.c3d", reader=reader)
-        calibration = calibrated(static.stream("markers"), marker_set("plug_in_gait"), read_body_measures(path))
+        calibration = calibrate_body(static.stream("markers"), marker_set("plug_in_gait"), read_body_measures(path))
         return static, walk, calibration
 
 
@@ -292,7 +294,7 @@ def test_a_real_walk_in_another_laboratory_s_frame_has_the_same_angles(person):
 def test_a_real_static_trial_of_another_person_is_said(person, gait_data):
     _, walk, own = person
     path = gait_data / "young_static" / "HC031A" / "HC031A01.c3d"
-    other = calibrated(read_trial(path).stream("markers"), marker_set("plug_in_gait"), read_body_measures(path))
+    other = calibrate_body(read_trial(path).stream("markers"), marker_set("plug_in_gait"), read_body_measures(path))
     kinds = ("another shape", "exchanged markers", "broken segment")
     assert not [one for one in motion(walk.stream("markers"), own).findings if one.kind in kinds]
     with pytest.raises(ShapeError, match=r"HC030A05\.c3d.*197 of 197"):
@@ -316,7 +318,7 @@ def test_left_and_right_have_one_sign_in_a_walk_of_unlike_legs():
     known = known_angles(60)
     other = {f"{name[:-1]}{'l' if name[-1] == 'r' else 'r'}" if name[-2] == "_" else name: each
              for name, each in known.items()}  # fmt: skip
-    calibration = calibrated(static_of(RAJAGOPAL), marker_set("rajagopal"), MEASURES)
+    calibration = calibrate_body(static_of(RAJAGOPAL), marker_set("rajagopal"), MEASURES)
     found, exchanged = (motion(markers_of(one, RAJAGOPAL), calibration, (1, 0, 0)).angles for one in (known, other))
     for name in known:
         if name[-2] == "_":
@@ -337,7 +339,7 @@ def test_hip_rotation_has_opensim_s_sign_on_both_sides(gait_data):
         some = (markers.time >= start) & (markers.time <= end)
         return replace(markers, time=markers.time[some], values=markers.values[some], suspect=None)
 
-    found = moved_body(between(1.06, 3.23), between(1.995, 2.015), "rajagopal", joints="free").angles
+    found = move_body(between(1.06, 3.23), between(1.995, 2.015), "rajagopal", joints="free").angles
     for side in "lr":
         theirs = np.interp(found.time, angles.time, angles[f"hip_rotation_{side}"])
         assert np.corrcoef(found[f"hip_rotation_{side}"], theirs)[0, 1] > 0.4

@@ -16,10 +16,10 @@ from gaitdisc.kinematics.pose import (
     chord_centre,
     clinical_angles,
     davis_hip,
-    fitted_pose,
+    fit_pose,
     harrington_hip,
     hip_of_spines,
-    rotation_of,
+    make_rotation,
 )
 
 
@@ -96,20 +96,20 @@ def test_each_angle_is_a_turn_about_its_axis(axis, column):
 def test_angles_come_back_whatever_the_laboratory(flexion, adduction, rotation, seed):
     angles = np.array([[flexion, adduction, rotation]])
     proximal = Rotation.random(1, random_state=seed).as_matrix()
-    np.testing.assert_allclose(clinical_angles(proximal, proximal @ rotation_of(angles)), angles, atol=1e-9)
+    np.testing.assert_allclose(clinical_angles(proximal, proximal @ make_rotation(angles)), angles, atol=1e-9)
 
 
 def test_the_sequence_is_that_of_opensim():
     """Turned about z, then about the new x, then about the new y, as a hip of OpenSim is."""
     angles = np.array([[35.0, -12.0, 20.0]])
     expected = Rotation.from_euler("ZXY", angles, degrees=True).as_matrix()
-    np.testing.assert_allclose(rotation_of(angles), expected, atol=1e-12)
+    np.testing.assert_allclose(make_rotation(angles), expected, atol=1e-12)
 
 
 def test_the_floating_axis_is_at_right_angles_to_both_fixed_ones():
     """Grood & Suntay's adduction: the angle between the distal long axis and the plane across the proximal z."""
     angles = np.array([[50.0, 17.0, -8.0]])
-    distal = rotation_of(angles)[0]
+    distal = make_rotation(angles)[0]
     long_axis, hinge = distal[:, 1], np.array([0, 0, 1.0])
     np.testing.assert_allclose(np.degrees(np.arcsin(long_axis @ hinge)), 17.0, atol=1e-9)
 
@@ -132,7 +132,7 @@ def moved(seed: int, frames: int = 12) -> tuple[np.ndarray, np.ndarray, np.ndarr
 @given(st.integers(0, 2**32 - 1))
 def test_pose_comes_back(seed):
     origin, rotation, places = moved(seed)
-    fit = fitted_pose(BODY, places)
+    fit = fit_pose(BODY, places)
     np.testing.assert_allclose(fit.pose.rotation, rotation, atol=1e-9)
     np.testing.assert_allclose(fit.pose.origin, origin, atol=1e-9)
     np.testing.assert_allclose(fit.residual_m, 0, atol=1e-9)
@@ -145,7 +145,7 @@ def test_any_three_markers_carry_the_others(seed):
     random = np.random.default_rng(seed)
     for frame in range(len(places)):
         places[frame, random.permutation(5)[: random.integers(0, 3)]] = np.nan
-    fit = fitted_pose(BODY, places)
+    fit = fit_pose(BODY, places)
     np.testing.assert_allclose(fit.pose.rotation, rotation, atol=1e-9)
     np.testing.assert_allclose(fit.pose.origin, origin, atol=1e-9)
 
@@ -153,7 +153,7 @@ def test_any_three_markers_carry_the_others(seed):
 def test_two_markers_tell_no_pose():
     _, _, places = moved(1)
     places[3, :3] = np.nan
-    fit = fitted_pose(BODY, places)
+    fit = fit_pose(BODY, places)
     assert fit.pose.known.tolist() == [frame != 3 for frame in range(12)]
     assert np.isnan(fit.residual_m[3])
 
@@ -162,12 +162,12 @@ def test_three_markers_on_a_line_tell_no_pose():
     line = np.array([[0, 0, 0], [0, 0.1, 0], [0, 0.2, 0], [0.1, 0, 0]])
     places = np.tile(line, (2, 1, 1))
     places[1, 3] = np.nan
-    assert fitted_pose(line, places).pose.known.tolist() == [True, False]
+    assert fit_pose(line, places).pose.known.tolist() == [True, False]
 
 
 def test_a_mirrored_body_is_not_followed_into_the_mirror():
     _, _, places = moved(2)
-    fit = fitted_pose(BODY * [1, 1, -1], places)
+    fit = fit_pose(BODY * [1, 1, -1], places)
     np.testing.assert_allclose(np.linalg.det(fit.pose.rotation), 1, atol=1e-12)
     assert (fit.residual_m > 0.01).all()
 
@@ -177,7 +177,7 @@ def test_the_fit_is_the_least_of_squares():
     random = np.random.default_rng(3)
     _, _, places = moved(3, 1)
     places = places + 0.01 * random.normal(size=places.shape)
-    fit = fitted_pose(BODY, places)
+    fit = fit_pose(BODY, places)
     best = fit.residual_m[0]
     middle = places[0].mean(axis=0)
     centred = BODY - BODY.mean(axis=0)
@@ -191,7 +191,7 @@ def test_residual_is_the_distance_of_the_markers():
     """Of a square two opposite corners move out by 1 mm and two in: nothing turns, each is 1 mm off."""
     square = np.array([[1, 0, 0], [0, 1, 0], [-1, 0, 0], [0, -1, 0.0]]) * 0.1
     places = (square * np.array([1.01, 0.99, 1.01, 0.99])[:, None])[None]
-    np.testing.assert_allclose(fitted_pose(square, places).residual_m, 1e-3, rtol=1e-9)
+    np.testing.assert_allclose(fit_pose(square, places).residual_m, 1e-3, rtol=1e-9)
 
 
 def test_harrington_has_the_numbers_of_the_paper():

@@ -22,17 +22,17 @@ from texts import says
 from gaitdisc.channel import Channel
 from gaitdisc.errors import ChannelError, ShapeError
 from gaitdisc.ingest.reading import read_trial
-from gaitdisc.kinematics.calibration import calibrated
+from gaitdisc.kinematics.calibration import calibrate_body
 from gaitdisc.kinematics.marker_set import marker_set
-from gaitdisc.kinematics.motion import Motion, motion, moved_body, segment_angles
+from gaitdisc.kinematics.motion import Motion, motion, move_body, segment_angles
 from gaitdisc.kinematics.pose import SEGMENTS, Pose
 from gaitdisc.kinematics.segment_poses import (
-    carried_joint,
-    carried_over,
+    carry_joint,
+    carry_over,
     free_poses,
-    joined_poses,
-    named_places,
-    placed_markers,
+    join_poses,
+    name_places,
+    place_markers,
 )
 from gaitdisc.recording import Recording, Source
 
@@ -41,27 +41,27 @@ WALKER = np.tile(np.eye(3), (40, 1, 1))
 
 
 def test_markers_that_the_static_trial_lacks_are_not_followed():
-    calibration = calibrated(without(static_of(RAJAGOPAL), "RTH3"), marker_set("rajagopal"))
-    body, places = placed_markers(named_places(markers_of(KNOWN, RAJAGOPAL), calibration), calibration)["thigh_r"]
+    calibration = calibrate_body(without(static_of(RAJAGOPAL), "RTH3"), marker_set("rajagopal"))
+    body, places = place_markers(name_places(markers_of(KNOWN, RAJAGOPAL), calibration), calibration)["thigh_r"]
     assert (body.shape, places.shape) == ((3, 3), (40, 3, 3))
 
 
 def test_too_few_points_in_the_trial_are_refused():
-    calibration = calibrated(static_of(RAJAGOPAL), marker_set("rajagopal"))
+    calibration = calibrate_body(static_of(RAJAGOPAL), marker_set("rajagopal"))
     markers = without(markers_of(KNOWN, RAJAGOPAL), "LTB1", "LTB2")
     with pytest.raises(ChannelError, match=r"shank_l.*3 points.*LTB3, LLMAL.*no LTB1, LTB2"):
-        placed_markers(named_places(markers, calibration), calibration, markers.source.file)
+        place_markers(name_places(markers, calibration), calibration, markers.source.file)
 
 
 @pytest.mark.parametrize("joints", ["free", "held"])
 def test_the_chain_from_the_pelvis_down_is_that_of_the_body(joints):
-    calibration = calibrated(static_of(PLUG_IN_GAIT), marker_set("plug_in_gait").with_joints(joints), MEASURES)
-    placed = placed_markers(named_places(markers_of(KNOWN, PLUG_IN_GAIT), calibration), calibration)
-    poses = joined_poses(free_poses(placed, calibration), placed, calibration, WALKER)
+    calibration = calibrate_body(static_of(PLUG_IN_GAIT), marker_set("plug_in_gait").with_joints(joints), MEASURES)
+    placed = place_markers(name_places(markers_of(KNOWN, PLUG_IN_GAIT), calibration), calibration)
+    poses = join_poses(free_poses(placed, calibration), placed, calibration, WALKER)
     for segment, (origin, rotation) in body_frames(KNOWN).items():
         np.testing.assert_allclose(poses[segment].origin, origin, atol=1e-9, err_msg=segment)
         np.testing.assert_allclose(poses[segment].rotation, rotation, atol=1e-9, err_msg=segment)
-    np.testing.assert_allclose(carried_joint("ankle_l", poses, calibration), poses["foot_l"].origin, atol=1e-9)
+    np.testing.assert_allclose(carry_joint("ankle_l", poses, calibration), poses["foot_l"].origin, atol=1e-9)
 
 
 FRAMES, GAP = 60, slice(20, 40)
@@ -81,24 +81,24 @@ def with_gap(pose: Pose, gap: slice) -> Pose:
 
 def test_a_held_body_that_differs_by_a_constant_closes_the_gap_exactly():
     whole = swinging()
-    found = carried_over(with_gap(whole, GAP), swinging(7.0, 0.02))
+    found = carry_over(with_gap(whole, GAP), swinging(7.0, 0.02))
     np.testing.assert_allclose(found.rotation, whole.rotation, atol=1e-12)
     np.testing.assert_allclose(found.origin, whole.origin, atol=1e-12)
 
 
 def test_frames_that_are_known_stay_as_they_are():
     whole = swinging()
-    assert carried_over(whole, swinging(7.0)) is whole
+    assert carry_over(whole, swinging(7.0)) is whole
 
 
 def test_a_gap_at_the_end_keeps_the_last_difference():
     whole = swinging()
-    found = carried_over(with_gap(whole, slice(50, FRAMES)), swinging(7.0, 0.02))
+    found = carry_over(with_gap(whole, slice(50, FRAMES)), swinging(7.0, 0.02))
     np.testing.assert_allclose(found.rotation, whole.rotation, atol=1e-12)
 
 
 def test_where_the_held_body_is_unknown_the_gap_stays():
-    found = carried_over(with_gap(swinging(), GAP), with_gap(swinging(), slice(25, 30)))
+    found = carry_over(with_gap(swinging(), GAP), with_gap(swinging(), slice(25, 30)))
     assert np.flatnonzero(~found.known).tolist() == [25, 26, 27, 28, 29]
 
 
@@ -107,7 +107,7 @@ def test_a_held_body_that_has_flipped_is_not_followed():
     held = swinging()
     rotation = np.array(held.rotation)
     rotation[25:30] = rotation[25:30] @ Rotation.from_euler("y", 70, degrees=True).as_matrix()
-    found = carried_over(with_gap(swinging(), GAP), Pose(held.origin, rotation))
+    found = carry_over(with_gap(swinging(), GAP), Pose(held.origin, rotation))
     assert np.flatnonzero(~found.known).tolist() == [25, 26, 27, 28, 29]
 
 
@@ -115,8 +115,8 @@ HELD = marker_set("rajagopal")
 FREE = HELD.with_joints("free")
 FLEXIONS = ("hip_flexion", "knee_angle", "ankle_angle")
 ANGLES = known_angles(60)
-CALIBRATION = calibrated(static_of(RAJAGOPAL), HELD)
-PLANAR = calibrated(static_of(RAJAGOPAL), HELD.with_joints("planar"))
+CALIBRATION = calibrate_body(static_of(RAJAGOPAL), HELD)
+PLANAR = calibrate_body(static_of(RAJAGOPAL), HELD.with_joints("planar"))
 JOINTS = {"thigh": "hip", "shank": "knee", "foot": "ankle"}
 
 
@@ -139,7 +139,7 @@ def joints_apart(found: Motion) -> float:
     for segment in SEGMENTS[1:]:
         joint = JOINTS[segment[:-2]] + segment[-2:]
         inside = found.poses[segment].to_laboratory(CALIBRATION.points[segment][joint])
-        apart.append(np.linalg.norm(inside - carried_joint(joint, found.poses, found.calibration), axis=1).max())
+        apart.append(np.linalg.norm(inside - carry_joint(joint, found.poses, found.calibration), axis=1).max())
     return max(apart)
 
 
@@ -198,7 +198,7 @@ def test_a_planar_body_agrees_with_opensim_s_planar_model(gait_data):
     files = (folder / "ExperimentalData" / "subject01_static.trc", folder / "ExperimentalData" / "subject01_walk.trc")
     static, walk = (read_trial(file).stream("markers") for file in files)
     theirs = read_trial(folder / "IK" / "subject01_walk_IK.mot").stream("kinematics")
-    ours = moved_body(walk, static, joints="planar").angles
+    ours = move_body(walk, static, joints="planar").angles
     for name in ("pelvis_tilt", *(f"{flexion}_{side}" for flexion in FLEXIONS for side in "rl")):
         apart = ours[name] - np.interp(walk.time, theirs.time, theirs[name])
         assert apart.std() <= 3.0, f"{name} {apart.std():.2f} deg"
@@ -211,7 +211,7 @@ def test_a_thigh_laid_over_sliding_skin_leaves_its_hip_and_a_held_one_does_not()
     errors = {}
     for name, chosen in (("held", HELD), ("free", FREE)):
         found = motion(markers, replace(CALIBRATION, marker_set=chosen), (1, 0, 0))
-        centre = found.poses["thigh_r"].origin - carried_joint("hip_r", found.poses, found.calibration)
+        centre = found.poses["thigh_r"].origin - carry_joint("hip_r", found.poses, found.calibration)
         errors[name] = np.linalg.norm(centre, axis=1).max()
     assert errors["held"] < 1e-9
     np.testing.assert_allclose(errors["free"], 0.015, rtol=0.05)

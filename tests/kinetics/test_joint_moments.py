@@ -11,7 +11,7 @@ from gaitdisc.kinetics.joint_moments import FootLoad, KineticsSettings, along, j
 from gaitdisc.kinetics.newton_euler import GRAVITY, joint_wrenches, segment_motion
 from gaitdisc.kinetics.plate_steps import FootPath
 from gaitdisc.kinetics.platform import Wrench
-from gaitdisc.signals.derivatives import differentiated
+from gaitdisc.signals.derivatives import derivative
 
 TIME = np.arange(120) / 100
 PERSON = Person(70.0, "m", 1.75)
@@ -85,20 +85,20 @@ def test_powers_do_the_work_that_changes_the_energy():
     for segment, body in found.bodies.items():
         moving = found.moving[segment]
         centre = moving.pose.to_laboratory(body.centre)
-        velocity = differentiated(centre, 100.0)
+        velocity = derivative(centre, 100.0)
         tensor = moving.pose.rotation @ body.tensor @ np.swapaxes(moving.pose.rotation, 1, 2)
         spin = moving.angular_velocity
         energy = energy + body.mass_kg * (0.5 * (velocity**2).sum(1) + GRAVITY * centre @ up)
         energy = energy + 0.5 * np.einsum("fi,fij,fj->f", spin, tensor, spin)
-    gained = differentiated(energy[:, None], 100.0)[:, 0]
+    gained = derivative(energy[:, None], 100.0)[:, 0]
     carried = joint_wrenches(list(found.needed(up).values()), ground)
     recording = moments_of((poses, paths, ground, up))
     joints = 70.0 * sum(recording[f"{joint}_power_r"] for joint in ("ankle", "knee", "hip"))
     # at the hip the trunk also moves the leg: force times hip velocity and moment times the pelvis' turning
     hip, foot = poses["thigh_r"].origin, found.moving["foot"]
-    on_hip = np.einsum("fx,fx->f", carried[2].force, differentiated(hip, 100.0))
+    on_hip = np.einsum("fx,fx->f", carried[2].force, derivative(hip, 100.0))
     on_hip += np.einsum("fx,fx->f", carried[2].about(hip), found.moving["pelvis"].angular_velocity)
-    on_foot = np.einsum("fx,fx->f", ground.force, differentiated(foot.pose.origin, 100.0))
+    on_foot = np.einsum("fx,fx->f", ground.force, derivative(foot.pose.origin, 100.0))
     on_foot += np.einsum("fx,fx->f", ground.about(foot.pose.origin), foot.angular_velocity)
     inner = slice(6, -6)
     assert (joints + on_hip + on_foot)[inner] == pytest.approx(gained[inner], abs=0.02 * np.nanmax(np.abs(gained)))

@@ -11,13 +11,13 @@ from gaitdisc.kinetics.newton_euler import (
     GRAVITY,
     RigidBody,
     SegmentMotion,
+    compute_wrench,
     joint_wrenches,
     moment_per_foot_kg,
     nearest_rotations,
-    needed_wrench,
     segment_motion,
     segment_motions,
-    smoothed_pose,
+    smooth_pose,
 )
 from gaitdisc.kinetics.platform import Wrench
 
@@ -35,7 +35,7 @@ def test_a_double_pendulum_has_the_moments_of_lagrange_in_every_laboratory(seed)
     (upper, lower), expected = links.double_pendulum(TIME, turn, shift)
     near, far = links.bodies()
     up = turn @ UP
-    at_lower, at_upper = joint_wrenches([needed_wrench(lower, far, up), needed_wrench(upper, near, up)], NO_GROUND)
+    at_lower, at_upper = joint_wrenches([compute_wrench(lower, far, up), compute_wrench(upper, near, up)], NO_GROUND)
     found = [w.about(m.pose.origin) @ (turn @ links.Z) for w, m in ((at_upper, upper), (at_lower, lower))]
     assert np.abs(np.stack(found, 1) - expected).max() < 1e-9
     assert np.abs(expected).max() > 5
@@ -45,8 +45,8 @@ def test_a_pendulum_from_its_poses_alone_has_its_moment_to_1_percent():
     angle = 0.5 * np.sin(2 * np.pi * 1.2 * TIME)
     body = links.bodies()[0]
     pose = Pose(np.tile([0.4, 1.0, -0.2], (len(TIME), 1)), links.rotations(angle))
-    moving = segment_motion(smoothed_pose(pose, TIME, 6.0), 100.0)
-    moment = joint_wrenches([needed_wrench(moving, body, UP)], NO_GROUND)[0].about(pose.origin) @ links.Z
+    moving = segment_motion(smooth_pose(pose, TIME, 6.0), 100.0)
+    moment = joint_wrenches([compute_wrench(moving, body, UP)], NO_GROUND)[0].about(pose.origin) @ links.Z
     inertia = links.INERTIAS[0] + links.MASSES[0] * links.CENTRES[0] ** 2
     expected = -inertia * (2 * np.pi * 1.2) ** 2 * angle + links.MASSES[0] * GRAVITY * links.CENTRES[0] * np.sin(angle)
     inner = slice(50, -50)  # the filter's edges
@@ -58,7 +58,7 @@ def test_a_spinning_top_needs_the_moment_of_euler():
     spin = np.array([[2.0, 5.0, -1.0]])
     still = np.zeros((1, 3))
     moving = SegmentMotion(Pose(still, np.eye(3)[None]), still, spin, still)
-    moment = needed_wrench(moving, body, UP).about(np.zeros(3))
+    moment = compute_wrench(moving, body, UP).about(np.zeros(3))
     # Euler: (I3 - I2) w2 w3, (I1 - I3) w3 w1, (I2 - I1) w1 w2
     assert moment == pytest.approx(np.array([[-0.1 * 5 * -1, -0.1 * -1 * 2, 0.2 * 2 * 5]]))
 
@@ -71,7 +71,7 @@ def test_a_standing_leg_has_the_moments_of_statics():
     centres = {"foot": [0.06, -0.04, 0.0], "shank": [-0.01, -0.18, 0.0], "thigh": [-0.02, -0.17, 0.01]}
     bodies = {name: RigidBody(masses[name], np.array(centre), np.eye(3)) for name, centre in centres.items()}
     force, point = np.array([12.0, 380.0, -9.0]), np.array([0.07, 0.0, 0.11])
-    carried = joint_wrenches([needed_wrench(at[n], bodies[n], UP) for n in places], Wrench.at(point, force[None]))
+    carried = joint_wrenches([compute_wrench(at[n], bodies[n], UP) for n in places], Wrench.at(point, force[None]))
     beyond = []
     for wrench, name in zip(carried, ("foot", "shank", "thigh"), strict=True):
         beyond.append(name)
@@ -109,14 +109,14 @@ def test_a_point_of_the_segment_accelerates_as_its_path_does():
     pose, point = turning(), np.array([0.1, -0.3, 0.05])
     path = pose.to_laboratory(point)
     expected = segment_motion(Pose(path, pose.rotation), 200.0).acceleration
-    found = segment_motion(pose, 200.0).acceleration_of(point)
+    found = segment_motion(pose, 200.0).point_acceleration(point)
     assert found[2:-2] == pytest.approx(expected[2:-2], abs=2e-4)
 
 
 def test_smoothing_keeps_slow_turns_and_takes_tremor_away():
     slow = turning()
     tremor = Rotation.from_rotvec(np.outer(0.02 * np.sin(2 * np.pi * 30 * FAST), [0, 0, 1])).as_matrix()
-    smooth = smoothed_pose(Pose(slow.origin, slow.rotation @ tremor), FAST, 6.0)
+    smooth = smooth_pose(Pose(slow.origin, slow.rotation @ tremor), FAST, 6.0)
     inner = slice(60, -60)
     apart = Rotation.from_matrix(smooth.rotation[inner]).inv() * Rotation.from_matrix(slow.rotation[inner])
     assert apart.magnitude().max() < 2e-3
@@ -138,7 +138,7 @@ def test_a_mirror_image_is_made_a_rotation():
 def test_a_long_gap_stays_unknown():
     origin = np.array(turning().origin)
     origin[100:200] = np.nan
-    moving = segment_motion(smoothed_pose(Pose(origin, turning().rotation), FAST, 6.0), 200.0)
+    moving = segment_motion(smooth_pose(Pose(origin, turning().rotation), FAST, 6.0), 200.0)
     assert np.isnan(moving.acceleration[100:200]).all()
     assert np.isfinite(moving.acceleration[10:90]).all()
 

@@ -38,7 +38,7 @@ def given(monkeypatch):
         request.progress("searching")
         return None, model
 
-    monkeypatch.setattr(discovering, "discovered", instead)
+    monkeypatch.setattr(discovering, "find_missing", instead)
     return seen
 
 

@@ -47,14 +47,14 @@ def test_a_folder_without_a_result_is_refused(tmp_path):
 
 
 def test_a_discovery_that_was_edited_or_is_of_another_format_is_refused(tmp_path):
-    from gaitdisc.saved.unit_folder import read_sealed, sealed_text
+    from gaitdisc.saved.unit_folder import read_sealed, seal_text
 
     file = manufactured().save(tmp_path) / "discovery.json"
     data = read_sealed(file)
-    file.write_text(sealed_text(data | {"format": 2}))
+    file.write_text(seal_text(data | {"format": 2}))
     with pytest.raises(SchemaError, match="of format 2, not 1"):
         gd.load(tmp_path)
-    file.write_text(sealed_text({key: value for key, value in data.items() if key != "gap"}))
+    file.write_text(seal_text({key: value for key, value in data.items() if key != "gap"}))
     with pytest.raises(SchemaError, match=r"not.*.KeyError: 'gap'"):
         gd.load(tmp_path)
     manufactured().save(tmp_path, overwrite=True)

@@ -12,7 +12,7 @@ from gaitdisc.channel import Channel
 from gaitdisc.engines.engine import read_model
 from gaitdisc.engines.mapping import with_input_changed, write_mapping
 from gaitdisc.errors import SamplingError, SchemaError, ShapeError, SimulationError
-from gaitdisc.library.simulating import model_of
+from gaitdisc.library.simulating import as_model
 from gaitdisc.simulation.python_simulation import PythonSimulation
 from gaitdisc.simulation.simulation_file import bundled
 from gaitdisc.simulation.writing import write_simulation
@@ -160,12 +160,12 @@ def test_a_walk_whose_motion_is_prescribed_is_not_simulated(tracked_walk):
 def test_a_file_an_object_and_a_function_are_models(tmp_path):
     pendulum = bundled("pendulum")
     file = write_simulation(pendulum, tmp_path / "pendulum.toml")
-    assert model_of(file) == model_of(str(file)) == model_of(pendulum) == pendulum
-    assert model_of(lambda x: -x).equations == (("x", "-x"),)
-    model = model_of(lambda x: math.erf(x))  # noqa: PLW0108 its argument is the state
-    assert isinstance(model, PythonSimulation) and model_of(model) is model
+    assert as_model(file) == as_model(str(file)) == as_model(pendulum) == pendulum
+    assert as_model(lambda x: -x).equations == (("x", "-x"),)
+    model = as_model(lambda x: math.erf(x))  # noqa: PLW0108 its argument is the state
+    assert isinstance(model, PythonSimulation) and as_model(model) is model
 
 
 def test_anything_else_is_refused():
     with pytest.raises(SimulationError, match="Python function; found"):
-        model_of(3)  # pyright: ignore[reportArgumentType]
+        as_model(3)  # pyright: ignore[reportArgumentType]

@@ -6,7 +6,7 @@ import pytest
 
 import gaitdisc as gd
 from gaitdisc.errors import ChannelError, GaitdiscError, ReadError, SamplingError, StrideError
-from gaitdisc.kinematics.motion import moved_body
+from gaitdisc.kinematics.motion import move_body
 from gaitdisc.response.participant_response import R2_COLUMNS
 
 
@@ -142,7 +142,7 @@ def test_angles_are_those_of_the_room_below(files):
     walk, static = files
     trial, standing = gd.read(walk), gd.read(static)
     found = gd.angles(trial, static)
-    below = moved_body(trial.stream("markers"), standing.stream("markers"), measures=read_body_measures(static)).angles
+    below = move_body(trial.stream("markers"), standing.stream("markers"), measures=read_body_measures(static)).angles
     np.testing.assert_array_equal(found.values, below.values)
     assert found.channels == below.channels and "knee_angle_r" in found.names
 

@@ -9,7 +9,7 @@ from gaitdisc.errors import TrainingError
 from gaitdisc.models.descent import TorchSteps, descend
 from gaitdisc.models.feedforward import FeedForward
 from gaitdisc.models.shred import Shred
-from gaitdisc.models.training_settings import PRECISIONS, ScaledSamples, TrainingSettings, epochs_of, schedule_of
+from gaitdisc.models.training_settings import PRECISIONS, ScaledSamples, TrainingSettings, count_epochs, make_schedule
 
 
 def test_one_epoch_is_that_of_a_loop_written_out():
@@ -18,7 +18,7 @@ def test_one_epoch_is_that_of_a_loop_written_out():
     x, y = torch.randn(10, 3), torch.randn(10, 2)
     ours, theirs = nn.Linear(3, 2), nn.Linear(3, 2)
     theirs.load_state_dict(ours.state_dict())
-    schedule = schedule_of(10, 0.5, settings)
+    schedule = make_schedule(10, 0.5, settings)
     order = torch.randperm(10)
     TorchSteps(ours, ScaledSamples(x, y), ScaledSamples(x, y), schedule).epoch(order, schedule.rates[0])
     groups = [{"params": [theirs.weight], "weight_decay": 0.5}, {"params": [theirs.bias], "weight_decay": 0.0}]
@@ -37,7 +37,7 @@ def test_one_epoch_is_that_of_a_loop_written_out():
 def test_weights_are_a_copy_and_come_back():
     network = nn.Linear(1, 1)
     x = torch.ones(8, 1)
-    schedule = schedule_of(8, 0.0, TrainingSettings())
+    schedule = make_schedule(8, 0.0, TrainingSettings())
     steps = TorchSteps(network, ScaledSamples(x, 5 * x), ScaledSamples(x, 5 * x), schedule)
     before, loss = steps.weights(), steps.loss()
     steps.epoch(torch.arange(8), schedule.rates[0])
@@ -54,7 +54,7 @@ def test_steps_in_bfloat16_lead_nearly_where_those_in_float32_do(cell):
     for precision in PRECISIONS:
         torch.manual_seed(0)
         network = Shred(8, 1, 2, nodes=8, cell=cell)
-        schedule = schedule_of(64, 0.0, TrainingSettings(batch=16, learning_rate=1e-3))
+        schedule = make_schedule(64, 0.0, TrainingSettings(batch=16, learning_rate=1e-3))
         steps = TorchSteps(network, ScaledSamples(x, y), ScaledSamples(x, y), schedule, precision)
         before = steps.loss()
         steps.epoch(torch.arange(64), schedule.rates[0])
@@ -83,11 +83,11 @@ def walked(target, count=200):
 
 
 def descended(network, part, check, decay, settings, *progress):
-    return descend(network, part, check, schedule_of(len(part[0]), decay, settings), settings, *progress)
+    return descend(network, part, check, make_schedule(len(part[0]), decay, settings), settings, *progress)
 
 
 def loss_on(network, check):
-    return TorchSteps(network, check, check, schedule_of(len(check[0]), 0.0, TrainingSettings())).loss()
+    return TorchSteps(network, check, check, make_schedule(len(check[0]), 0.0, TrainingSettings())).loss()
 
 
 def test_best_weights_are_restored_where_the_schedule_goes_on_and_worsens():
@@ -102,7 +102,7 @@ def test_best_weights_are_restored_where_the_schedule_goes_on_and_worsens():
 def test_a_descent_without_gain_ends_after_its_patience_and_a_rate_may_stay():
     slope = Slope()
     settings = TrainingSettings(epochs=50, batch=4, learning_rate=0.005, falling=False, patience=5)
-    assert set(schedule_of(200, 0.0, settings).rates.ravel()) == {0.005}
+    assert set(make_schedule(200, 0.0, settings).rates.ravel()) == {0.005}
     found = descended(slope, walked(3.0), walked(1.0), 0.0, settings)
     assert len(found.losses) == found.best_epoch + 5 < 50
     assert loss_on(slope, walked(1.0)) == min(found.losses)
@@ -133,7 +133,7 @@ def test_progress_rises_to_one_epoch_by_epoch():
     told = []
     settings = TrainingSettings(batch=1)
     descended(Slope(), walked(1.0, 100), walked(1.0, 100), 0.0, settings, told.append)
-    assert epochs_of(100, settings) == 20
+    assert count_epochs(100, settings) == 20
     assert told == [epoch / 20 for epoch in range(1, 21)]
 
 

@@ -21,7 +21,7 @@ from gaitdisc.models.fused_steps import (
     matrices_then_offsets,
     mean_squared_error,
 )
-from gaitdisc.models.training_settings import ScaledSamples, TrainingSettings, schedule_of
+from gaitdisc.models.training_settings import ScaledSamples, TrainingSettings, make_schedule
 
 
 def both(samples=1000, decay=0.3):
@@ -31,7 +31,7 @@ def both(samples=1000, decay=0.3):
     x = torch.randn(samples, 9)
     y = torch.sin(x[:, :3]) + x[:, 3:6] * x[:, 6:]
     part, check = ScaledSamples(x[:-100], y[:-100]), ScaledSamples(x[-100:], y[-100:])
-    schedule = schedule_of(len(part[0]), decay, TrainingSettings(batch=200))
+    schedule = make_schedule(len(part[0]), decay, TrainingSettings(batch=200))
     twin = copy.deepcopy(network)
     return (
         (network, FusedSteps(network, part, check, schedule)),

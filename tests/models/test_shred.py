@@ -18,7 +18,7 @@ from gaitdisc.models.trained_network import TrainedNetwork
 from gaitdisc.models.trainer import train
 from gaitdisc.models.training_settings import TrainingSettings
 from gaitdisc.reconstruction.model_folder import load_weights, save_weights
-from gaitdisc.recording import Samples, scale_of
+from gaitdisc.recording import Samples, fit_scale
 
 BUILD = partial(Shred, sensors=1, nodes=16)
 
@@ -125,7 +125,7 @@ def untrained(count, sensors, **options):
     rng = np.random.default_rng(0)
     x, y = rng.normal(30, 20, (60, count * sensors)), rng.normal(-5, 10, (60, 4))
     names = tuple(f"x{k}" for k in range(count * sensors)), tuple(f"y{k}" for k in range(4))
-    return TrainedNetwork(*names, scale_of(x), scale_of(y), Shred(count * sensors, 4, sensors, nodes=6, **options))
+    return TrainedNetwork(*names, fit_scale(x), fit_scale(y), Shred(count * sensors, 4, sensors, nodes=6, **options))
 
 
 def read_whole(readings, count, spacing):
@@ -162,7 +162,7 @@ def test_an_input_that_did_not_vary_weighs_nothing(cell):
     network = untrained(2, 2, cell=cell)
     x = np.random.default_rng(0).normal(size=(40, 4))
     x[:, [1, 3]] = 7.0
-    still = TrainedNetwork(network.inputs, network.outputs, scale_of(x), network.y_scale, network.network)
+    still = TrainedNetwork(network.inputs, network.outputs, fit_scale(x), network.y_scale, network.network)
     one, other = CarriedWindows(still, 2, 1), CarriedWindows(still, 2, 1)
     for value in range(3):
         a, b = one.update(np.array([value, 7.0])), other.update(np.array([value, -100.0]))

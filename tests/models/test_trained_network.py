@@ -13,10 +13,10 @@ from gaitdisc.errors import SchemaError
 from gaitdisc.model import Model, augment
 from gaitdisc.models.feedforward import FeedForward
 from gaitdisc.models.shred import ShallowDecoder
-from gaitdisc.models.trained_network import TrainedNetwork, pinned_threads, torch_threads
+from gaitdisc.models.trained_network import TrainedNetwork, pin_threads, torch_threads
 from gaitdisc.reconstruction.model_folder import load_weights, save_weights
 from gaitdisc.reconstruction.window_model import Ensemble
-from gaitdisc.recording import scale_of
+from gaitdisc.recording import fit_scale
 
 
 def network(inputs=3, outputs=2, seed=0):
@@ -26,7 +26,7 @@ def network(inputs=3, outputs=2, seed=0):
     x[:, 0] = 4.0
     names = tuple(f"x{k}" for k in range(inputs)), tuple(f"y{k}" for k in range(outputs))
     return TrainedNetwork(
-        *names, scale_of(x), scale_of(rng.normal(100, 9, (50, outputs))), FeedForward(inputs, outputs)
+        *names, fit_scale(x), fit_scale(rng.normal(100, 9, (50, outputs))), FeedForward(inputs, outputs)
     )
 
 
@@ -83,7 +83,7 @@ def five():
     members = []
     for seed in range(5):
         torch.manual_seed(seed)
-        members.append(TrainedNetwork(("a", "b", "c"), ("d", "e"), scale_of(x), scale_of(y), ShallowDecoder(3, 2)))
+        members.append(TrainedNetwork(("a", "b", "c"), ("d", "e"), fit_scale(x), fit_scale(y), ShallowDecoder(3, 2)))
     return Ensemble(tuple(members))
 
 
@@ -113,7 +113,7 @@ def blas_threads():
 
 def test_every_blas_is_pinned_and_let_go_again():
     before = blas_threads()
-    with pytest.raises(RuntimeError), pinned_threads(1):
+    with pytest.raises(RuntimeError), pin_threads(1):
         assert set(blas_threads()) == {torch.get_num_threads()} == {1}
         raise RuntimeError
     assert blas_threads() == before

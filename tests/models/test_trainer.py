@@ -13,9 +13,9 @@ from gaitdisc.models import trainer
 from gaitdisc.models.descent import descend
 from gaitdisc.models.feedforward import FeedForward
 from gaitdisc.models.shred import ShallowDecoder
-from gaitdisc.models.trainer import PENALTIES, choose_penalty, chosen_device, solve_readout, train
-from gaitdisc.models.training_settings import ScaledSamples, TrainingSettings, epochs_of, schedule_of
-from gaitdisc.recording import scale_of
+from gaitdisc.models.trainer import PENALTIES, choose_device, choose_penalty, solve_readout, train
+from gaitdisc.models.training_settings import ScaledSamples, TrainingSettings, count_epochs, make_schedule
+from gaitdisc.recording import fit_scale
 from gaitdisc.statistics.r2 import r2
 
 
@@ -50,7 +50,7 @@ def test_the_scale_never_sees_the_inner_block(swing, quick):
     before = swing.time < swing.last_block(quick.inner_share)[1].time[0] - 0.3
     shifted = replace(swing, x=swing.x + 100.0 * ~before[:, None], y=swing.y - 50.0 * ~before[:, None])
     network = train(shifted, FeedForward, quick).network
-    for found, wanted in ((network.x_scale, scale_of(swing.x[before])), (network.y_scale, scale_of(swing.y[before]))):
+    for found, wanted in ((network.x_scale, fit_scale(swing.x[before])), (network.y_scale, fit_scale(swing.y[before]))):
         np.testing.assert_array_equal(found.mean, wanted.mean)
         np.testing.assert_array_equal(found.sd, wanted.sd)
 
@@ -132,7 +132,7 @@ def test_constant_outputs_and_missing_numbers(swing, quick):
 def test_a_gpu_that_is_not_there(swing, quick):
     with pytest.raises(TrainingError, match=r"'cuda'.*no GPU.*CPU"):
         train(swing, FeedForward, replace(quick, device="cuda"))
-    assert chosen_device("auto").type == "cpu"
+    assert choose_device("auto").type == "cpu"
 
 
 @pytest.mark.skipif(not torch.cuda.is_available(), reason="no GPU")
@@ -146,7 +146,7 @@ def test_a_given_check_part_stops_and_is_never_fitted(swing, quick):
     part, check = swing.rows(slice(0, 1500)), swing.rows(slice(1550, None))
     done = train(part, FeedForward, quick, check=check)
     assert (done.n_training, done.n_inner) == (1500, 450)
-    np.testing.assert_array_equal(done.network.x_scale.mean, scale_of(part.x).mean)
+    np.testing.assert_array_equal(done.network.x_scale.mean, fit_scale(part.x).mean)
     scaled = done.network.y_scale.scaled(check.y)
     missed = np.mean((done.network.y_scale.scaled(done.network(check.x)) - scaled) ** 2)
     assert missed < 2 * min(done.losses)
@@ -156,12 +156,12 @@ def test_the_weights_that_did_best_are_restored_when_the_descent_goes_astray(swi
     """A copy, not a reference: `best = network.state_dict()` follows the descent, and restoring it restores nothing."""
     samples = swing.with_outputs(np.random.default_rng(0).normal(size=swing.y.shape))
     part, check = samples.rows(slice(0, 100)), samples.rows(slice(200, 400))
-    scales = scale_of(part.x), scale_of(part.y)
+    scales = fit_scale(part.x), fit_scale(part.y)
     tensors = [trainer._tensors(each, *scales, torch.device("cpu")) for each in (part, check)]
     torch.manual_seed(0)
     network = ShallowDecoder(3, 2)
     settings = TrainingSettings(epochs=60, batch=20, decays=(0.0,))
-    done = descend(network, tensors[0], tensors[1], schedule_of(100, 0.0, settings), settings)
+    done = descend(network, tensors[0], tensors[1], make_schedule(100, 0.0, settings), settings)
     with torch.no_grad():
         restored = float(torch.nn.functional.mse_loss(network(tensors[1].x), tensors[1].y))
     assert done.losses[-1] > 1.2 * min(done.losses)  # noise is learnt by heart after the best epoch
@@ -216,7 +216,7 @@ def test_settings_that_train_nothing_are_refused(wrong: dict[str, Any], words):
 
 
 def test_rates_are_those_of_torchs_cosine():
-    schedule = schedule_of(300, 0.1, TrainingSettings(batch=100))
+    schedule = make_schedule(300, 0.1, TrainingSettings(batch=100))
     adam = torch.optim.AdamW([torch.nn.Parameter(torch.zeros(1))], lr=1e-2)
     cosine = torch.optim.lr_scheduler.CosineAnnealingLR(adam, schedule.rates.size)
     expected = []
@@ -229,14 +229,14 @@ def test_rates_are_those_of_torchs_cosine():
 
 def test_short_recordings_get_a_thousand_steps():
     for samples in (1, 255, 257, 20_000):
-        rates = schedule_of(samples, 0.0, TrainingSettings()).rates
-        assert rates.shape == (epochs_of(samples, TrainingSettings()), math.ceil(samples / 256))
+        rates = make_schedule(samples, 0.0, TrainingSettings()).rates
+        assert rates.shape == (count_epochs(samples, TrainingSettings()), math.ceil(samples / 256))
         assert rates.size >= 1000
 
 
 def test_going_on_takes_a_third_of_the_epochs_from_half_the_rate():
-    first = schedule_of(2560, 0.1, TrainingSettings())
-    second = first.continued(0.3)
+    first = make_schedule(2560, 0.1, TrainingSettings())
+    second = first.continue_at(0.3)
     assert (second.rates.shape, second.decay, second.batch) == ((34, 10), 0.3, 256)
     assert second.rates[0, 0] == first.rates[0, 0] / 2
     assert np.all(np.diff(second.rates.ravel()) < 0)

@@ -7,7 +7,7 @@ from texts import says
 
 from gaitdisc.channel import Channel
 from gaitdisc.errors import ChannelError, StrideError
-from gaitdisc.processing.contact_choice import chosen_contacts, named_markers
+from gaitdisc.processing.contact_choice import choose_contacts, find_marker_names
 from gaitdisc.recording import Event, Recording, Trial
 from gaitdisc.signals.contact_movement import angle_contacts
 
@@ -17,7 +17,7 @@ def only(trial, *keys):
 
 
 def test_force_goes_before_angles_and_both_are_compared(trial):
-    choice = chosen_contacts(trial)
+    choice = choose_contacts(trial)
     assert choice.detector == "force"
     compared = [f for f in choice.findings if f.kind == "detectors compared"]
     assert len(compared) == 2
@@ -25,20 +25,20 @@ def test_force_goes_before_angles_and_both_are_compared(trial):
 
 
 def test_the_detector_asked_for_is_taken(trial):
-    assert chosen_contacts(trial, "angles").detector == "angles"
-    assert chosen_contacts(only(trial, "kinematics")).detector == "angles"
+    assert choose_contacts(trial, "angles").detector == "angles"
+    assert choose_contacts(only(trial, "kinematics")).detector == "angles"
 
 
 def test_a_detector_that_cannot_work_says_why(trial):
     with pytest.raises(StrideError, match="P01_nominal has kinematics"):
-        chosen_contacts(only(trial, "kinematics"), "markers")
+        choose_contacts(only(trial, "kinematics"), "markers")
 
 
 def test_two_events_do_not_outvote_a_whole_walk(trial):
     events = tuple(
         Event("initial contact", side, time) for side, time in (("r", 1.1), ("l", 1.6), ("r", 2.2), ("l", 2.7))
     )
-    choice = chosen_contacts(replace(only(trial, "kinematics"), events=events))
+    choice = choose_contacts(replace(only(trial, "kinematics"), events=events))
     assert choice.detector == "angles"
 
 
@@ -58,7 +58,7 @@ def with_one_step(trial, late_s=0.06):
 
 def test_one_step_on_a_plate_moves_all_contacts_by_the_offset_it_shows(trial):
     seen, by_angles = with_one_step(only(trial, "kinematics", "forces"))
-    choice = chosen_contacts(seen)
+    choice = choose_contacts(seen)
     assert choice.detector == "angles"
     later_s = choice.contacts["r"].time - by_angles
     assert later_s == pytest.approx(0.06, abs=0.002) and np.ptp(later_s) < 1e-9
@@ -67,18 +67,18 @@ def test_one_step_on_a_plate_moves_all_contacts_by_the_offset_it_shows(trial):
 
 
 def test_without_a_plate_the_known_bias_is_said_once(trial):
-    choice = chosen_contacts(only(trial, "kinematics"))
+    choice = choose_contacts(only(trial, "kinematics"))
     by_angles = angle_contacts(trial.stream("kinematics"))["r"].time
     np.testing.assert_array_equal(choice.contacts["r"].time, by_angles)
     [said] = [f for f in choice.findings if f.kind == "contact offset"]
     assert says(said.what, "no", "38 ms", "(23", "61 ms", "14 trials")
-    assert not [f for f in chosen_contacts(trial).findings if f.kind == "contact offset"]  # force sees the ground
+    assert not [f for f in choose_contacts(trial).findings if f.kind == "contact offset"]  # force sees the ground
 
 
 def test_contacts_that_lie_apart_or_are_missed_are_a_warning(trial):
     def against(times):
         events = tuple(Event("initial contact", side, float(time)) for side, time in times)
-        findings = chosen_contacts(replace(only(trial, "kinematics"), events=events)).findings
+        findings = choose_contacts(replace(only(trial, "kinematics"), events=events)).findings
         return next(f for f in findings if f.kind == "detectors compared" and "side r" in f.what)
 
     found = angle_contacts(trial.stream("kinematics"))
@@ -97,7 +97,7 @@ def test_contacts_that_lie_apart_or_are_missed_are_a_warning(trial):
 
 def test_nothing_to_find_contacts_in(trial):
     with pytest.raises(StrideError, match=r"P01_nominal.*emg"):
-        chosen_contacts(only(trial, "emg"))
+        choose_contacts(only(trial, "emg"))
 
 
 def markers(*names):
@@ -105,12 +105,12 @@ def markers(*names):
 
 
 def test_markers_by_the_names_of_the_laboratories():
-    assert named_markers(markers("RHEE", "LHEE", "LASI", "RASI")) == ({"r": "RHEE", "l": "LHEE"}, ["LASI", "RASI"])
+    assert find_marker_names(markers("RHEE", "LHEE", "LASI", "RASI")) == ({"r": "RHEE", "l": "LHEE"}, ["LASI", "RASI"])
     with pytest.raises(ChannelError, match=r"RightHeel = \"RHEE\""):
-        named_markers(markers("LHEE", "LASI"))
+        find_marker_names(markers("LHEE", "LASI"))
 
 
 def test_a_walk_that_stands_still():
     still = Recording(np.arange(500) / 100, np.zeros((500, 1)), (Channel("hip_flexion_r", "angle", "deg", "r"),))
     with pytest.raises(StrideError):
-        chosen_contacts(Trial("still", {"kinematics": still}))
+        choose_contacts(Trial("still", {"kinematics": still}))

@@ -7,7 +7,7 @@ from gaitdisc.ingest.reading import read_trial
 from gaitdisc.ingest.storage import write_storage
 from gaitdisc.ingest.study import Conditions, Participant, PlannedTrial, Study
 from gaitdisc.ingest.study_file import load_study, write_study
-from gaitdisc.processing.inspection import inspected_file, inspected_study
+from gaitdisc.processing.inspection import inspect_file, inspect_study
 from gaitdisc.run.run_study import run_study
 
 
@@ -21,13 +21,13 @@ def folder(trial, tmp_path):
 
 
 def test_the_three_lights(folder):
-    good = inspected_file(folder / "good.mot")
+    good = inspect_file(folder / "good.mot")
     assert good.refusal == "" and good.strides["r"][0] > 30
     assert sum(says(line, "contact offset: contacts", "no") for line in good.grouped()) == 1  # without asking for notes
-    gappy = inspected_file(folder / "gappy.mot")
+    gappy = inspect_file(folder / "gappy.mot")
     assert gappy.light == "amber"
     assert any(line.startswith("warning: gappy.mot, knee_angle_r: gap") for line in gappy.grouped())
-    empty = inspected_file(folder / "empty.mot")
+    empty = inspect_file(folder / "empty.mot")
     assert empty.light == "red"
     assert "empty.mot" in empty.refusal
 
@@ -40,7 +40,7 @@ def test_a_study_is_looked_at_whole_though_one_file_is_broken(folder):
         participants=(Participant(id="P01", trials=trials), Participant(id="P02", trials=lone)),
     ).placed(folder)
     write_study(study, folder / "study.toml")
-    seen = list(inspected_study(load_study(folder)))
+    seen = list(inspect_study(load_study(folder)))
     assert [one.light for one in seen[1:]] == ["red", "amber", seen[3].light, "red"]
     assert says(seen[-1].refusal, "'a'", "'b'; P02", "1", "'a', none", "'b'", "1")
 
@@ -49,13 +49,13 @@ def test_findings_of_one_kind_share_a_line(trial, tmp_path):
     broken = np.array(trial.stream("kinematics").values)
     broken[500:560] = np.nan
     write_storage(trial.stream("kinematics").with_values(broken), tmp_path / "gappy.mot")
-    lines = [line for line in inspected_file(tmp_path / "gappy.mot").grouped() if ": gap," in line]
+    lines = [line for line in inspect_file(tmp_path / "gappy.mot").grouped() if ": gap," in line]
     assert len(lines) == 1
     assert says(lines[0], "6 more", "10 times")
 
 
 def test_calibration_trials_are_refused_as_walking(gait_data):
-    seen = inspected_file(gait_data / "treadmill_walk_ik" / "S01DN603_ik.mot")
+    seen = inspect_file(gait_data / "treadmill_walk_ik" / "S01DN603_ik.mot")
     assert seen.light == "red"
     assert "not used as a walk" in seen.refusal
 
@@ -70,7 +70,7 @@ def test_check_refuses_what_run_refuses_of_several_trials_and_no_more(folder):
     two, broken, lone = (("P01", "", trials[:3]), ("P02", "control", trials[3:5]), ("P03", "", trials[5:]))
     people = tuple(Participant(id=name, group=group, trials=own) for name, group, own in (two, broken, lone))
     study = Study(conditions=Conditions(nominal="a", device="b"), participants=people).placed(folder)
-    seen = list(inspected_study(study))
+    seen = list(inspect_study(study))
     run = run_study(study, folder / "run")
     refused = [(one.participant, one.condition) for one in seen if one.refusal]
     assert refused == [(one.participant, one.condition) for one in run.refusals] == [("P02", "a 2"), ("P03", "")]
@@ -85,7 +85,7 @@ def test_a_walk_that_is_refused_keeps_what_its_reader_saw(gait_data, tmp_path):
         conditions=Conditions(nominal="walking"),
         participants=(Participant(id="P01", trials=(PlannedTrial(condition="walking", files=("id.sto",)),)),),
     ).placed(tmp_path)
-    (seen,) = inspected_study(study)
+    (seen,) = inspect_study(study)
     assert seen.light == "red"
     (finding,) = [finding for finding in seen.findings if finding.kind == "per body mass"]
     assert says(finding.what, "looks like N")

@@ -6,15 +6,15 @@ from changed_trials import with_column, with_stream
 
 from gaitdisc.channel import Channel, vocabulary
 from gaitdisc.cohort.marker_trial import marker_trial
-from gaitdisc.cohort.measurement import measured
-from gaitdisc.cohort.person import drawn
+from gaitdisc.cohort.measurement import measure
+from gaitdisc.cohort.person import draw_one
 from gaitdisc.cohort.walk import walked
 from gaitdisc.errors import ChannelError, UnitError
 from gaitdisc.ingest.study import Conditions, Participant, PlannedTrial, Study
 from gaitdisc.processing.joint_record import joint_record
 from gaitdisc.recording import Recording
-from gaitdisc.signals.butterworth import lowpassed
-from gaitdisc.signals.derivatives import differentiated
+from gaitdisc.signals.butterworth import low_pass
+from gaitdisc.signals.derivatives import derivative
 
 ONE = Participant(id="W01", trials=(PlannedTrial(condition="nominal", files=("a.mot",)),))
 STUDY = Study(title="x", conditions=Conditions(nominal="nominal", device="exo"), participants=(ONE,))
@@ -22,12 +22,12 @@ STUDY = Study(title="x", conditions=Conditions(nominal="nominal", device="exo"),
 
 @pytest.fixture(scope="module")
 def walk():
-    return walked(drawn("W01", 1, "f"), None, 8.0, seed=3)
+    return walked(draw_one("W01", 1, "f"), None, 8.0, seed=3)
 
 
 @pytest.fixture(scope="module")
 def trial(walk):
-    seen = measured(walk, "W01_nominal", "nominal")
+    seen = measure(walk, "W01_nominal", "nominal")
     channel = vocabulary().named("ankle_angle_r_moment")
     moments = Recording(walk.slow_s, walk.moments[:, :1, 2], (channel,))
     markers = marker_trial(walk, "W01", "nominal").stream("markers")
@@ -99,10 +99,10 @@ def test_the_speed_of_push_off_is_kept_which_the_low_pass_of_angles_blunts(walk,
     true = np.gradient(np.radians(walk.angles[:, 0, 4]), 0.01)
     inner = slice(50, -50)
     left = np.sqrt(np.mean((record.rate - true)[inner] ** 2))
-    usual = lowpassed(walk_angles(walk), STUDY.filters.kinematics_hz, STUDY.filters.order)
-    smoother = np.radians(differentiated(usual.values, 100.0, 1)[:, 0])
+    usual = low_pass(walk_angles(walk), STUDY.filters.kinematics_hz, STUDY.filters.order)
+    smoother = np.radians(derivative(usual.values, 100.0, 1)[:, 0])
     assert left < 0.7 * np.sqrt(np.mean((smoother - true)[inner] ** 2))
 
 
 def walk_angles(walk):
-    return measured(walk, "W01_nominal", "nominal").stream("kinematics").selected(["ankle_angle_r"])
+    return measure(walk, "W01_nominal", "nominal").stream("kinematics").selected(["ankle_angle_r"])

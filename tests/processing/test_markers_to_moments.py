@@ -10,10 +10,10 @@ from texts import says
 from gaitdisc.channel import Channel
 from gaitdisc.ingest.c3d import read_c3d
 from gaitdisc.ingest.c3d_kinetics import read_body_measures
-from gaitdisc.kinematics.calibration import calibrated
+from gaitdisc.kinematics.calibration import calibrate_body
 from gaitdisc.kinematics.marker_set import marker_set
 from gaitdisc.kinetics.body_inertia import Person
-from gaitdisc.processing.markers_to_moments import computed_trial, with_segment_angles
+from gaitdisc.processing.markers_to_moments import compute_trial, with_segment_angles
 from gaitdisc.recording import Recording, Trial
 
 
@@ -21,7 +21,7 @@ from gaitdisc.recording import Recording, Trial
 def young(gait_data):
     """A straight walk, and what the static trial says of the person."""
     file = gait_data / "young_static" / "HC030A" / "HC030A01.c3d"
-    body = calibrated(read_c3d(file).stream("markers"), marker_set("plug_in_gait"), read_body_measures(file))
+    body = calibrate_body(read_c3d(file).stream("markers"), marker_set("plug_in_gait"), read_body_measures(file))
     return read_c3d(gait_data / "young_straight_and_turn" / "HC030A" / "straight" / "HC030A05.c3d"), body, file
 
 
@@ -31,7 +31,7 @@ def kinds(trial):
 
 def test_a_walk_gets_angles_moments_and_powers_of_both_legs(young):
     walk, body, _ = young
-    made = computed_trial(walk, body, Person(45.8)).trial
+    made = compute_trial(walk, body, Person(45.8)).trial
     moments = made.stream("moments")
     assert len(moments.channels) == 24
     assert {"hip_flexion_r", "knee_angle_l", "ankle_angle_r", "pelvis_tilt"} <= set(made.stream("kinematics").names)
@@ -46,14 +46,14 @@ def test_a_walk_gets_angles_moments_and_powers_of_both_legs(young):
 def test_without_a_person_or_forces_there_are_angles_alone(young):
     walk, body, _ = young
     bare = replace(walk, streams={"markers": walk.stream("markers")})
-    for made in (computed_trial(walk, body, None).trial, computed_trial(bare, body, Person(45.8)).trial):
+    for made in (compute_trial(walk, body, None).trial, compute_trial(bare, body, Person(45.8)).trial):
         assert "moments" not in made.streams and "kinematics" in made.streams
     assert "own model" not in kinds(made)
 
 
 def test_a_trial_without_a_clean_step_says_why_it_has_no_moments(young):
     _, body, file = young
-    made = computed_trial(read_c3d(file), body, Person(45.8)).trial
+    made = compute_trial(read_c3d(file), body, Person(45.8)).trial
     [finding] = [one for one in made.findings if one.kind == "no moments"]
     assert "moments" not in made.streams
     assert says(finding.line(), "HC030A01.c3d: no moments", "moments", "HC030A01.c3d", "plate_1", "0.00 s: both")
@@ -62,7 +62,7 @@ def test_a_trial_without_a_clean_step_says_why_it_has_no_moments(young):
 def test_a_heel_marker_that_is_missing_for_a_moment_costs_nothing(young):
     walk, body, _ = young
     blind = with_stream(walk, "markers", with_column(walk.stream("markers"), "RHEE", np.nan, slice(45, 53)))
-    whole, bridged = (computed_trial(one, body, Person(45.8)).trial.stream("moments") for one in (walk, blind))
+    whole, bridged = (compute_trial(one, body, Person(45.8)).trial.stream("moments") for one in (walk, blind))
     step = np.isfinite(whole["knee_angle_r_moment"])
     assert step[45:53].all()
     apart = whole["knee_angle_r_moment"][step] - bridged["knee_angle_r_moment"][step]
@@ -88,9 +88,9 @@ def y_up(trial):
 def test_a_laboratory_with_y_up_has_the_same_moments(young):
     walk, body, file = young
     still = read_c3d(file)
-    turned = calibrated(y_up(still).stream("markers"), marker_set("plug_in_gait"), read_body_measures(file))
-    here = computed_trial(walk, body, Person(45.8)).trial.stream("moments")
-    there = computed_trial(y_up(walk), turned, Person(45.8)).trial.stream("moments")
+    turned = calibrate_body(y_up(still).stream("markers"), marker_set("plug_in_gait"), read_body_measures(file))
+    here = compute_trial(walk, body, Person(45.8)).trial.stream("moments")
+    there = compute_trial(y_up(walk), turned, Person(45.8)).trial.stream("moments")
     assert there.names == here.names
     known = np.isfinite(here.values)
     assert np.array_equal(known, np.isfinite(there.values))

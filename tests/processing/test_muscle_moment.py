@@ -1,7 +1,7 @@
 import numpy as np
 import pytest
 
-from gaitdisc.processing.muscle_moment import FASTEST, FIRMNESS, Driven, Form, fitted_moment, force_at_speed, sign_at
+from gaitdisc.processing.muscle_moment import FASTEST, FIRMNESS, Driven, Form, fit_moment, force_at_speed, sign_at
 
 RATE_HZ, STRIDES, STRIDE = 100.0, 12, 110
 
@@ -26,7 +26,7 @@ def made():
 
 
 def test_gains_delay_and_the_stiffness_about_the_usual_stride_come_back(made):
-    model = fitted_moment(*made)
+    model = fit_moment(*made)
     assert (model.form.delay_s, model.form.lag_s) == (pytest.approx(0.04), 0.03)
     np.testing.assert_allclose(model.gains.mean(axis=1), [80.0, 25.0], rtol=0.05)
     np.testing.assert_allclose(model.firmness, np.full(FIRMNESS, 60.0), rtol=0.25)
@@ -35,7 +35,7 @@ def test_gains_delay_and_the_stiffness_about_the_usual_stride_come_back(made):
 
 def test_a_muscle_never_pushes_the_other_way(made):
     driven, moment, blocks = made
-    model = fitted_moment(driven, -moment, blocks, Form(0.04, 0.03, np.zeros(2), np.zeros(17)))
+    model = fit_moment(driven, -moment, blocks, Form(0.04, 0.03, np.zeros(2), np.zeros(17)))
     assert (model.gains >= 0).all()
     assert (driven.signs * model.gain(driven) >= 0).all()
     assert (model.firmness >= 0).all()

@@ -12,7 +12,7 @@ from gaitdisc.errors import ReadError
 from gaitdisc.ingest.c3d import C3DReader
 from gaitdisc.ingest.reading import read_planned_trial
 from gaitdisc.ingest.study import Conditions, Participant, PlannedTrial, Quality, StrideRules, Study, Treadmill
-from gaitdisc.processing.pooled import pooled_cycles, pooled_instead, put_away
+from gaitdisc.processing.pooled import can_pool, pool_cycles, put_away
 from gaitdisc.recording import Event, Recording, Source, Trial
 
 
@@ -43,7 +43,7 @@ OVERGROUND = {"strides": StrideRules(ground="overground")}
 
 def test_cycles_of_short_trials_are_those_of_each_trial_and_none_crosses(pieces):
     study, person = _study(_planned(8), **OVERGROUND)
-    (found,) = pooled_cycles(study, person, lambda planned: pieces[int(planned.files[0][0])])
+    (found,) = pool_cycles(study, person, lambda planned: pieces[int(planned.files[0][0])])
     assert (found.name, found.group, found.trials, found.over_ground) == ("P01 walk", "control", 8, True)
     assert found.refusals == () and dict(found.detectors) == {"force": 8}
     for side in "rl":
@@ -68,7 +68,7 @@ def test_a_child_s_foot_is_on_the_ground_at_its_own_weight():
     for mass in (None, 15.0):
         person = Participant(id="P01", mass_kg=mass, trials=_planned(1))
         study = Study(conditions=Conditions(nominal="walk"), participants=(person,), **OVERGROUND)
-        (found,) = pooled_cycles(study, person, lambda _: light)
+        (found,) = pool_cycles(study, person, lambda _: light)
         assert dict(found.detectors) == {"force": 1}
         starts[mass] = found.kept["start_s"].to_numpy()[1:-1]
     assert len(starts[15.0]) == len(starts[None]) > 4
@@ -77,7 +77,7 @@ def test_a_child_s_foot_is_on_the_ground_at_its_own_weight():
 
 def test_the_mean_over_trials_is_that_of_the_walker(pieces):
     study, person = _study(_planned(8), **OVERGROUND)
-    (found,) = pooled_cycles(study, person, lambda planned: pieces[int(planned.files[0][0])])
+    (found,) = pool_cycles(study, person, lambda planned: pieces[int(planned.files[0][0])])
     means = found.mean_curves()
     knee = means[means["channel"] == "knee_angle_r"].set_index("percent")
     assert set(knee["side"]) == {"r"}  # by the cycles of its own foot alone
@@ -95,7 +95,7 @@ def test_a_trial_that_fails_is_left_out_with_its_reason_and_the_others_go_on(pie
             raise ReadError("1.c3d is to be read", "it is damaged", "Export it again.")
         return pieces[number] if number else Trial("empty", {"emg": pieces[0].stream("emg")})
 
-    (found,) = pooled_cycles(study, person, read)
+    (found,) = pool_cycles(study, person, read)
     assert found.trials == 1 and len(found.kept)
     assert set(found.kept["trial"]) == {3}
     assert [refusal.condition for refusal in found.refusals] == ["walk 1", "walk 2"]
@@ -108,21 +108,21 @@ def test_too_few_cycles_are_refused_by_the_setting_of_the_ground(pieces):
     for ground, key, needed in (("overground", "min_cycles", 9), ("treadmill", "min_strides", 10)):
         quality = Quality(min_cycles=9)
         study, person = _study(trials, strides=StrideRules(ground=ground), quality=quality)
-        (found,) = pooled_cycles(study, person, lambda planned: pieces[int(planned.files[0][0])])
+        (found,) = pool_cycles(study, person, lambda planned: pieces[int(planned.files[0][0])])
         assert len(found.kept) == 0 and found.curves.shape[0] == 0
         (refusal,) = found.refusals
         assert refusal.reason.startswith(f"P01 walk needs {needed} cycles of a foot") and key in refusal.reason
         assert set(found.left_out["reason"]) == {"too few cycles"}
-        assert not pooled_instead([found])
+        assert not can_pool([found])
 
 
 def test_sessions_are_pooled_apart(pieces):
     trials = (*_planned(2, session="before"), *_planned(3, session="after"))
     study, person = _study(trials, sessions=("before", "after"), **OVERGROUND)
     later = {"before": 0, "after": 2}
-    found = pooled_cycles(study, person, lambda one: pieces[int(one.files[0][0]) + later[one.session]])
+    found = pool_cycles(study, person, lambda one: pieces[int(one.files[0][0]) + later[one.session]])
     assert [(one.where, one.trials) for one in found] == [("before walk", 2), ("after walk", 3)]
-    assert pooled_instead(found)
+    assert can_pool(found)
 
 
 def test_a_stride_of_twice_the_others_length_is_left_out_over_all_trials(pieces):
@@ -131,7 +131,7 @@ def test_a_stride_of_twice_the_others_length_is_left_out_over_all_trials(pieces)
     streams = {key: replace(r, time=2.0 * r.time) for key, r in slow.streams.items()}
     trials = [replace(slow, streams=streams), *pieces[1:4]]
     study, person = _study(_planned(4), **OVERGROUND)
-    (found,) = pooled_cycles(study, person, lambda planned: trials[int(planned.files[0][0])])
+    (found,) = pool_cycles(study, person, lambda planned: trials[int(planned.files[0][0])])
     slow_rows = found.cycles[found.cycles["trial"] == 1]
     assert not slow_rows["kept"].any()
     assert any(says(reason, "median stride", "1.1") for reason in slow_rows["reason"])
@@ -145,20 +145,20 @@ def test_swapped_sides_are_refused(pieces):
     )
     swapped = with_stream(pieces[0], "kinematics", replace(kinematics, channels=channels))
     study, person = _study(_planned(1), **OVERGROUND)
-    (found,) = pooled_cycles(study, person, lambda _: swapped)
+    (found,) = pool_cycles(study, person, lambda _: swapped)
     assert "left and right are exchanged" in found.refusals[0].reason
 
 
 def test_a_contact_that_an_event_misses_costs_its_strides_and_not_the_trial(pieces):
     """Two strides of the right foot taken for one show its knee's peak in the middle of what seems to be stance."""
     study, person = _study(_planned(1), **OVERGROUND)
-    (whole,) = pooled_cycles(study, person, lambda _: pieces[0])
+    (whole,) = pool_cycles(study, person, lambda _: pieces[0])
     landed = {side: sorted({*rows["start_s"], *rows["end_s"]}) for side, rows in whole.kept.groupby("side")}
     seen = [("l", at) for at in landed["l"]] + [("r", at) for at in landed["r"][0:3:2]]
     events = tuple(Event("initial contact", side, float(at)) for side, at in sorted(seen, key=lambda one: one[1]))
     streams = {key: stream for key, stream in pieces[0].streams.items() if key != "forces"}
     missed = replace(pieces[0], streams=streams, events=events)
-    (found,) = pooled_cycles(study, person, lambda _: missed)
+    (found,) = pool_cycles(study, person, lambda _: missed)
     assert found.refusals == () and found.counted("l") == whole.counted("l") - 1
     (reason,) = found.cycles.loc[found.cycles["side"] == "r", "reason"]
     assert says(reason, "2 contacts", "other foot")
@@ -172,20 +172,20 @@ def test_a_belt_s_speed_gives_lengths(pieces):
         quality=Quality(min_strides=1),
         treadmill=Treadmill(speed_m_per_s=1.0),
     )
-    (found,) = pooled_cycles(study, person, lambda _: pieces[0])
+    (found,) = pool_cycles(study, person, lambda _: pieces[0])
     np.testing.assert_allclose(found.kept["speed_m_per_s"], 1.2)  # the trial's own belt before the study's
     assert found.kept["step_m"].isna().all()  # no markers, so nobody saw where the feet were
     without, person = _study(trials[:0] + _planned(1), strides=study.strides, quality=study.quality)
-    (found,) = pooled_cycles(without, person, lambda _: pieces[0])
+    (found,) = pool_cycles(without, person, lambda _: pieces[0])
     assert found.kept["stride_m"].isna().all()
 
 
 def test_leg_length_goes_with_the_stature_where_no_file_has_it(pieces):
     study, person = _study(_planned(1), **OVERGROUND)
-    (found,) = pooled_cycles(study, person, lambda _: pieces[0])
+    (found,) = pool_cycles(study, person, lambda _: pieces[0])
     assert found.leg_m is None and found.age_years is None
     grown = person.model_copy(update={"height_m": 1.8, "age_years": 41})
-    (found,) = pooled_cycles(study.model_copy(update={"participants": (grown,)}), grown, lambda _: pieces[0])
+    (found,) = pool_cycles(study.model_copy(update={"participants": (grown,)}), grown, lambda _: pieces[0])
     assert found.leg_m == pytest.approx(0.53 * 1.8) and found.age_years == 41
 
 
@@ -206,7 +206,7 @@ def turning(request):
         return [
             one
             for person in people
-            for one in pooled_cycles(
+            for one in pool_cycles(
                 study, person, lambda planned, person=person: read_planned_trial(study, person, planned, reader)
             )
         ]
@@ -263,7 +263,7 @@ def test_a_static_trial_of_another_person_is_said_and_costs_no_cycle(gait_data):
     with C3DReader() as reader:
         for name, static in (("own", own), ("wrong", wrong), ("none", None), ("broken", broken)):
             study, person = _study((walk, static) if static else (walk,))
-            (found,) = pooled_cycles(
+            (found,) = pool_cycles(
                 study, person, lambda planned, s=study, p=person: read_planned_trial(s, p, planned, reader)
             )
             assert found.counted("r") == found.counted("l") == 1 and not found.refusals
@@ -278,7 +278,7 @@ def test_a_static_trial_of_another_person_is_said_and_costs_no_cycle(gait_data):
 def test_one_recording_saved_twice_is_counted_once(pieces):
     study, person = _study(_planned(3), **OVERGROUND)
     files = [pieces[0], replace(pieces[0], name="the same, saved again"), pieces[1]]
-    (found,) = pooled_cycles(study, person, lambda planned: files[int(planned.files[0][0])])
+    (found,) = pool_cycles(study, person, lambda planned: files[int(planned.files[0][0])])
     assert set(found.kept["trial"]) == {1, 3}
     (refusal,) = found.refusals
     assert refusal.condition == "walk 2" and says(refusal.reason, "samples are identical", "P01", "1")
@@ -327,5 +327,5 @@ def test_the_folder_is_cleared_after_an_error(pieces, monkeypatch, tmp_path):
     monkeypatch.setattr("tempfile.tempdir", str(tmp_path))
     study, person = _study(_planned(2), **OVERGROUND)
     with pytest.raises(ZeroDivisionError):
-        pooled_cycles(study, person, read)
+        pool_cycles(study, person, read)
     assert waiting and not [*tmp_path.iterdir()]

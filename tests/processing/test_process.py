@@ -9,7 +9,7 @@ from changed_trials import with_column, with_stream
 from gaitdisc.channel import Channel
 from gaitdisc.errors import ChannelError, StrideError
 from gaitdisc.ingest.study import Filters, HeldOut, Models, Quality
-from gaitdisc.processing.filter_null import filter_null, filter_null_of
+from gaitdisc.processing.filter_null import filter_null, make_filter_null
 from gaitdisc.processing.process import is_raw, on_one_base, processed, quality_findings
 from gaitdisc.recording import Recording, Trial
 
@@ -195,5 +195,5 @@ def test_the_rate_of_raw_emg_is_taken_from_the_walk(trial, study):
     for given, emg_hz in ((trial, emg.rate_hz), (envelopes, None)):
         walk = replace(processed(trial, study), trial=given)
         expected = filter_null(walk.state.channels, Filters(), walk.state.rate_hz, emg_hz)
-        assert filter_null_of(walk, Filters()) == expected
+        assert make_filter_null(walk, Filters()) == expected
         assert {"ankle_angle_r", "emg_sol_r"} <= set(expected)

@@ -8,7 +8,7 @@ from texts import says
 
 from gaitdisc.errors import UnitError
 from gaitdisc.ingest.reading import read_trial
-from gaitdisc.processing.inspection import inspected_trial
+from gaitdisc.processing.inspection import inspect_trial
 from gaitdisc.processing.side_checks import check_weight, side_findings, standing_weight_n
 from gaitdisc.recording import Trial
 
@@ -93,7 +93,7 @@ def test_a_static_trial_of_one_frame_is_looked_at_without_a_walk(plates, recwarn
     starts = {key: (one, float(one.time[0])) for key, one in plates[1].streams.items()}
     static = replace(plates[1], streams={key: one.between(at, at + 0.009) for key, (one, at) in starts.items()})
     assert side_findings(static, {}) == []
-    seen = inspected_trial(static, "static.c3d")
+    seen = inspect_trial(static, "static.c3d")
     assert seen.streams["markers"].endswith(", one frame") and says(seen.refusal, "a single frame")
     assert not recwarn.list
 

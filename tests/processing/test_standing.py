@@ -12,16 +12,16 @@ from gaitdisc.ingest.c3d import C3DReader, read_c3d
 from gaitdisc.ingest.c3d_kinetics import read_body_measures
 from gaitdisc.ingest.reading import read_trial
 from gaitdisc.ingest.study import Conditions, Kinematics, Participant, PlannedTrial, Study
-from gaitdisc.kinematics.calibration import calibrated
+from gaitdisc.kinematics.calibration import calibrate_body
 from gaitdisc.kinematics.marker_set import marker_set
 from gaitdisc.kinetics.body_inertia import Person
-from gaitdisc.processing.markers_to_moments import computed_trial, without_exchanged_markers
-from gaitdisc.processing.pooled import pooled_cycles
+from gaitdisc.processing.markers_to_moments import compute_trial, without_exchanged_markers
+from gaitdisc.processing.pooled import pool_cycles
 from gaitdisc.processing.standing import person_findings, segment_distances
 from gaitdisc.processing.two_sources import line_angles
 from gaitdisc.recording import Strides
 from gaitdisc.recording.trial import BodyMeasures
-from gaitdisc.signals.butterworth import lowpassed
+from gaitdisc.signals.butterworth import low_pass
 
 MARKERS = Kinematics(angles="markers", marker_set="plug_in_gait")
 
@@ -47,7 +47,7 @@ def pooled(files, trials, kinematics=None, without=(), **person):
     participant = Participant(id="P01", trials=planned, **person)
     conditions = Conditions(nominal="straight", others=("turn",))
     study = Study(conditions=conditions, participants=(participant,), kinematics=kinematics)
-    found = pooled_cycles(study, participant, lambda one: trials[one.condition])
+    found = pool_cycles(study, participant, lambda one: trials[one.condition])
     return found, [finding for one in found for finding in one.findings]
 
 
@@ -71,11 +71,11 @@ def from_file(files, trials):
 
 def test_cycles_of_a_study_are_those_of_the_steps_taken_by_hand(files, trials, from_markers):
     measures = read_body_measures(files["static"])
-    body = calibrated(trials["static"].stream("markers"), marker_set("plug_in_gait"), measures)
+    body = calibrate_body(trials["static"].stream("markers"), marker_set("plug_in_gait"), measures)
     found, findings = from_markers
     for one in found:
-        made = computed_trial(trials[one.condition], body, Person(45.8)).trial
-        angles, moments = lowpassed(made.stream("kinematics"), 6.0, 4, 0.1), made.stream("moments")
+        made = compute_trial(trials[one.condition], body, Person(45.8)).trial
+        angles, moments = low_pass(made.stream("kinematics"), 6.0, 4, 0.1), made.stream("moments")
         for row, curves in zip(one.kept.itertuples(), one.curves, strict=True):
             cycle = Strides(np.array([row.start_s]), np.array([row.end_s]), str(row.side), "events")
             apart = curves[:, [names(one).index(name) for name in angles.names]] - cycle.normalised(angles)[0]
@@ -243,7 +243,7 @@ def test_all_that_hangs_on_a_segment_of_wrong_labels_is_missing(files, trials, p
         values[frames, angles.index(name)] += (lines[name] - right[name])[frames]
     wrong = with_stream(trial, "kinematics", angles.with_values(values))
     measures = read_body_measures(files["static"])
-    calibration = calibrated(trials["static"].stream("markers"), marker_set("plug_in_gait"), measures)
+    calibration = calibrate_body(trials["static"].stream("markers"), marker_set("plug_in_gait"), measures)
     found = without_exchanged_markers(wrong, calibration).stream("kinematics")
     lost = {name for name in found.names if np.isnan(found[name][frames]).all()}
     left = {"hip_flexion_l", "knee_angle_l", "ankle_angle_l", "LFootProgressAngles.z"}

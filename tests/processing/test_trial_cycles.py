@@ -9,8 +9,8 @@ from gaitdisc.channel import Channel, vocabulary
 from gaitdisc.ingest.c3d_kinetics import read_body_measures
 from gaitdisc.ingest.reading import read_trial
 from gaitdisc.ingest.study import Filters
-from gaitdisc.kinematics.motion import moved_body
-from gaitdisc.kinematics.pose import clinical_angles, rotation_of
+from gaitdisc.kinematics.motion import move_body
+from gaitdisc.kinematics.pose import clinical_angles, make_rotation
 from gaitdisc.kinetics.plate_steps import PlateStep
 from gaitdisc.processing.step_events import StepEvents
 from gaitdisc.processing.trial_cycles import (
@@ -20,7 +20,7 @@ from gaitdisc.processing.trial_cycles import (
     feet_in,
     heel_paths,
     plate_loadings,
-    weighed_forces,
+    scale_forces,
     with_gaps,
     with_pelvis_and_foot,
     with_plate_steps,
@@ -215,7 +215,7 @@ def _trial(sign=1.0, unit="%"):
 
 @pytest.mark.parametrize("sign", [1.0, -1.0])
 def test_a_step_brakes_first_whichever_way_the_file_counts_and_is_zero_off_the_plate(sign):
-    found = weighed_forces(_trial(sign))
+    found = scale_forces(_trial(sign))
     assert found.names == ("ground_force_l_vx", "ground_force_l_vy")  # the right foot met no plate
     assert found["ground_force_l_vx"][65] == pytest.approx(-20.0, abs=0.1)
     assert found["ground_force_l_vx"][95] == pytest.approx(20.0, abs=0.2)
@@ -224,9 +224,9 @@ def test_a_step_brakes_first_whichever_way_the_file_counts_and_is_zero_off_the_p
 
 
 def test_another_unit_or_no_moments_give_none():
-    assert weighed_forces(_trial(unit="N")) is None
+    assert scale_forces(_trial(unit="N")) is None
     knee = Recording(np.arange(3) / 100, np.zeros((3, 1)), (Channel("knee_angle_r", "angle", "deg", "r"),))
-    assert weighed_forces(Trial("a", {"kinematics": knee})) is None
+    assert scale_forces(Trial("a", {"kinematics": knee})) is None
 
 
 LABELS = ("RPelvisAngles.x", "LPelvisAngles.y", "RPelvisAngles.z", "RFootProgressAngles.z", "LFootProgressAngles.z")
@@ -262,8 +262,8 @@ def test_a_pelvis_that_turns_keeps_its_tilt_and_list_about_its_own_heading():
     """Tilt 15 deg forwards and 4 deg of list throughout a quarter turn; about the laboratory's axes they change."""
     time = np.arange(300) / 100
     heading = np.clip((time - 0.5) * 45, 0, 90)
-    own = rotation_of(np.tile([-15.0, 4.0, 0.0], (300, 1)))
-    lab = clinical_angles(np.eye(3)[None], rotation_of(np.stack([0 * time, 0 * time, heading], axis=1)) @ own)
+    own = make_rotation(np.tile([-15.0, 4.0, 0.0], (300, 1)))
+    lab = clinical_angles(np.eye(3)[None], make_rotation(np.stack([0 * time, 0 * time, heading], axis=1)) @ own)
     values = np.column_stack([-lab[:, 0], lab[:, 1], lab[:, 2], 0 * time, 0 * time])
     channels = tuple(Channel(label, "angle", "deg") for label in LABELS)
     found = with_pelvis_and_foot(Recording(time, values, channels))
@@ -281,7 +281,7 @@ def test_tilt_and_list_of_real_turns_are_those_of_the_markers(gait_data):
     for name, file in (("HC030A", "HC030A22.c3d"), ("HC002D", "HC002D25.c3d")):
         static = next(iter([*(gait_data / "young_static" / name).glob("*"), *(folder / name / "static").glob("*")]))
         walk = read_trial(folder / name / "turn" / file)
-        ours = moved_body(
+        ours = move_body(
             walk.stream("markers"), read_trial(static).stream("markers"), measures=read_body_measures(static)
         ).angles
         found = with_pelvis_and_foot(walk.stream("kinematics"))

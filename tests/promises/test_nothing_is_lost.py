@@ -26,8 +26,8 @@ from gaitdisc.saved import kind as kinds
 from gaitdisc.saved.kind import Saved
 from gaitdisc.saved.provenance import Provenance
 from gaitdisc.simulation.parts import Term
-from gaitdisc.simulation.simulation_file import simulation_of
-from gaitdisc.whole_file import whole_file, write_whole, written_together
+from gaitdisc.simulation.simulation_file import parse_simulation
+from gaitdisc.whole_file import whole_file, write_together, write_whole
 
 MINE = "a file of my own\n"
 STUDY = """[conditions]
@@ -109,7 +109,7 @@ def run_once(_):
 def refused_words(monkeypatch, called):
     """The one line that a command prints which is refused; `watch` looks once."""
     monkeypatch.setattr("gaitdisc.run.watched_folder.WatchedFolder.changes", run_once)
-    monkeypatch.setattr("gaitdisc.commands.watch._grown", lambda *_: [])
+    monkeypatch.setattr("gaitdisc.commands.watch._grow_study", lambda *_: [])
     return lambda *words: " ".join(called(*words, ends=REFUSED).stderr.split())
 
 
@@ -264,13 +264,13 @@ def test_what_writes_in_python_replaces_its_own_files_alone(tmp_path, write, nam
 
 
 def decay():
-    model = simulation_of('[states.x]\nunit = "1"\n[equations]\nx = "-x"\n')
+    model = parse_simulation('[states.x]\nunit = "1"\n[equations]\nx = "-x"\n')
     return model.with_effect(Term("x", "equation", "constant_load", "0.5"))
 
 
 def test_after_a_full_disk_the_earlier_result_stands_whole(tmp_path, monkeypatch):
     def save(text, **changes):
-        with written_together():
+        with write_together():
             name = write_whole(tmp_path / "augmented.toml", text).name
             save_discovery(manufactured(**changes), tmp_path, [name])
 
@@ -304,7 +304,7 @@ def test_a_command_that_is_ended_leaves_no_half_file(tmp_path):
         "def slow(out: Path) -> None:\n"
         "    with whole_file(out) as part:\n"
         "        part.write_text('half'); print('writing', flush=True); time.sleep(60)\n"
-        "cli.app.command()(cli._guarded(slow)); sys.argv = ['gaitdisc', 'slow', sys.argv[1]]; cli.main()"
+        "cli.app.command()(cli._guard(slow)); sys.argv = ['gaitdisc', 'slow', sys.argv[1]]; cli.main()"
     )
     process = subprocess.Popen([sys.executable, "-c", code, str(tmp_path / "new" / "x.csv")], stdout=-1, text=True)
     assert process.stdout and process.stdout.readline() == "writing\n"

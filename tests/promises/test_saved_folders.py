@@ -9,7 +9,7 @@ from approve import SAVED
 import gaitdisc as gd
 from gaitdisc.clinic.clinical_reference import load_reference
 from gaitdisc.own_files import file_sha256
-from gaitdisc.saved.unit_folder import damaged_units
+from gaitdisc.saved.unit_folder import damage_lines
 
 PAGE = (SAVED.parents[2] / "docs" / "compatibility.md").read_text(encoding="utf-8")
 PROMISED = set(re.findall(r"\| `(\w+\.json)` \|", PAGE))
@@ -27,7 +27,7 @@ def test_a_saved_result_is_loaded_and_left_as_it_is(place, tmp_path):
     result = gd.load((kind / place.relative_to(place.parts[0])).parent)
     assert type(result).__module__.startswith("gaitdisc.")
     assert {path: file_sha256(path) for path in kind.rglob("*") if path.is_file()} == before
-    assert damaged_units(kind) == ()
+    assert damage_lines(kind) == ()
 
 
 def test_a_saved_reference_is_loaded_with_its_people():

@@ -9,9 +9,9 @@ from scipy.ndimage import gaussian_filter1d
 
 from gaitdisc.channel import Channel
 from gaitdisc.models.trained_network import TrainedNetwork
-from gaitdisc.reconstruction.window_model import ENSEMBLE, MEMBERS, Ensemble, WindowModel, network_of, sensing
+from gaitdisc.reconstruction.window_model import ENSEMBLE, MEMBERS, Ensemble, WindowModel, make_network, sensing
 from gaitdisc.reconstruction.windows import Lags, split_within
-from gaitdisc.recording import Recording, scale_of
+from gaitdisc.recording import Recording, fit_scale
 
 
 @pytest.fixture(scope="session")
@@ -37,9 +37,10 @@ def untrained(pair):
         torch.manual_seed(0)
         seen = pair.parts.fitted()
         networks = [
-            network_of(kind, 1)(len(seen.inputs), len(seen.outputs)) for _ in range(MEMBERS if kind == ENSEMBLE else 1)
+            make_network(kind, 1)(len(seen.inputs), len(seen.outputs))
+            for _ in range(MEMBERS if kind == ENSEMBLE else 1)
         ]
-        scales = scale_of(seen.x), scale_of(seen.y)
+        scales = fit_scale(seen.x), fit_scale(seen.y)
         members = tuple(TrainedNetwork(seen.inputs, seen.outputs, *scales, network) for network in networks)
         model = Ensemble(members) if kind == ENSEMBLE else members[0]
         return WindowModel(kind, pair.what, model, len(seen), 0.0)

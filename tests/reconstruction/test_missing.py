@@ -5,7 +5,7 @@ from hypothesis import strategies as st
 
 from gaitdisc.channel import Channel
 from gaitdisc.errors import SchemaError
-from gaitdisc.reconstruction.windows import filled, hidden, missing_runs, with_missing
+from gaitdisc.reconstruction.windows import fill_readings, hidden, missing_runs, with_missing
 from gaitdisc.recording import Recording, Samples
 
 
@@ -36,11 +36,11 @@ def test_what_stands_for_a_missing_reading():
     nan = np.nan
     r = two([[nan, 1], [2, nan], [nan, nan], [3, 4]])
     means = np.array([10.0, 20.0])
-    assert filled(r, ["a", "b"], "mean", means).values.tolist() == [[10, 1], [2, 20], [10, 20], [3, 4]]
-    assert filled(r, ["a", "b"], "last", means).values.tolist() == [[10, 1], [2, 1], [2, 1], [3, 4]]
-    np.testing.assert_array_equal(filled(r, ["a", "b"], "none", means).values, r.values)
+    assert fill_readings(r, ["a", "b"], "mean", means).values.tolist() == [[10, 1], [2, 20], [10, 20], [3, 4]]
+    assert fill_readings(r, ["a", "b"], "last", means).values.tolist() == [[10, 1], [2, 1], [2, 1], [3, 4]]
+    np.testing.assert_array_equal(fill_readings(r, ["a", "b"], "none", means).values, r.values)
     with pytest.raises(SchemaError, match=r"treatment of missing samples is unknown; 'zero'"):
-        filled(r, ["a"], "zero", means[:1])
+        fill_readings(r, ["a"], "zero", means[:1])
 
 
 def test_every_second_window_is_hidden_in_part():

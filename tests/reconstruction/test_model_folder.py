@@ -16,7 +16,7 @@ from gaitdisc.models.trained_network import TrainedNetwork
 from gaitdisc.reconstruction.model_folder import SensingModel, load_model, save_model
 from gaitdisc.reconstruction.onnx_file import write_onnx
 from gaitdisc.reconstruction.window_model import WindowModel, fit_reconstructor
-from gaitdisc.recording import Recording, scale_of
+from gaitdisc.recording import Recording, fit_scale
 from gaitdisc.saved.unit_folder import file_sha256
 
 
@@ -186,7 +186,7 @@ def test_other_networks(pair, tmp_path, build):
     rng = np.random.default_rng(0)
     x, y = rng.normal(20, 9, (40, 8)), rng.normal(size=(40, 3))
     x[:, 0] = 4.0  # never varied: weighs nothing
-    network = TrainedNetwork(tuple("abcdefgh"), tuple("xyz"), scale_of(x), scale_of(y), build())
+    network = TrainedNetwork(tuple("abcdefgh"), tuple("xyz"), fit_scale(x), fit_scale(y), build())
     two = pair.what.__class__(("a", "late"), ("late",), pair.what.lags, 100.0)
     write_onnx(
         SensingModel(WindowModel("shred", two, network, 0, 0.0), pair.channels * 2, np.ones(1)), tmp_path / "m.onnx"

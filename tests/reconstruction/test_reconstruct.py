@@ -1,7 +1,7 @@
 import numpy as np
 import pytest
 
-from gaitdisc.reconstruction.reconstruct import Fits, crossed_errors, crossed_widths, people_of, reconstruct
+from gaitdisc.reconstruction.reconstruct import Fits, cross_errors, cross_widths, group_people, reconstruct
 from gaitdisc.reconstruction.state_errors import coverage, half_widths
 from gaitdisc.reconstruction.window_model import Sensing, fit_reconstructor, sensing
 from gaitdisc.reconstruction.windows import Lags, split_by_subject, split_within
@@ -70,11 +70,11 @@ def people(count, seed):
 
 def test_everybody_but_the_test_person_is_reconstructed_by_models_of_others():
     everybody = people(6, 0)
-    errors = crossed_errors("linear", WHAT, split_by_subject(everybody, 0))
+    errors = cross_errors("linear", WHAT, split_by_subject(everybody, 0))
     assert errors.shape == (5 * 120, 1)
-    assert set(people_of([trial for trials in everybody for trial in trials])) == {f"P{k}" for k in range(6)}
+    assert set(group_people([trial for trials in everybody for trial in trials])) == {f"P{k}" for k in range(6)}
     moved = [[s.with_outputs(s.y + 100.0 * (k == 0)) for s in trials] for k, trials in enumerate(everybody)]
-    np.testing.assert_array_equal(crossed_errors("linear", WHAT, split_by_subject(moved, 0)), errors)
+    np.testing.assert_array_equal(cross_errors("linear", WHAT, split_by_subject(moved, 0)), errors)
 
 
 def test_one_checked_person_covers_too_little_and_crossing_does_not():
@@ -84,8 +84,8 @@ def test_one_checked_person_covers_too_little_and_crossing_does_not():
         done = fit_reconstructor("linear", WHAT, parts.fitted(), parts.checked())
         missed, errors = (done(part) - part.y for part in (parts.checked(), parts.tested()))
         plain.append(coverage(errors, half_widths(missed))[0])
-        crossed.append(coverage(errors, crossed_widths("linear", WHAT, parts, missed))[0])
-        scaled = crossed_widths("another kind", WHAT, parts, missed)
+        crossed.append(coverage(errors, cross_widths("linear", WHAT, parts, missed))[0])
+        scaled = cross_widths("another kind", WHAT, parts, missed)
         by_another.append(coverage(errors, scaled)[0])
     assert np.mean(plain) < 0.75
     assert np.mean(crossed) == pytest.approx(0.9, abs=0.07)
@@ -95,4 +95,4 @@ def test_one_checked_person_covers_too_little_and_crossing_does_not():
 def test_with_three_people_there_is_nothing_to_cross():
     parts = split_by_subject(people(3, 0), 0)
     missed = np.arange(-9.0, 10.0)[:, None]
-    np.testing.assert_array_equal(crossed_widths("linear", WHAT, parts, missed), half_widths(missed))
+    np.testing.assert_array_equal(cross_widths("linear", WHAT, parts, missed), half_widths(missed))

@@ -9,7 +9,7 @@ from gaitdisc.reconstruction.window_model import (
     fit_reconstructor,
     fitting_device,
     latent_states,
-    network_of,
+    make_network,
     sensing,
 )
 from gaitdisc.reconstruction.windows import Lags, present
@@ -51,7 +51,7 @@ def test_history_tells_a_state_that_lags_behind(pair):
 
 
 def test_the_networks_of_the_dissertations_code_have_its_weights():
-    network = network_of("shred-text", 3)(300, 18)  # 100 readings of 3 sensors
+    network = make_network("shred-text", 3)(300, 18)  # 100 readings of 3 sensors
     lstm = 4 * 64 * (3 + 64 + 2) + 4 * 64 * (64 + 64 + 2)
     assert sum(w.numel() for w in network.parameters()) == lstm + 65 * 350 + 351 * 400 + 401 * 18
 

@@ -7,7 +7,7 @@ from gaitdisc.channel import Channel
 from gaitdisc.errors import ChannelError
 from gaitdisc.models.fourier_ridge import fit_fourier_ridge
 from gaitdisc.reconstruction.sensor_search import search_sensors
-from gaitdisc.reconstruction.windows import Lags, split_within, windows_of
+from gaitdisc.reconstruction.windows import Lags, cut_windows, split_within
 from gaitdisc.recording import Recording
 
 NAMES = ("sum", "one", "other", "difference", "noise")
@@ -24,7 +24,7 @@ def parts(channels):
     one, other, noise = rng.normal(size=(3, 3000))
     close = one - other + 0.05 * rng.normal(size=3000)
     recording = Recording(np.arange(3000) / 100, np.column_stack([one + other, one, other, close, noise]), channels)
-    windows = windows_of(recording, recording.names, recording.names, Lags(2, 1), np.zeros(3000))
+    windows = cut_windows(recording, recording.names, recording.names, Lags(2, 1), np.zeros(3000))
     return split_within([windows], "temporal", 0.01)
 
 

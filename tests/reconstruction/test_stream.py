@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from gaitdisc.errors import SchemaError, ShapeError, StrideError
-from gaitdisc.reconstruction.calibration import PENALTIES, calibrated, first_strides, rehearsed
+from gaitdisc.reconstruction.calibration import PENALTIES, calibrate, first_strides, rehearse
 from gaitdisc.reconstruction.model_folder import SensingModel, Stream
 from gaitdisc.reconstruction.window_model import MASKED, STATIC, fit_reconstructor
 from gaitdisc.reconstruction.windows import with_missing
@@ -33,7 +33,7 @@ def test_a_stream_tells_what_the_recording_tells(pair, fitted, untrained, kind):
 
 def test_a_network_that_is_corrected_for_a_person_streams_too(pair, untrained):
     test = pair.parts.tested()
-    done = calibrated(untrained("shred"), test)
+    done = calibrate(untrained("shred"), test)
     stream = Stream(done)
     states = [stream.update(row) for row in pair.recording.selected(["a"]).values[:60]]
     windows = pair.what.windows(pair.recording, np.zeros(3000))
@@ -116,7 +116,7 @@ def test_another_linear_mixture_is_learnt_from_a_few_strides(pair, delayed):
     parted = first_strides(windows, 8, pair.what.reach_s)
     rest = windows[0].rows(parted.rest)
     before = np.sqrt(np.mean((delayed(rest) - rest.y) ** 2))
-    after = np.sqrt(np.mean((calibrated(delayed, parted.strides, PENALTIES[0])(rest) - rest.y) ** 2))
+    after = np.sqrt(np.mean((calibrate(delayed, parted.strides, PENALTIES[0])(rest) - rest.y) ** 2))
     assert before > 4.0
     assert after < 0.01 * before
 
@@ -124,13 +124,13 @@ def test_another_linear_mixture_is_learnt_from_a_few_strides(pair, delayed):
 def test_a_large_penalty_takes_the_mean_error_off_and_nothing_else(pair, delayed):
     windows = changed(pair.parts.training)
     parted = first_strides(windows, 8, pair.what.reach_s)
-    found = calibrated(delayed, parted.strides, 1e12)(windows[0])
+    found = calibrate(delayed, parted.strides, 1e12)(windows[0])
     offset = (parted.strides.y - delayed(parted.strides)).mean(axis=0)
     assert np.allclose(found, delayed(windows[0]) + offset)
 
 
 def test_the_penalty_is_rehearsed_on_another_person(pair, delayed):
-    found = rehearsed(delayed, changed(pair.parts.training), 8)
+    found = rehearse(delayed, changed(pair.parts.training), 8)
     assert found.penalty == PENALTIES[0]
     assert np.sqrt(np.mean(found.missed**2)) < 0.05
 

@@ -5,7 +5,7 @@ from hypothesis import strategies as st
 
 from gaitdisc.channel import Channel
 from gaitdisc.errors import ChannelError, SamplingError, ShapeError
-from gaitdisc.reconstruction.windows import Lags, present, stacked, thinned, windows_of
+from gaitdisc.reconstruction.windows import Lags, cut_windows, present, stacked, thin_windows
 from gaitdisc.recording import Recording
 
 
@@ -19,7 +19,7 @@ def counting(length=30, rate=100.0):
 @given(st.integers(1, 5), st.integers(1, 4))
 def test_every_reading_is_of_the_time_that_its_name_says(count, spacing):
     lags = Lags(count, spacing)
-    made = windows_of(counting(), ["b", "a"], ["c"], lags, np.zeros(30))
+    made = cut_windows(counting(), ["b", "a"], ["c"], lags, np.zeros(30))
     assert len(made) == 30 - lags.reach
     last = made.y[:, 0] / 1000
     for k in range(count):
@@ -35,24 +35,24 @@ def test_no_window_reaches_over_a_missing_value():
     values = recording.values.copy()
     values[10, 0] = np.nan
     values[25, 2] = np.nan
-    made = windows_of(recording.with_values(values), ["a"], ["c"], Lags(3, 2), np.zeros(30))
+    made = cut_windows(recording.with_values(values), ["a"], ["c"], Lags(3, 2), np.zeros(30))
     assert set((made.y[:, 0] / 1000).astype(int)) == set(range(4, 30)) - {10, 12, 14, 25}
 
 
 def test_windows_of_two_trials_never_join():
-    pair = [windows_of(counting(8), ["a"], ["c"], Lags(3, 1), np.zeros(8)) for _ in range(2)]
+    pair = [cut_windows(counting(8), ["a"], ["c"], Lags(3, 1), np.zeros(8)) for _ in range(2)]
     both = stacked(pair)
     assert len(both) == 12
     np.testing.assert_array_equal(np.diff(both.x, axis=1), 1)
 
 
 def test_present_readings_and_every_third_window():
-    made = windows_of(counting(), ["a", "b"], ["c"], Lags(3, 2), np.zeros(30))
+    made = cut_windows(counting(), ["a", "b"], ["c"], Lags(3, 2), np.zeros(30))
     now = present(made, ["a", "b"])
     np.testing.assert_array_equal(now.x, made.y / [1000, 10])
     assert now.inputs == ("a", "b")
-    assert len(thinned(made, 9)) == 9
-    assert thinned(made, 100).x.shape == made.x.shape
+    assert len(thin_windows(made, 9)) == 9
+    assert thin_windows(made, 100).x.shape == made.x.shape
 
 
 def test_windows_that_lack_readings_are_kept_on_request():
@@ -60,14 +60,14 @@ def test_windows_that_lack_readings_are_kept_on_request():
     values = recording.values.copy()
     values[10:15, 0] = np.nan
     values[25, 2] = np.nan
-    made = windows_of(recording.with_values(values), ["a"], ["c"], Lags(3, 2), np.zeros(30), missing=True)
+    made = cut_windows(recording.with_values(values), ["a"], ["c"], Lags(3, 2), np.zeros(30), missing=True)
     assert set((made.y[:, 0] / 1000).astype(int)) == set(range(4, 30)) - {14, 25}  # 14 has no reading at all
     assert np.isnan(made.x).any()
 
 
 @given(st.integers(0, 5))
 def test_a_window_may_tell_the_future(ahead):
-    made = windows_of(counting(), ["a"], ["a", "c"], Lags(3, 2, ahead), np.arange(30.0))
+    made = cut_windows(counting(), ["a"], ["a", "c"], Lags(3, 2, ahead), np.arange(30.0))
     assert len(made) == 30 - 4 - ahead
     np.testing.assert_array_equal(made.y[:, 0] - made.x[:, -1], ahead)
     np.testing.assert_allclose(made.time * 100, made.y[:, 0])
@@ -76,11 +76,11 @@ def test_a_window_may_tell_the_future(ahead):
 
 def test_refusals():
     with pytest.raises(SamplingError, match=r"0\.40 s.*0\.30 s"):
-        windows_of(counting(), ["a"], ["c"], Lags(11, 4), np.zeros(30))
+        cut_windows(counting(), ["a"], ["c"], Lags(11, 4), np.zeros(30))
     with pytest.raises(ChannelError, match="'d' is"):
-        windows_of(counting(), ["d"], ["c"], Lags(2, 1), np.zeros(30))
+        cut_windows(counting(), ["d"], ["c"], Lags(2, 1), np.zeros(30))
     with pytest.raises(SamplingError, match=r"0\.20 s.*0\.10 s.*0\.30 s"):
-        windows_of(counting(), ["a"], ["c"], Lags(6, 4, 10), np.zeros(30))
+        cut_windows(counting(), ["a"], ["c"], Lags(6, 4, 10), np.zeros(30))
     with pytest.raises(ShapeError, match=r"4 samples.*0 ahead"):
         Lags(0, 4)
     with pytest.raises(ShapeError, match=r"state that is not.*-1"):

@@ -8,7 +8,7 @@ from hypothesis import strategies as st
 from gaitdisc.channel import Channel
 from gaitdisc.recording import Recording, Strides, Trial
 from gaitdisc.recording.arrays import Span, mean_where_known, read_only, runs
-from gaitdisc.recording.wrapping import in_one_turn, turn_of, unwrapped, wrapped
+from gaitdisc.recording.wrapping import find_turn, in_one_turn, unwrap, wrap_recording
 
 
 def test_the_view_cannot_be_written_and_shares_memory():
@@ -59,15 +59,15 @@ def heading(x=TRUE, channel=HEADING, time=T):
 def test_a_heading_goes_on_and_comes_round_again(low):
     true = TRUE if low else TRUE + 180
     raw = heading(wrap(true, low))
-    plain = unwrapped(raw)
+    plain = unwrap(raw)
     np.testing.assert_allclose(plain.values[:, 0], true, atol=1e-9)
-    np.testing.assert_allclose(wrapped(plain, raw).values, raw.values, atol=1e-9)
+    np.testing.assert_allclose(wrap_recording(plain, raw).values, raw.values, atol=1e-9)
 
 
 def test_a_gap_in_which_it_comes_round():
     raw = wrap(TRUE)
     raw[80:120] = np.nan
-    plain = unwrapped(heading(raw)).values[:, 0]
+    plain = unwrap(heading(raw)).values[:, 0]
     known = np.isfinite(plain)
     assert known.sum() == 360
     np.testing.assert_allclose(plain[known], TRUE[known], atol=1e-9)
@@ -75,21 +75,21 @@ def test_a_gap_in_which_it_comes_round():
 
 def test_a_joint_that_leaps_is_bad_data_and_stays():
     knee = heading(wrap(TRUE), Channel("knee_angle_r", "angle", "deg", "r"))
-    assert unwrapped(knee) is knee
+    assert unwrap(knee) is knee
     spiked = TRUE - 150
     spiked[200] += 200
     once = heading(spiked)
-    assert unwrapped(once) is once  # a leap of 200 deg is no turn
-    assert unwrapped(heading(TRUE - 150)).values[0, 0] == TRUE[0] - 150
+    assert unwrap(once) is once  # a leap of 200 deg is no turn
+    assert unwrap(heading(TRUE - 150)).values[0, 0] == TRUE[0] - 150
 
 
 def test_names_of_headings():
     yes = ("pelvis_rotation", "LPelvisAngles.z", "RFootProgressAngles.z", "trunk_heading", "pelvis_yaw")
     no = ("knee_angle_r", "LPelvisAnglesV.z", "RHipAngles.z", "arm_rot_r", "lumbar_rotation")
-    assert all(turn_of(Channel(name, "angle", "deg")) == 360 for name in yes)
-    assert not any(turn_of(Channel(name, "angle", "deg")) for name in no)
-    assert turn_of(Channel("pelvis_rotation", "angle", "rad")) == pytest.approx(2 * np.pi)
-    assert turn_of(Channel("pelvis_rotation", "signal", "1")) is None
+    assert all(find_turn(Channel(name, "angle", "deg")) == 360 for name in yes)
+    assert not any(find_turn(Channel(name, "angle", "deg")) for name in no)
+    assert find_turn(Channel("pelvis_rotation", "angle", "rad")) == pytest.approx(2 * np.pi)
+    assert find_turn(Channel("pelvis_rotation", "signal", "1")) is None
 
 
 def test_curves_of_strides_and_their_mean():

@@ -8,7 +8,7 @@ from hypothesis.extra.numpy import arrays
 
 from gaitdisc.channel import Channel
 from gaitdisc.errors import SamplingError, ShapeError, TrainingError
-from gaitdisc.recording import Samples, Trajectory, scale_of
+from gaitdisc.recording import Samples, Trajectory, fit_scale
 
 
 def samples(count=10):
@@ -55,23 +55,23 @@ def test_too_few_missing_and_constant_numbers_are_not_fitted(outputs, least, wor
 
 @given(arrays(float, (20, 3), elements=st.floats(-1e4, 1e4)))
 def test_unscaling_undoes_scaling(values):
-    scale = scale_of(values)
+    scale = fit_scale(values)
     np.testing.assert_allclose(scale.unscaled(scale.scaled(values)), values, atol=2e-5)
 
 
 def test_constant_columns_weigh_nothing_also_where_they_vary_later():
-    scale = scale_of(np.column_stack([np.full(10, 0.1), np.arange(10.0), np.full(10, -3.0) + 1e-13]))
+    scale = fit_scale(np.column_stack([np.full(10, 0.1), np.arange(10.0), np.full(10, -3.0) + 1e-13]))
     assert scale.constant.tolist() == [True, False, True] and not scale.mean.flags.writeable
     np.testing.assert_array_equal(scale.scaled(np.array([[5.0, 4.5, 9.0]])), [[0.0, 0.0, 0.0]])
 
 
 def test_small_units_are_not_taken_for_constant():
-    assert not scale_of(1e-6 * np.sin(np.arange(50.0))[:, None]).constant[0]
+    assert not fit_scale(1e-6 * np.sin(np.arange(50.0))[:, None]).constant[0]
 
 
 def test_missing_values_take_no_part():
     values = np.array([[1.0, np.nan, 5.0], [np.nan, np.nan, 7.0], [3.0, np.nan, 6.0]])
-    scale = scale_of(values)
+    scale = fit_scale(values)
     np.testing.assert_array_equal(scale.mean, [2.0, 0.0, 6.0])
     assert scale.sd[0] == 1.0
     assert scale.constant.tolist() == [False, True, False]

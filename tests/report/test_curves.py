@@ -11,8 +11,8 @@ from gaitdisc.processing.curves_figure import (
     curves_figures,
     draw_course,
     draw_recording,
+    find_walk,
     sides_together,
-    walk_of,
 )
 from gaitdisc.processing.pooled_cycles import WALK
 from gaitdisc.recording import Recording
@@ -23,7 +23,7 @@ OUTPUTS = ("hip_flexion_r", "ankle_angle_l", "pelvis_tilt")
 
 def test_mean_and_spread_of_known_curves(run_maker):
     run = run_maker(outputs=OUTPUTS)
-    walk = walk_of(run, "P01", "exo")
+    walk = find_walk(run, "P01", "exo")
     numbers = curve_numbers(run, "P01")
     rows = numbers[(numbers["channel"] == "ankle_angle_l") & (numbers["walk"] == "exo")]
     np.testing.assert_allclose(rows["mean"], walk.curves[:, :, 1].mean(0))

@@ -10,20 +10,20 @@ from gaitdisc.processing.page import (
     cycles_figures,
     cycles_sentences,
     person_block,
-    saved_cycle_blocks,
+    save_cycle_blocks,
     write_cycles_page,
 )
 from gaitdisc.recording import Finding
 from gaitdisc.response.page import write_report
 from gaitdisc.response.participant_response import ResponseRun
-from gaitdisc.saved.provenance import Refusal, made_now
+from gaitdisc.saved.provenance import Refusal, provenance_now
 
 pytestmark = pytest.mark.usefixtures("unpainted")
 
 
 def _run(*cycles, exo="", unfitted=()):
     refusals = tuple(refusal for one in cycles for refusal in one.refusals)
-    made = made_now({}, 0, {}, "4.2")
+    made = provenance_now({}, 0, {}, "4.2")
     return ResponseRun("walks", "walk", exo, refusals, made, {"cycles.json": cycles}, unfitted)
 
 
@@ -61,19 +61,19 @@ def test_the_offset_and_few_cycles_are_said():
 
 def test_why_no_models_are_fitted_is_said(tmp_path):
     why = Refusal("P01", "", "P01 has 2 of 'walk'.")
-    first = saved_cycle_blocks(_run(made_cycles(), exo="exo", unfitted=(why,)), tmp_path)[0]
+    first = save_cycle_blocks(_run(made_cycles(), exo="exo", unfitted=(why,)), tmp_path)[0]
     assert any(says(sentence, "models are fitted", "P01") for sentence in first.sentences)
-    assert "does not compare a device" in saved_cycle_blocks(_run(made_cycles()), tmp_path)[0].sentences[0]
+    assert "does not compare a device" in save_cycle_blocks(_run(made_cycles()), tmp_path)[0].sentences[0]
 
 
 def test_one_part_a_person_with_a_figure_for_each_session_and_condition(tmp_path):
     run = _run(made_cycles(session="before"), made_cycles(session="after"), made_cycles("P02"))
-    blocks = saved_cycle_blocks(run, tmp_path)
+    blocks = save_cycle_blocks(run, tmp_path)
     assert [block.heading for block in blocks] == ["Cycles", "P01", "P02"]
     assert [figure.name for figure in blocks[1].figures] == ["cycles-P01-before_walk", "cycles-P01-after_walk"]
     (said,) = person_block(run.cycles[2:], "P02").sentences
     assert says(said, "walk: 4 left", "4 right cycles", "2 trials")
-    assert saved_cycle_blocks(_run(), tmp_path) == []
+    assert save_cycle_blocks(_run(), tmp_path) == []
     assert write_cycles_page(run, tmp_path).is_file()
 
 

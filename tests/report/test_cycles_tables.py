@@ -8,10 +8,10 @@ from gaitdisc.processing.tables import (
     all_means,
     all_spatiotemporal,
     emg_counts,
-    left_out_cycles,
     offset_words,
     overview_table,
     spatiotemporal_table,
+    tabulate_left_out,
 )
 
 
@@ -60,7 +60,7 @@ def test_values_of_two_conditions_stand_side_by_side():
 
 
 def test_what_is_left_out_has_its_reason():
-    table = left_out_cycles([made_cycles(out=1)], "P01")
+    table = tabulate_left_out([made_cycles(out=1)], "P01")
     assert table is not None and len(table.rows) == 2
     assert says(table.rows[0][-1], "no", "other foot inside")
-    assert left_out_cycles([made_cycles(out=0)], "P01") is None
+    assert tabulate_left_out([made_cycles(out=0)], "P01") is None

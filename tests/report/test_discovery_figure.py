@@ -2,7 +2,7 @@ import numpy as np
 import pytest
 from manufactured_discovery import manufactured
 
-from gaitdisc.discovery.figure import binned, discovery_figures, typical_stretch
+from gaitdisc.discovery.figure import bin_values, discovery_figures, typical_stretch
 from gaitdisc.discovery.result import Correction, Estimate, Runs
 
 
@@ -28,13 +28,13 @@ def test_the_stretch_is_neither_the_best_nor_the_worst():
 
 def test_bins_with_few_samples_are_left_out():
     along = np.array([0.1] * 6 + [0.9] * 2)
-    table = binned(along, np.full(8, 3.0), np.array([0.0, 0.5, 1.0]))
+    table = bin_values(along, np.full(8, 3.0), np.array([0.0, 0.5, 1.0]))
     assert table["at"].tolist() == [0.25]
     assert table["mean"].tolist() == [3.0]
 
 
 def test_each_bin_has_its_own_mean_and_spread():
-    table = binned(np.repeat([0.1, 0.9], 8), np.r_[np.ones(8), np.tile([4.0, 6.0], 4)], np.array([0.0, 0.5, 1.0]))
+    table = bin_values(np.repeat([0.1, 0.9], 8), np.r_[np.ones(8), np.tile([4.0, 6.0], 4)], np.array([0.0, 0.5, 1.0]))
     assert table["mean"].tolist() == [1.0, 5.0] and table["n"].tolist() == [8, 8]
     assert table["sd"].tolist() == pytest.approx([0.0, np.sqrt(8 / 7)])
 

@@ -9,15 +9,15 @@ import pytest
 from manufactured_discovery import CUBIC, SPRING, manufactured
 from texts import says
 
-from gaitdisc.discovery.method import method_of
+from gaitdisc.discovery.method import methods_used
 from gaitdisc.discovery.page import (
-    closed_share,
     corrections_table,
     data_findings,
     estimates_table,
     explanations_table,
     gap_table,
     models_table,
+    share_closed,
     trials_table,
     where_table,
     write_discovery_report,
@@ -33,7 +33,7 @@ from gaitdisc.discovery.result import (
     FoundEffect,
     GapSize,
 )
-from gaitdisc.saved.provenance import made_now
+from gaitdisc.saved.provenance import provenance_now
 
 
 def test_an_angle_is_given_in_degrees_too():
@@ -61,11 +61,11 @@ def test_the_gap_is_given_for_both_parts_of_the_data():
 
 @pytest.mark.parametrize(("sizes", "closed"), [((2.0, 1.0, 1.0), 1.0), ((2.0, 2.0, 1.0), 0.0), ((2.0, 0.8, 1.0), 1.0)])
 def test_closed_is_of_the_squared_gap_above_the_noise(sizes, closed):
-    assert closed_share(*sizes) == closed
+    assert share_closed(*sizes) == closed
 
 
 def test_where_nothing_stands_above_the_noise_nothing_is_closed():
-    assert math.isnan(closed_share(1.0, 1.0, 1.0))
+    assert math.isnan(share_closed(1.0, 1.0, 1.0))
 
 
 def test_where_has_share_stride_and_region():
@@ -181,12 +181,12 @@ def test_what_a_file_says_is_text_and_never_markup(tmp_path):
     ],
 )
 def test_a_page_says_how_its_own_answer_was_made(tmp_path, unpainted, section, says, no_word_of):
-    found = replace(manufactured(), provenance=made_now({"title": "A leg"}, 0, {}, section))
+    found = replace(manufactured(), provenance=provenance_now({"title": "A leg"}, 0, {}, section))
     page = unescape(write_discovery_report(found, tmp_path).read_text())
     assert says in page and no_word_of not in page
-    assert method_of(found).held_out in page and method_of(found).added_to in page
+    assert methods_used(found).held_out in page and methods_used(found).added_to in page
 
 
 def test_an_answer_that_says_nothing_of_itself_is_of_a_simulation():
     found = replace(manufactured(), provenance=None)
-    assert says(method_of(found).sentences[0], "into short runs")
+    assert says(methods_used(found).sentences[0], "into short runs")

@@ -6,11 +6,11 @@ from texts import says
 
 from gaitdisc.response.held_out import (
     WINDOW_S,
-    held_out_figures,
-    held_out_numbers,
+    draw_held_out,
     mean_interval,
     residual_figures,
     residual_numbers,
+    tabulate_held_out,
 )
 from gaitdisc.response.participant_response import HeldOut
 
@@ -23,7 +23,7 @@ def response(response_maker):
 
 
 def test_the_last_seconds_are_drawn_as_the_csv_says(response):
-    [figure] = held_out_figures(response, "P01")
+    [figure] = draw_held_out(response, "P01")
     assert np.ptp(figure.numbers["time_s"]) == pytest.approx(WINDOW_S, abs=0.011)
     assert figure.numbers["time_s"].max() == response.held_out.time[-1]
     for panel, (_, rows) in zip(figure.drawn.axes, figure.numbers.groupby("variable", sort=False), strict=False):
@@ -34,7 +34,7 @@ def test_the_last_seconds_are_drawn_as_the_csv_says(response):
 
 
 def test_words(response):
-    [figure] = held_out_figures(response, "P01")
+    [figure] = draw_held_out(response, "P01")
     assert says(figure.caption, "n = 400 samples", "749", "7.5 s")
     first, _, third = figure.drawn.axes[:3]
     assert first.get_ylabel() == "[deg/s²]\n↑ flexion"
@@ -49,11 +49,11 @@ def test_the_band_of_augmented_is_drawn_and_the_caption_says_what_each_band_hold
         "nominal": np.stack([held.measured + 1, held.measured + 2]),
         "augmented": np.stack([held.measured - 1, held.measured + 1]),
     }
-    [figure] = held_out_figures(replace(response, held_out=replace(held, bands=bands)), "P01")
+    [figure] = draw_held_out(replace(response, held_out=replace(held, bands=bands)), "P01")
     assert says(figure.caption, "band: 0 %", "100 %")
     rows = figure.numbers[figure.numbers["variable"] == OUTPUTS[0]]
     np.testing.assert_allclose(rows["augmented_high"] - rows["augmented_low"], 2.0)
-    [without] = held_out_figures(response, "P01")
+    [without] = draw_held_out(response, "P01")
     assert "band" not in without.caption
 
 
@@ -63,18 +63,18 @@ def test_no_line_bridges_samples_that_were_left_away(response):
     keep[600:650] = False
     predicted = {model: values[keep] for model, values in held.predicted.items()}
     holed = replace(response, held_out=HeldOut(held.time[keep], held.phi[keep], held.measured[keep], predicted))
-    [figure] = held_out_figures(holed, "P01")
+    [figure] = draw_held_out(holed, "P01")
     measured = figure.drawn.axes[0].get_lines()[0].get_ydata()
     assert np.isnan(measured).sum() == 1
-    assert not held_out_numbers(holed)["measured"].isna().any()
+    assert not tabulate_held_out(holed)["measured"].isna().any()
 
 
 def test_one_output_fills_the_width_and_none_is_no_figure(response_maker):
-    [figure] = held_out_figures(response_maker("P01", outputs=("hip_flexion_r",)), "P01")
+    [figure] = draw_held_out(response_maker("P01", outputs=("hip_flexion_r",)), "P01")
     assert len(figure.drawn.axes) == 1
     empty = response_maker("P01", outputs=("hip_flexion_r",))
     nothing = HeldOut(np.empty(0), np.empty(0), np.empty((0, 1)), {"nominal": np.empty((0, 1))})
-    assert held_out_figures(replace(empty, held_out=nothing), "P01") == []
+    assert draw_held_out(replace(empty, held_out=nothing), "P01") == []
 
 
 OUTPUTS_RESIDUAL = ("hip_flexion_r", "ankle_angle_l")

@@ -15,11 +15,11 @@ from gaitdisc.comparison.compare import compare_walks
 from gaitdisc.comparison.mismatch import Alignment, Smallest
 from gaitdisc.comparison.page import (
     channels_table,
-    findings_of,
     mismatch_figures,
     mismatch_numbers,
     mismatch_text,
     regions_table,
+    sort_findings,
     write_mismatch_report,
 )
 from gaitdisc.comparison.sentences import method_sentences, mismatch_sentences
@@ -67,7 +67,7 @@ def test_every_region_and_every_channel_has_a_row(mismatch_tables):
     assert len(regions_table(mismatch_tables).rows) == len(mismatch_tables.regions) > 0
     assert [row[0] for row in channels_table(mismatch_tables).rows].count("right ankle angle") == 1
     assert len(channels_table(mismatch_tables).rows) == len(mismatch_tables.names)
-    assert len(findings_of(mismatch_tables).rows) == len(mismatch_tables.findings)
+    assert len(sort_findings(mismatch_tables).rows) == len(mismatch_tables.findings)
 
 
 def test_the_sign_is_printed_and_the_text_lists_all_channels(mismatch_tables):

@@ -9,18 +9,18 @@ from chapter3.pages import statements_table
 from texts import says
 
 import gaitdisc
-from gaitdisc.own_files import claim_folder, guarded
+from gaitdisc.own_files import claim_folder, guard
 from gaitdisc.recording import Finding
-from gaitdisc.report.page import Block, drawn_side_by_side, save_block, write_blocks, write_markdown, write_page
+from gaitdisc.report.page import Block, draw_side_by_side, save_block, write_blocks, write_markdown, write_page
 from gaitdisc.report.table import (
     Table,
-    flattened,
-    left_out_table,
+    flatten,
     provenance_rows,
     provenance_tables,
     save_table,
     save_tables,
-    seen_table,
+    tabulate_findings,
+    tabulate_refusals,
     words_table,
 )
 from gaitdisc.saved.provenance import Refusal
@@ -64,9 +64,9 @@ def _where(word):
 
 def test_few_are_drawn_here_and_many_elsewhere_in_order(monkeypatch):
     monkeypatch.setattr("gaitdisc.report.page.os.cpu_count", lambda: 2)
-    few = drawn_side_by_side(_where, [("a",), ("b",)], 2)
+    few = draw_side_by_side(_where, [("a",), ("b",)], 2)
     assert few == [("a", os.getpid()), ("b", os.getpid())]
-    many = drawn_side_by_side(_where, [("a",), ("b",), ("c",)], 2)
+    many = draw_side_by_side(_where, [("a",), ("b",), ("c",)], 2)
     assert [word for word, _ in many] == ["a", "b", "c"] and os.getpid() not in {at for _, at in many}
 
 
@@ -80,15 +80,15 @@ def _written(folder, number, breaks, here):
 def test_what_other_processes_wrote_may_be_written_again(monkeypatch, tmp_path, breaks):
     monkeypatch.setattr("gaitdisc.report.page.os.cpu_count", lambda: 2)
     each = [(tmp_path, number, breaks, os.getpid()) for number in range(8)]
-    with guarded("gaitdisc test"):
+    with guard("gaitdisc test"):
         claim_folder(tmp_path)
-        assert [drawn_side_by_side(_written, each, most) for most in (2, 8)] == [[None] * 8] * 2
+        assert [draw_side_by_side(_written, each, most) for most in (2, 8)] == [[None] * 8] * 2
     assert {path.read_text() for path in tmp_path.glob("*.txt")} == {"drawn"}
 
 
 def test_one_processor_draws_alone(monkeypatch):
     monkeypatch.setattr("gaitdisc.report.page.MOST_PROCESSES", 1)
-    assert {at for _, at in drawn_side_by_side(_where, [(k,) for k in range(4)], 2)} == {os.getpid()}
+    assert {at for _, at in draw_side_by_side(_where, [(k,) for k in range(4)], 2)} == {os.getpid()}
 
 
 def test_tables_are_written_without_index(tmp_path):
@@ -109,27 +109,35 @@ def test_the_numbers_lie_under_the_name_of_their_table(tmp_path):
 
 def test_a_finding_is_written_in_five_cells_and_as_csv():
     gap = Finding("warning", "gap", "a.c3d", "0.2 s missing", "the windows", "knee_angle_r")
-    table = seen_table([gap], "Seen, n = 1.", "finding")
+    table = tabulate_findings([gap], "Seen, n = 1.", "finding")
     assert table.rows == (("warning", "a.c3d", "knee_angle_r", "gap: 0.2 s missing", "the windows"),)
     assert table.columns[3] == "finding"
     assert table.numbers["finding"].tolist() == ["gap: 0.2 s missing"]
 
 
 def test_who_is_left_out_as_a_whole_is_left_out_of_all_walks():
-    table = left_out_table([Refusal("P01", "exo", "too short"), Refusal("P02", "", "excluded")], "refusals", "n = 2.")
+    table = tabulate_refusals(
+        [Refusal("P01", "exo", "too short"), Refusal("P02", "", "excluded")], "refusals", "n = 2."
+    )
     assert table.rows == (("P01", "exo", "too short"), ("P02", "all", "excluded"))
     assert table.name == "refusals"
 
 
 def test_nothing_seen_leaves_the_headings():
-    assert list(seen_table([], "Seen, n = 0.").numbers.columns) == ["severity", "file", "channel", "what", "spoils"]
+    assert list(tabulate_findings([], "Seen, n = 0.").numbers.columns) == [
+        "severity",
+        "file",
+        "channel",
+        "what",
+        "spoils",
+    ]
 
 
 def test_settings_become_rows():
     settings = {"a": {"b": [1, 2], "c": None}, "d": [{"e": 1}, {"e": 2}]}
     files = ["/home/someone/a.mot", "C:\\Users\\someone\\b.mot"]
-    assert flattened({"files": files}) == [("files", "a.mot, b.mot")]
-    assert flattened(settings) == [("a.b", "1, 2"), ("a.c", "None"), ("d.1.e", "1"), ("d.2.e", "2")]
+    assert flatten({"files": files}) == [("files", "a.mot, b.mot")]
+    assert flatten(settings) == [("a.b", "1, 2"), ("a.c", "None"), ("d.1.e", "1"), ("d.2.e", "2")]
 
 
 def test_provenance(run):

@@ -16,14 +16,14 @@ from gaitdisc.errors import SchemaError
 from gaitdisc.processing.pooled_cycles import CYCLES
 from gaitdisc.processing.walk_pair import walk_pair
 from gaitdisc.reconstruction.page import write_reconstruction_report
-from gaitdisc.report.saved_page import draw_saved, page_of
+from gaitdisc.report.saved_page import draw_saved, find_page
 from gaitdisc.response.page import write_report
 from gaitdisc.response.variants import VARIANT_COLUMNS, VARIANT_TEST_COLUMNS, VariantRun, Variants
 from gaitdisc.response.variants_page import write_variants
 from gaitdisc.saved import kind as kinds
-from gaitdisc.saved.provenance import made_now
+from gaitdisc.saved.provenance import provenance_now
 from gaitdisc.saved.study_run import StudyRun, save_run
-from gaitdisc.saved.unit_folder import read_sealed, sealed_text
+from gaitdisc.saved.unit_folder import read_sealed, seal_text
 
 pytestmark = pytest.mark.usefixtures("unpainted")
 
@@ -88,7 +88,7 @@ def test_the_questions_beside_a_run_are_drawn_with_it(run, tmp_path):
 def test_a_folder_of_a_newer_version_is_refused_in_words_and_nothing_is_drawn(tmp_path):
     for made, file in ((manufactured(), "discovery.json"), (made_cycles(), "cycles.json")):
         place = made.save(tmp_path / file) / file
-        place.write_text(sealed_text(read_sealed(place) | {"format": 2}))
+        place.write_text(seal_text(read_sealed(place) | {"format": 2}))
         with pytest.raises(SchemaError, match="format 2, not 1"):
             draw_saved(place.parent)
         assert not list(tmp_path.rglob("*.html"))
@@ -112,7 +112,7 @@ def folder(tmp_path):
 
 
 def _save(folder, one, title="t"):
-    save_run(StudyRun(title, "walk", "", (), made_now({}, 0, {}, "4.2"), {CYCLES.file: (one,)}), folder)
+    save_run(StudyRun(title, "walk", "", (), provenance_now({}, 0, {}, "4.2"), {CYCLES.file: (one,)}), folder)
 
 
 def _drawing(folder, drawn):
@@ -129,15 +129,15 @@ def _drawing(folder, drawn):
 
 def test_a_page_of_the_same_run_is_not_drawn_again(folder):
     drawn: list[int] = []
-    first = page_of(folder, _drawing(folder, drawn))
+    first = find_page(folder, _drawing(folder, drawn))
     _save(folder, made_cycles())  # another time of making, the same run
-    assert page_of(folder, _drawing(folder, drawn)) == first and len(drawn) == 1
+    assert find_page(folder, _drawing(folder, drawn)) == first and len(drawn) == 1
 
 
 @pytest.mark.parametrize("change", ["title", "unit", "page", "figure", "seal"])
 def test_whatever_is_changed_is_drawn_anew(folder, change):
     drawn: list[int] = []
-    page_of(folder, _drawing(folder, drawn))
+    find_page(folder, _drawing(folder, drawn))
     if change == "title":
         _save(folder, made_cycles(), "another")
     elif change == "unit":
@@ -148,5 +148,5 @@ def test_whatever_is_changed_is_drawn_anew(folder, change):
         (folder / "report" / "figures" / "a.svg").unlink()
     else:
         (folder / "report" / "drawn.json").write_text("{}")
-    page_of(folder, _drawing(folder, drawn))
+    find_page(folder, _drawing(folder, drawn))
     assert len(drawn) == 2

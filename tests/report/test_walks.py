@@ -15,7 +15,6 @@ from gaitdisc.report.table import findings_table, refusals_table
 from gaitdisc.response.r2_tables import (
     LOWEST,
     R2_TABLE,
-    held_out_text,
     not_computed,
     participant_medians,
     participants_table,
@@ -26,14 +25,15 @@ from gaitdisc.response.r2_tables import (
     r2_table,
     sample_counts,
     study_r2_table,
+    tail_words,
     variables,
 )
 from gaitdisc.response.walks_page import (
-    dropped_table,
     fits_table,
     reason_kind,
     stride_numbers,
     strides_figure,
+    tabulate_dropped,
     walks_table,
 )
 
@@ -79,8 +79,8 @@ def test_counts_and_lengths_in_words(run_maker, response_maker):
     assert sample_counts(response) == "749"
     response.r2.loc[0, "n"] = 700
     assert sample_counts(response) == "700-749"
-    assert held_out_text(run_maker(2, outputs=OUTPUTS, held_out_s=10.0)) == "10"
-    assert held_out_text(run_maker(0)) == ""
+    assert tail_words(run_maker(2, outputs=OUTPUTS, held_out_s=10.0)) == "10"
+    assert tail_words(run_maker(0)) == ""
 
 
 def drawn_marks(figure, colour, filled=True):
@@ -285,10 +285,10 @@ def test_refusals_findings_and_drops(run_maker, refusal):
     assert findings.rows[0][1:3] == ("P01 spring", "P01_spring.mot, knee_angle_r")
     assert says(findings.rows[0][3], "gap: 0.12 s", "12.31-12.43; 40.10-40.22 s")
     assert len(findings.rows) == 3
-    dropped = dropped_table(run, "P01", "P01")
+    dropped = tabulate_dropped(run, "P01", "P01")
     assert sum(int(row[3]) for row in dropped.rows) == len(dropped.numbers)
     clean = run.with_units(WALK, tuple(replace(w, strides=w.strides.assign(kept=True)) for w in run.walks))
-    assert dropped_table(clean, "P01", "P01") is None
+    assert tabulate_dropped(clean, "P01", "P01") is None
 
 
 def test_fits(run_maker):

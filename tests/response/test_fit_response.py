@@ -14,19 +14,19 @@ from gaitdisc.response.fit_response import (
     BLOCKS,
     Fit,
     ResponseSettings,
-    covered,
+    coverage,
     fit_kinds,
     fit_linear,
     fit_models,
     fit_network,
     fit_response,
-    held_out_part,
-    parted,
+    part,
     residual_strides,
     response_bands,
+    split_held_out,
     training_samples,
 )
-from gaitdisc.signals.butterworth import lowpassed
+from gaitdisc.signals.butterworth import low_pass
 from gaitdisc.signals.contact_movement import angle_contacts
 from gaitdisc.signals.derivatives import trajectory
 from gaitdisc.signals.strides import cut_strides
@@ -48,7 +48,7 @@ def response(judged):
 
 
 def test_the_discrepancy_model_is_the_spring(fitted, exo, settings):
-    held = gait_samples(held_out_part(exo, settings)[1], settings.outputs)[0]
+    held = gait_samples(split_held_out(exo, settings)[1], settings.outputs)[0]
     found = fitted["network"].discrepancy.model(held.x)
     spring = -SPRING * np.maximum(held.x[:, 1], 0.0)
     assert r2(spring[:, None], found[:, 1:])[0] > 0.94
@@ -57,9 +57,9 @@ def test_the_discrepancy_model_is_the_spring(fitted, exo, settings):
 
 
 def test_a_linear_spring_is_found_exactly_by_the_linear_rival(nominal, linear_exo, settings):
-    samples = [gait_samples(held_out_part(walk, settings)[0], settings.outputs)[0] for walk in (nominal, linear_exo)]
+    samples = [gait_samples(split_held_out(walk, settings)[0], settings.outputs)[0] for walk in (nominal, linear_exo)]
     models = fit_models(*samples, fit=lambda part, _: fit_linear(part))
-    held = gait_samples(held_out_part(linear_exo, settings)[1], settings.outputs)[0]
+    held = gait_samples(split_held_out(linear_exo, settings)[1], settings.outputs)[0]
     spring = np.column_stack([np.zeros(len(held)), -SPRING * held.x[:, 1]])
     np.testing.assert_allclose(models.discrepancy.model(held.x), spring, atol=0.01)  # of some 1,000 deg/s2
 
@@ -121,7 +121,7 @@ def test_r2_is_that_of_the_held_out_predictions_kept(response):
 
 
 def test_residuals_are_measured_minus_predicted_on_whole_strides(exo, settings):
-    held = held_out_part(exo, settings)[1]
+    held = split_held_out(exo, settings)[1]
     samples = gait_samples(held, settings.outputs)[0]
     by_phase = np.column_stack([np.sin(2 * np.pi * samples.phi / 100), samples.phi / 100])
     curves = residual_strides(held, samples, samples.y - by_phase)
@@ -132,7 +132,7 @@ def test_residuals_are_measured_minus_predicted_on_whole_strides(exo, settings):
 
 
 def test_missing_samples_are_missing_in_the_residual(exo, settings):
-    held = held_out_part(exo, settings)[1]
+    held = split_held_out(exo, settings)[1]
     usable = held.usable.copy()
     usable[300:305] = False
     holed = replace(held, usable=usable)
@@ -168,7 +168,7 @@ def test_running_with_an_exotendon(gait_data, settings):
     for pattern in ("*natural2*", "*exotendon3*"):
         (file,) = (gait_data / "exotendon_run").glob(pattern)
         recording = read_trial(file, subject="welk007", condition=pattern).stream("kinematics").selected(angles)
-        runs.append(trajectory(lowpassed(recording), cut_strides(angle_contacts(recording)["r"], recording)))
+        runs.append(trajectory(low_pass(recording), cut_strides(angle_contacts(recording)["r"], recording)))
     found = fit_response(*runs, replace(settings, outputs=(KNEE, ANKLE)), {KNEE: 0.507, ANKLE: 0.507})
     for variable in (KNEE, ANKLE):
         nominal, augmented, exo = (found.r2_of(variable, model) for model in ("nominal", "augmented", "exo"))
@@ -240,8 +240,8 @@ def test_nine_in_ten_lie_inside_and_fewer_inside_the_nominal_models(bands):
         "exo",
         "augmented",
     ):  # 20 strides are ten blocks: 90 % times 1.1, for samples that do not err together
-        assert covered(held.y, found[model])[0] == pytest.approx(0.975, abs=0.02)
-    assert covered(held.y, found["nominal"])[0] < 0.5
+        assert coverage(held.y, found[model])[0] == pytest.approx(0.975, abs=0.02)
+    assert coverage(held.y, found["nominal"])[0] < 0.5
 
 
 def test_a_band_is_wide_where_errors_are_large(bands):
@@ -255,15 +255,15 @@ def test_the_more_strides_the_nearer_to_nine_in_ten():
     nominal, exo, held = walk(0, 1.0, 16000), walk(1, 2.0, 16000), walk(2, 2.0)
     models = fit_models(nominal, exo, fit=lambda part, _: fit_linear(part, harmonics=2))
     found = response_bands(models, lambda _, samples: fit_linear(samples, harmonics=2).model, nominal, exo, held)
-    assert covered(held.y, found["exo"])[0] == pytest.approx(0.9 * (1 + 2 / 160), abs=0.012)
+    assert coverage(held.y, found["exo"])[0] == pytest.approx(0.9 * (1 + 2 / 160), abs=0.012)
 
 
 def test_a_block_and_what_lies_within_the_seam_are_left_out():
     samples = walk(0, 1.0, 800)
-    rest, block = parted(samples, 3)
+    rest, block = part(samples, 3)
     assert block.time[[0, -1]].tolist() == [3.0, 3.99]
     assert rest.time[np.searchsorted(rest.time, 3.0) + np.array([-1, 0])].round(2).tolist() == [2.69, 4.3]
-    assert sum(len(parted(samples, number)[1]) for number in range(BLOCKS)) == 800
+    assert sum(len(part(samples, number)[1]) for number in range(BLOCKS)) == 800
 
 
 def test_a_short_walk_has_no_band():

@@ -3,7 +3,7 @@ from texts import says
 
 from gaitdisc.response.participant_response import QUANTITY, DataQuantity, load_run
 from gaitdisc.run.run_study import response_key, run_study, unit_keys
-from gaitdisc.run.vary_study import ablate_study, computed_quantity
+from gaitdisc.run.vary_study import ablate_study, compute_quantity
 from gaitdisc.saved.provenance import Refusal
 
 
@@ -29,11 +29,11 @@ def test_it_is_computed_once_and_loaded_afterwards(small, folder, trained_briefl
     person, shares = small.participants[0], []
     key = response_key(unit_keys(small, person))
     assert QUANTITY.kept(folder / "quantities" / person.id, key) is None
-    first = computed_quantity(small, person, folder, (5.0,), "first", shares.append)
+    first = compute_quantity(small, person, folder, (5.0,), "first", shares.append)
     assert isinstance(first, DataQuantity)
     assert shares[-1] == 1.0
     work = len(shares)
-    again = computed_quantity(small, person, folder, (5.0,), "first", shares.append)
+    again = compute_quantity(small, person, folder, (5.0,), "first", shares.append)
     assert isinstance(again, DataQuantity)
     kept = QUANTITY.kept(folder / "quantities" / person.id, key)
     assert kept is not None and again.table.equals(kept.table)
@@ -50,6 +50,6 @@ def test_a_walk_that_is_refused_refuses_the_rest(study, tmp_path):
     person = study.participants[0]
     broken = person.trials[1].model_copy(update={"files": ("nowhere.mot",)})
     person = person.model_copy(update={"trials": (person.trials[0], broken)})
-    refused = computed_quantity(study, person, tmp_path, (5.0,), "first", lambda _: None)
+    refused = compute_quantity(study, person, tmp_path, (5.0,), "first", lambda _: None)
     assert isinstance(refused, Refusal)
     assert says(refused.reason, "1", "be read") and "nowhere.mot" not in refused.reason

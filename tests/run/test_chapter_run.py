@@ -20,12 +20,12 @@ from gaitdisc.reconstruction.reconstruction import Reconstruction
 from gaitdisc.reconstruction.window_model import KINDS, ON_REQUEST
 from gaitdisc.recording import PERCENT, Finding
 from gaitdisc.run import chapter_run, installation
-from gaitdisc.run.chapter_parts import CHAPTERS, OUT, PARTS, Part, costs, parts_of, studies_folder
-from gaitdisc.run.chapter_run import lack_of, run_part
-from gaitdisc.run.citations import MENTIONED, OF_MODELS, OF_PARTS, citations_of, entries, methods_of
+from gaitdisc.run.chapter_parts import CHAPTERS, OUT, PARTS, Part, costs, list_parts, studies_folder
+from gaitdisc.run.chapter_run import find_lack, run_part
+from gaitdisc.run.citations import MENTIONED, OF_MODELS, OF_PARTS, entries, list_citations, list_methods
 from gaitdisc.run.installation import checks
 from gaitdisc.saved.provenance import Provenance
-from gaitdisc.saved.unit_folder import sealed_text
+from gaitdisc.saved.unit_folder import seal_text
 
 WORKS = """
 import os, sys
@@ -97,13 +97,13 @@ def test_a_folder_of_something_else_is_left_alone(studies, tmp_path):
 
 
 def test_what_a_machine_lacks_is_said_with_what_to_do(studies, tmp_path):
-    lack = lack_of(ONE._replace(libraries=("json", "nosuchlibrary")), None)
+    lack = find_lack(ONE._replace(libraries=("json", "nosuchlibrary")), None)
     assert says(str(lack), "chapter 3", "nosuchlibrary", "pip install 'gaitdisc[chapter3]'")
     sea = ONE._replace(data="fields/sea")
     with pytest.raises(SchemaError, match=r"fields/sea.*--data"):
         run_part(sea, tmp_path, True, tmp_path)
     (tmp_path / "fields" / "sea").mkdir(parents=True)
-    assert lack_of(sea, tmp_path) is None
+    assert find_lack(sea, tmp_path) is None
 
 
 def test_two_at_once_do_not_write_into_one_folder(studies, tmp_path):
@@ -136,29 +136,29 @@ def test_every_study_of_a_chapter_is_a_part_or_is_used_by_one():
 
 
 def test_the_parts_of_a_chapter():
-    assert [part.name for part in parts_of(5, "turbulence")] == ["turbulence"]
-    assert sum(len(parts_of(chapter)) for chapter in CHAPTERS) == len(PARTS)
+    assert [part.name for part in list_parts(5, "turbulence")] == ["turbulence"]
+    assert sum(len(list_parts(chapter)) for chapter in CHAPTERS) == len(PARTS)
     for name in (part.name for part in PARTS):
         assert f" {name}: " in costs()
 
 
 def test_what_is_no_part_is_refused_with_the_nearest():
     with pytest.raises(SchemaError, match=r"'van_der_poll'.*'van_der_pol'"):
-        parts_of(3, "van_der_poll")
+        list_parts(3, "van_der_poll")
     with pytest.raises(SchemaError, match=r"3, 4, 5.*6"):
-        parts_of(6)
+        list_parts(6)
 
 
 MADE = Provenance({}, 0, {"walk.C3D": "ab"}, {}, "", "2026-01-01T00:00:00+00:00")
 
 
 def keys(folder):
-    return {one.key for one in citations_of(folder)}
+    return {one.key for one in list_citations(folder)}
 
 
 def of_markers(*notes):
     findings = tuple(Finding("note", kind, "a.c3d", what, "") for kind, what in notes)
-    return set(methods_of(replace(made_cycles(), findings=findings)))
+    return set(list_methods(replace(made_cycles(), findings=findings)))
 
 
 def test_the_table_and_the_file_name_the_same_entries_with_sound_dois():
@@ -209,24 +209,24 @@ def test_a_mismatch_cites_its_permutation_test(tmp_path):
 
 
 def test_a_part_of_a_chapter_cites_its_methods(tmp_path):
-    (tmp_path / "chapter.json").write_text(sealed_text({"part": "who_names"}))
+    (tmp_path / "chapter.json").write_text(seal_text({"part": "who_names"}))
     assert {"ebers2023", "ebers2024discrepancy", "askham2018", "bock1984"} <= keys(tmp_path)
     assert not {"fasel2022", "sashidhar2022", "tu2014", "julier2004"} & keys(tmp_path)
-    (tmp_path / "chapter.json").write_text(sealed_text({"part": "further"}))
+    (tmp_path / "chapter.json").write_text(seal_text({"part": "further"}))
     learned, filtered = {"tu2014", "fasel2022", "messenger2021", "rasmussen2006"}, {"julier2004", "evensen1994"}
     assert learned | filtered <= keys(tmp_path) and "sashidhar2022" not in keys(tmp_path)
-    (tmp_path / "chapter.json").write_text(sealed_text({"part": "measurement_bias"}))
+    (tmp_path / "chapter.json").write_text(seal_text({"part": "measurement_bias"}))
     assert {"kalman1960", "julier2004", "sashidhar2022"} <= keys(tmp_path) and "evensen1994" not in keys(tmp_path)
-    (tmp_path / "chapter.json").write_text(sealed_text({"part": "no such"}))
+    (tmp_path / "chapter.json").write_text(seal_text({"part": "no such"}))
     with pytest.raises(SchemaError, match="names 'no such'"):
-        citations_of(tmp_path)
+        list_citations(tmp_path)
 
 
 @pytest.mark.parametrize(("split", "cited"), [("subject: each in turn", True), ("temporal: the last 15 %", False)])
 def test_an_interval_over_people_cites_cv_plus_and_every_reconstruction_its_paper(split, cited):
     errors, curves = pd.DataFrame({"model": ["shred"]}), pd.DataFrame()
     made = Reconstruction("a", (), (), split, "", {"shred": "x"}, errors, errors, curves, (), (), MADE)
-    assert any(one.startswith("intervals from models") for one in methods_of(made)) == cited
+    assert any(one.startswith("intervals from models") for one in list_methods(made)) == cited
     assert any(one.startswith("reconstruction") and "ebers2024sensors" in keys for one, keys in MENTIONED.items())
 
 

@@ -9,14 +9,14 @@ from texts import says
 
 from gaitdisc.channel import Channel
 from gaitdisc.clinic import demonstration as clinic_demonstration
-from gaitdisc.clinic.demonstration import WEEK, Visit, person_of, write_week
+from gaitdisc.clinic.demonstration import WEEK, Visit, draw_person, write_week
 from gaitdisc.clinic.rules import rules
-from gaitdisc.cohort.cohort import the_twelve, walks_of
-from gaitdisc.cohort.demonstration import DROP_DEG, FOUND_AS, PLANTED, TRIALS, planted, write_demonstration
+from gaitdisc.cohort.cohort import make_walks, the_twelve
+from gaitdisc.cohort.demonstration import DROP_DEG, FOUND_AS, PLANTED, TRIALS, plant, write_demonstration
 from gaitdisc.errors import SchemaError
 from gaitdisc.ingest.reading import read_planned_trial
 from gaitdisc.ingest.study_file import load_study
-from gaitdisc.kinematics.motion import moved_body
+from gaitdisc.kinematics.motion import move_body
 from gaitdisc.recording import Recording, Trial
 from gaitdisc.run.run_study import run_study
 
@@ -45,7 +45,7 @@ def test_the_files_are_read_as_a_laboratory_would_write_them(folder):
 def test_what_is_read_is_what_was_measured(folder):
     study = load_study(folder)
     [person] = study.participants
-    walked = walks_of(the_twelve()[0], 30.0).trials["nominal"]
+    walked = make_walks(the_twelve()[0], 30.0).trials["nominal"]
     read = read_planned_trial(study, person, person.trials[0])
     for key, within in (("emg", 0.0), ("forces", 1e-3), ("kinematics", 1e-5)):
         assert read.stream(key).names == walked.stream(key).names
@@ -78,13 +78,13 @@ def test_markers_in_place_of_angles_go_through_the_same_reading(tmp_path):
     walk, standing = (read_planned_trial(study, person, person.trials[n]) for n in (1, 0))
     assert {"markers", "emg", "forces"} <= set(walk.streams)
     angles = angled(walk, standing)
-    truth = walks_of(the_twelve()[0], 30.0).trials["nominal"].stream("kinematics")
+    truth = make_walks(the_twelve()[0], 30.0).trials["nominal"].stream("kinematics")
     apart = angles["knee_angle_r"][: len(truth.time)] - truth["knee_angle_r"][: len(angles.time)]
     assert np.std(apart) < 2.0
 
 
 def angled(walk, standing):
-    return moved_body(walk.stream("markers"), standing.stream("markers")).angles
+    return move_body(walk.stream("markers"), standing.stream("markers")).angles
 
 
 @pytest.mark.slow
@@ -108,23 +108,23 @@ def _trial():
 
 
 def test_a_stiff_knee_bends_less_in_swing_alone():
-    knee = planted(_trial(), "stiff knee", "l").stream("kinematics")["knee_angle_l"]
+    knee = plant(_trial(), "stiff knee", "l").stream("kinematics")["knee_angle_l"]
     before = _trial().stream("kinematics")["knee_angle_l"]
     assert knee.max() == pytest.approx(40.0)
     np.testing.assert_array_equal(knee[before <= 20], before[before <= 20])
 
 
 def test_a_foot_hangs_while_it_is_lifted_alone():
-    ankle = planted(_trial(), "drop foot", "l").stream("kinematics")["ankle_angle_l"]
+    ankle = plant(_trial(), "drop foot", "l").stream("kinematics")["ankle_angle_l"]
     assert ankle[180] == pytest.approx(-DROP_DEG, abs=0.1)
     assert ankle[130] == pytest.approx(0.0, abs=0.1)
 
 
 def test_nothing_and_what_is_not_known():
     trial = _trial()
-    assert planted(trial, "", "l") is trial
+    assert plant(trial, "", "l") is trial
     with pytest.raises(SchemaError, match=r"stiff knee, drop.*'limp'"):
-        planted(trial, "limp", "l")
+        plant(trial, "limp", "l")
     assert set(FOUND_AS) == set(PLANTED) and set(FOUND_AS.values()) <= {rule.name for rule in rules()}
 
 
@@ -155,7 +155,7 @@ def test_two_studies_are_written_with_all_their_files_and_what_was_planted_apart
 
 
 def test_the_child_has_a_childs_size_and_the_dimensionless_speed_of_the_grown_person():
-    child, grown = (person_of(Visit("P03", 2, what=what), 60_000) for what in ("child", ""))
+    child, grown = (draw_person(Visit("P03", 2, what=what), 60_000) for what in ("child", ""))
     assert (child.height_m, child.mass_kg, child.age_years) == (1.26, 26.0, 8.0) and grown.height_m > 1.5
     assert child.dimensionless_speed == pytest.approx(grown.dimensionless_speed)
     assert child.speed_m_per_s * child.stride_s / child.height_m == pytest.approx(

@@ -21,7 +21,7 @@ from gaitdisc.discovery.device_study import (
     check_kinetics,
     lines,
     over_conditions,
-    weighed_foot,
+    weigh_foot,
 )
 from gaitdisc.discovery.discover_files import discover_study
 from gaitdisc.discovery.effect_words import estimate_text
@@ -190,15 +190,15 @@ def knee_and_hip(walks, knee, hip):
 
 @pytest.mark.parametrize(("kg", "named"), [(0.8, True), (0.0, False)])
 def test_a_mass_at_the_foot_is_what_the_knee_says_and_the_hip_bears_out(walks, kg, named):
-    mass = weighed_foot(knee_and_hip(walks, loaded(5, kg, 5.0), loaded(6, kg / 2, 8.0)))
+    mass = weigh_foot(knee_and_hip(walks, loaded(5, kg, 5.0), loaded(6, kg / 2, 8.0)))
     assert (mass is not None) == named
     assert not named or mass.low < mass.value == pytest.approx(kg, rel=0.15)
 
 
 def test_joints_that_disagree_about_a_mass_or_do_not_know_the_foot_name_none(walks):
-    assert weighed_foot(knee_and_hip(walks, loaded(5, 1.2, 5.0), loaded(6, -0.4, 5.0))) is None
-    assert weighed_foot(knee_and_hip(walks, made_joint(seed=5), made_joint(seed=5))) is None
-    assert weighed_foot({"knee_angle": replace(walks, device=loaded(5, 1.2, 5.0))}) is None
+    assert weigh_foot(knee_and_hip(walks, loaded(5, 1.2, 5.0), loaded(6, -0.4, 5.0))) is None
+    assert weigh_foot(knee_and_hip(walks, made_joint(seed=5), made_joint(seed=5))) is None
+    assert weigh_foot({"knee_angle": replace(walks, device=loaded(5, 1.2, 5.0))}) is None
 
 
 def test_the_size_of_what_is_named_at_a_hip_without_electrodes_on_its_deep_muscles_is_doubted(walks):
@@ -258,12 +258,12 @@ def test_a_walk_without_emg_has_one_verdict(monkeypatch, verdict):
         participant=lambda _: SimpleNamespace(id="W01", trials=()), conditions=one_walk().conditions
     )
     monkeypatch.setattr("gaitdisc.ingest.study_file.load_study", lambda _: study)
-    monkeypatch.setattr("gaitdisc.ingest.public_words.words_of", lambda *_: PublicWords())
+    monkeypatch.setattr("gaitdisc.ingest.public_words.list_words", lambda *_: PublicWords())
     monkeypatch.setattr(PersonWalks, "calibrated", refused)
     monkeypatch.setattr("gaitdisc.discovery.device_study.against", lambda study, _: study)
     monkeypatch.setattr("gaitdisc.discovery.nominal_model.nominal_and_trials", lambda *_: (None, None))
     compared = manufactured(sentence=verdict)
-    monkeypatch.setattr("gaitdisc.discovery.discover_files.discovered", lambda *_: (compared, None))
+    monkeypatch.setattr("gaitdisc.discovery.discover_files.find_missing", lambda *_: (compared, None))
     found, _ = discover_study(Path("study.toml"), "W01")["exo"]
     reason, _, said = found.sentence.partition(". ")
     assert reason == (

@@ -50,16 +50,16 @@ def test_degrees_for_radians_and_a_column_that_is_not_there_are_refused(lab, tmp
 
 
 def test_a_coordinate_that_no_column_shows_is_refused(lab):
-    from gaitdisc.discovery.discover_engine import measured_of_file, refuse_unmeasured
+    from gaitdisc.discovery.discover_engine import read_trials, refuse_unmeasured
     from gaitdisc.engines.engine import read_model
-    from gaitdisc.engines.mapping import drafted
+    from gaitdisc.engines.mapping import draft
     from gaitdisc.errors import ChannelError
 
     model = read_model(lab / "pendulum.xml")
-    mapping = drafted(model)
+    mapping = draft(model)
     blind = replace(mapping, observations=(("pivot", "drive"),), sensors=())
     with pytest.raises(ChannelError, match="no column shows 'pivot'"):
-        refuse_unmeasured(blind, model, measured_of_file(lab / "trials.csv", blind))
+        refuse_unmeasured(blind, model, read_trials(lab / "trials.csv", blind))
 
 
 def test_what_was_found_goes_into_the_mapping(lab):
@@ -68,10 +68,10 @@ def test_what_was_found_goes_into_the_mapping(lab):
     from gaitdisc.discovery.discover_engine import _NOTHING
     from gaitdisc.discovery.fit_by_engine import EngineFit
     from gaitdisc.engines.engine import read_model
-    from gaitdisc.engines.mapping import drafted
+    from gaitdisc.engines.mapping import draft
 
     engine = read_model(lab / "pendulum.xml")
-    mapping = drafted(engine)
+    mapping = draft(engine)
     slow = {"z": "pivot_speed - z/_tau"}
     late = Part(Candidate("input_error", "input", "drive", "input_delay"), {"seconds": 0.04})
     mass = Part(Candidate("wrong_parameter", "parameter", "rod_mass", "wrong_parameter"), {"value": 2.1})
@@ -84,20 +84,20 @@ def test_what_was_found_goes_into_the_mapping(lab):
 
 
 def test_what_the_engine_itself_does_not_bear_out_is_taken_back():
-    from gaitdisc.discovery.discover_engine import unconfirmed
+    from gaitdisc.discovery.discover_engine import withdraw_effects
 
     said = manufactured()
-    found = unconfirmed(said, type("Runs", (), {"engine": "MuJoCo"})())
+    found = withdraw_effects(said, type("Runs", (), {"engine": "MuJoCo"})())
     assert (found.verdict, found.effects) == ("unexplained", ())
     assert found.rivals == (*said.effects, *said.rivals)
     assert says(found.sentence, "Not proven", "one-sided spring", "ankle_moment", "MuJoCo's", "without")
 
 
 def test_what_mujoco_warns_of_is_a_finding_said_once():
-    from gaitdisc.discovery.discover_engine import _warned
+    from gaitdisc.discovery.discover_engine import _list_warnings
 
     model = type("Model", (), {"called": "MuJoCo", "warnings": ("Nan in QACC.",)})()
-    (finding,) = _warned(model, model)
+    (finding,) = _list_warnings(model, model)
     assert (finding.severity, finding.what) == ("warning", "MuJoCo warns: Nan in QACC.")
 
 

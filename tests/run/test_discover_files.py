@@ -12,7 +12,7 @@ from manufactured_discovery import manufactured
 
 import gaitdisc as gd
 from gaitdisc.discovery.catalogue import Request
-from gaitdisc.discovery.discover_files import discover_files, sealed
+from gaitdisc.discovery.discover_files import discover_files, seal
 from gaitdisc.discovery.folder import save_discovery
 from gaitdisc.discovery.page import write_discovery_report
 from gaitdisc.errors import SamplingError, SchemaError
@@ -55,7 +55,7 @@ def test_names_of_people_are_hidden_in_what_is_written_and_held_by_python(tmp_pa
     found = manufactured(sentence="Erika is late.", findings=(seen, Finding("note", "limit", "model", "knee", "")))
     size, runs = replace(found.held_out, of="trial Erika"), replace(found.runs, names=data.trials)
     found = replace(found, held_out=size, runs=runs)
-    held = sealed(found, system({"x": "-x"}), data, {})
+    held = seal(found, system({"x": "-x"}), data, {})
     assert (held.sentence, held.runs.names, held.findings) == ("Erika is late.", data.trials, found.findings)
     save_discovery(held, tmp_path)
     text = (tmp_path / "discovery.json").read_text() + (tmp_path / "held_out.csv").read_text()

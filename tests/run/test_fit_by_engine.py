@@ -36,7 +36,7 @@ def test_the_engines_own_runs_bring_a_number_to_the_truth(tmp_path, change, part
 
     from gaitdisc.discovery.result import FoundEffect
     from gaitdisc.engines.engine import read_model
-    from gaitdisc.engines.mapping import drafted
+    from gaitdisc.engines.mapping import draft
     from gaitdisc.engines.motion import Motion
 
     (tmp_path / "plain.xml").write_text(PENDULUM)
@@ -48,7 +48,7 @@ def test_the_engines_own_runs_bring_a_number_to_the_truth(tmp_path, change, part
     seen = whole[:, :, :1] + 0.003 * rng.normal(size=(3, 300, 1))
     seen = low_pass.filtered(seen, 1)
     measured = Measured(Drive.of(controls, 100.0), seen, tuple("123"), ("pivot",))
-    fit = EngineFit(drafted(plain), plain, measured, whole, (part,), low_pass)
+    fit = EngineFit(draft(plain), plain, measured, whole, (part,), low_pass)
     effect = FoundEffect(part.candidate.kind, part.candidate.place, part.candidate.name, "")
     found = fit.fitted(replace(_NOTHING, effects=(effect,)), fit.mapping, base_runs(plain, fit))
     one = found.effects[0].estimates[number]

@@ -6,7 +6,7 @@ from made_joint import GAIN, made_joint
 
 from gaitdisc.discovery.catalogue import Request
 from gaitdisc.discovery.discover import discover
-from gaitdisc.discovery.joint_and_trials import nominal_moment, tracked_joint, tracked_trials, weighed
+from gaitdisc.discovery.joint_and_trials import cut_walk_trials, joint_model, nominal_moment, weighed
 from gaitdisc.errors import ChannelError, StrideError
 
 SLOW = pytest.mark.slow  # a whole discovery
@@ -18,8 +18,8 @@ def model():
 
 
 def found_in(record, model):
-    simulation = tracked_joint(record, model)
-    return discover(simulation, tracked_trials(record, model, simulation), Request(possible=weighed))[0]
+    simulation = joint_model(record, model)
+    return discover(simulation, cut_walk_trials(record, model, simulation), Request(possible=weighed))[0]
 
 
 def test_the_nominal_walk_gives_each_muscle_its_gain_and_sign(model):
@@ -61,7 +61,7 @@ def test_weak_muscles_are_named_with_their_strength(model):
 def test_too_few_strides_are_refused_with_their_number(model):
     record = made_joint(strides=9)
     with pytest.raises(StrideError, match=r"4 times 3.*9 strides"):
-        tracked_trials(record, model, tracked_joint(record, model))
+        cut_walk_trials(record, model, joint_model(record, model))
 
 
 def test_a_joint_without_a_muscle_of_its_own_is_refused():

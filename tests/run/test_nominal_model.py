@@ -4,7 +4,7 @@ import pytest
 from gaitdisc.cohort.demonstration import write_demonstration
 from gaitdisc.discovery.nominal_model import nominal_and_trials, nominal_model, stride_trials
 from gaitdisc.errors import StrideError
-from gaitdisc.processing.processed_walks import processed_walks
+from gaitdisc.processing.processed_walks import process_walks
 from gaitdisc.simulation.running import compile_simulation
 
 
@@ -15,7 +15,7 @@ def study(tmp_path_factory):
 
 @pytest.fixture(scope="module")
 def nominal(study):
-    return processed_walks(study, study.participant("W01"))[0]["nominal"]
+    return process_walks(study, study.participant("W01"))[0]["nominal"]
 
 
 def test_the_model_explains_the_acceleration_of_its_own_walk(nominal):

@@ -14,20 +14,20 @@ from gaitdisc.ingest.reading import read_trial
 from gaitdisc.ingest.storage import write_storage
 from gaitdisc.ingest.study import Conditions, Filters, Kinematics, Models, Participant, PlannedTrial, StrideRules, Study
 from gaitdisc.processing.processed_walks import (
-    computed_cycles,
+    compute_cycles,
     cycles_key,
-    processed_walks,
+    process_walks,
     response_key,
     unit_key,
     unit_keys,
     walks_and_errors,
 )
 from gaitdisc.response.participant_response import load_run
-from gaitdisc.run.run_study import computed_unit, run_study
+from gaitdisc.run.run_study import compute_unit, run_study
 
 
 def test_both_walks_say_what_the_models_leave_away(study):
-    walks, refusals = processed_walks(study, study.participants[0])
+    walks, refusals = process_walks(study, study.participants[0])
     assert (list(walks), refusals) == (["nominal", "exo"], ())
     assert all(walk.findings[-1].severity == "note" for walk in walks.values())
 
@@ -39,7 +39,7 @@ def test_one_walk_that_cannot_be_read_leaves_the_other(study):
     walks, errors = walks_and_errors(study, person)
     assert (list(walks), list(errors)) == (["nominal"], ["exo"])
     assert isinstance(errors["exo"], ReadError)
-    assert processed_walks(study, person)[1][0].reason == str(errors["exo"])
+    assert process_walks(study, person)[1][0].reason == str(errors["exo"])
 
 
 @pytest.fixture(scope="module")
@@ -58,8 +58,8 @@ def of_markers(study, tmp_path_factory):
 
 
 def test_walks_of_markers_are_the_walks_of_their_angles(study, of_markers):
-    found, refusals = processed_walks(of_markers, of_markers.participants[0])
-    given, _ = processed_walks(study, study.participants[0])
+    found, refusals = process_walks(of_markers, of_markers.participants[0])
+    given, _ = process_walks(study, study.participants[0])
     assert not refusals
     for word, walk in found.items():
         np.testing.assert_allclose(walk.state.values, given[word].state.values, atol=1e-3)  # C3D holds 32 bits
@@ -106,10 +106,10 @@ def overground(laboratory):
 
 def test_cycles_are_pooled_kept_and_not_computed_twice(overground, tmp_path, monkeypatch):
     person = overground.participants[1]
-    (first,) = computed_cycles(overground, person, tmp_path)
+    (first,) = compute_cycles(overground, person, tmp_path)
     assert first.trials == 3 and first.counted("r") >= 6
-    monkeypatch.setattr("gaitdisc.processing.pooled.pooled_cycles", None)  # would fail if it were called
-    (again,) = computed_cycles(overground, person, tmp_path)
+    monkeypatch.setattr("gaitdisc.processing.pooled.pool_cycles", None)  # would fail if it were called
+    (again,) = compute_cycles(overground, person, tmp_path)
     assert again.cycles.equals(first.cycles)
 
 
@@ -150,18 +150,18 @@ def test_controls_without_the_device_are_pooled_beside_those_who_are_compared(ov
     with_device = overground.model_copy(
         update={"conditions": Conditions(nominal="walk", device="exo"), "participants": (control, lonely)}
     )
-    unit = computed_unit(with_device, control, tmp_path, lambda _: None)
+    unit = compute_unit(with_device, control, tmp_path, lambda _: None)
     assert unit.cycles and not unit.refusals and says(unit.unfitted, "P02", "3", "'walk', none", "'exo'")
-    refused = computed_unit(with_device, lonely, tmp_path, lambda _: None)
+    refused = compute_unit(with_device, lonely, tmp_path, lambda _: None)
     assert not refused.cycles and says(refused.refusals[0].reason, "P01", "4", "'walk', none", "'exo'")
 
 
 def test_a_file_that_could_not_be_read_is_tried_again(overground, laboratory, tmp_path):
-    assert computed_cycles(overground, overground.participants[0], tmp_path)[0].refusals
+    assert compute_cycles(overground, overground.participants[0], tmp_path)[0].refusals
     broken, text = laboratory / "Erika_9.mot", (laboratory / "Erika_9.mot").read_text()
     broken.write_text((laboratory / "Erika_0.mot").read_text())
     try:
-        (mended,) = computed_cycles(overground, overground.participants[0], tmp_path)
+        (mended,) = compute_cycles(overground, overground.participants[0], tmp_path)
     finally:
         broken.write_text(text)
     assert mended.refusals == () and mended.trials == 4
@@ -174,11 +174,11 @@ def test_two_short_walks_over_ground_that_no_model_can_use_are_pooled(overground
     person = overground.participants[1].model_copy(update={"trials": trials})
     parts = {"conditions": Conditions(nominal="walk", device="exo"), "participants": (person,)}
     models = Models(angles=ANGLES, outputs=("knee_angle_r",))
-    unit = computed_unit(overground.model_copy(update={**parts, "models": models}), person, tmp_path, lambda _: None)
+    unit = compute_unit(overground.model_copy(update={**parts, "models": models}), person, tmp_path, lambda _: None)
     assert [one.condition for one in unit.cycles] == ["walk", "exo"] and all(len(one.kept) for one in unit.cycles)
     assert not unit.refusals and "10 are needed" in unit.unfitted
     treadmill = {**parts, "models": models, "strides": StrideRules(ground="treadmill")}
-    refused = computed_unit(overground.model_copy(update=treadmill), person, tmp_path / "other", lambda _: None)
+    refused = compute_unit(overground.model_copy(update=treadmill), person, tmp_path / "other", lambda _: None)
     assert not refused.cycles and [refusal.condition for refusal in refused.refusals] == ["walk", "exo"]
 
 

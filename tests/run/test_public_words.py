@@ -4,16 +4,16 @@ import pytest
 from texts import says
 
 from gaitdisc.errors import ReadError
-from gaitdisc.ingest.public_words import PublicWords, package_words, words_of
+from gaitdisc.ingest.public_words import PublicWords, list_words, package_words
 from gaitdisc.ingest.study import Kinematics
 
 
 def test_a_name_is_hidden_and_a_file_is_called_by_its_participant(study):
     [person, other] = study.participants
-    public = words_of(study, person)
+    public = list_words(study, person)
     assert says(public.said("P01_exo.mot, line 31: 'Erika Mustermann'"), "P01", "1, line 31", "'…'")
     assert says(public.said("Zq2_exo.mot: knee_angle_r is 'x'"), "knee_angle_r", "'x'")
-    assert words_of(study, other).files["P02_nominal.mot"] == "P02 nominal, file 1"
+    assert list_words(study, other).files["P02_nominal.mot"] == "P02 nominal, file 1"
 
 
 @pytest.mark.parametrize("word", ["Mustermann", "erika", "Zqtoken_knee", "knee_Zqtoken", "19700102a3b", "Müller"])

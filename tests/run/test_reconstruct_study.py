@@ -8,7 +8,7 @@ import torch
 from texts import says
 
 from gaitdisc.channel import Channel
-from gaitdisc.cohort.cohort import the_twelve, walks_of
+from gaitdisc.cohort.cohort import make_walks, the_twelve
 from gaitdisc.cohort.demonstration import write_demonstration
 from gaitdisc.errors import ChannelError, SamplingError, SchemaError, TrainingError, UnitError
 from gaitdisc.ingest.reading import read_trial
@@ -23,7 +23,7 @@ from gaitdisc.reconstruction.reconstruct_study import (
     reconstruct_study,
     search_study,
 )
-from gaitdisc.reconstruction.sensed_walks import EDGE_S, sensed_walks, target_walk
+from gaitdisc.reconstruction.sensed_walks import EDGE_S, read_walks, target_walk
 from gaitdisc.recording import Recording
 
 KINDS = ("linear", "delay ridge")
@@ -183,7 +183,7 @@ def test_missing_readings_are_bridged_on_request(model, recordings, tmp_path):
 
 
 def test_every_walk_is_filtered_trimmed_and_cut_into_strides(study):
-    walks = sensed_walks(study, ("knee_angle_r",))
+    walks = read_walks(study, ("knee_angle_r",))
     assert list(walks.people) == ["P01", "P02"]
     assert [len(found) for found in walks.people.values()] == [2, 2]
     walk = walks.people["P01"][0]
@@ -195,23 +195,23 @@ def test_every_walk_is_filtered_trimmed_and_cut_into_strides(study):
 
 
 def test_one_condition_alone(study):
-    assert [len(found) for found in sensed_walks(study, ("knee_angle_r",), "exo").people.values()] == [1, 1]
+    assert [len(found) for found in read_walks(study, ("knee_angle_r",), "exo").people.values()] == [1, 1]
 
 
 def test_a_sensor_that_was_not_recorded(study):
     with pytest.raises(ChannelError, match=r"refused, the first.*'knee_ange_r'"):
-        sensed_walks(study, ("knee_ange_r",))
+        read_walks(study, ("knee_ange_r",))
 
 
 def test_other_quantities_than_movement(tmp_path):
     study = write_demonstration(tmp_path, 15.0, 1)
-    walks = sensed_walks(study, ("knee_angle_r",), "nominal", "forces")
+    walks = read_walks(study, ("knee_angle_r",), "nominal", "forces")
     assert [channel.unit for channel in walks.channels] == ["deg", "N", "N", "N", "N"]
     [walk] = walks.people["W01"]
     assert len(walk.phi) == len(walk.recording.time)
     assert np.isfinite(walk.phi).mean() > 0.8
     with pytest.raises(SchemaError, match="'torque'"):
-        sensed_walks(study, ("knee_angle_r",), "nominal", "torque")
+        read_walks(study, ("knee_angle_r",), "nominal", "torque")
 
 
 def test_one_unit_in_all_walks(study, tmp_path):
@@ -224,7 +224,7 @@ def test_one_unit_in_all_walks(study, tmp_path):
         people.append(person.model_copy(update={"trials": (person.trials[0].model_copy(update={"files": files}),)}))
     both = study.model_copy(update={"participants": tuple(people)})
     with pytest.raises(UnitError, match=r"emg_sol_r.*'V'.*'1'"):
-        sensed_walks(both, ("knee_angle_r",), targets="emg")
+        read_walks(both, ("knee_angle_r",), targets="emg")
 
 
 SENSORS = ("hip_flexion_r", "knee_angle_r")
@@ -233,7 +233,7 @@ STUDY = Study(conditions=Conditions(nominal="nominal", device="exo"), participan
 
 @pytest.fixture(scope="module")
 def trial():
-    return walks_of(the_twelve()[0], 12.0).trials["nominal"]
+    return make_walks(the_twelve()[0], 12.0).trials["nominal"]
 
 
 def with_stream(trial, key, recording):

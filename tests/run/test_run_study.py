@@ -14,7 +14,7 @@ from texts import says
 
 from gaitdisc.ingest.study_file import write_study
 from gaitdisc.response.participant_response import load_run
-from gaitdisc.run.run_study import computed_unit, run_study
+from gaitdisc.run.run_study import compute_unit, run_study
 from gaitdisc.run.workers import Workers
 
 
@@ -102,7 +102,7 @@ def test_what_was_edited_is_never_printed_but_computed_again_and_said(run, study
 def killed_for_the_second(study, participant, folder, progress):
     if participant.id == "P02":
         os.kill(os.getpid(), signal.SIGKILL)
-    return computed_unit(study, participant, folder, progress)
+    return compute_unit(study, participant, folder, progress)
 
 
 @pytest.mark.slow  # tests/run/test_workers.py kills a process that computes next to nothing
@@ -110,7 +110,7 @@ def test_a_participant_whose_process_is_killed_is_refused_and_the_others_stand(
     run, study, finished, tmp_path, monkeypatch
 ):
     copy = shutil.copytree(finished, tmp_path / "copy")
-    monkeypatch.setattr("gaitdisc.run.run_study.computed_unit", killed_for_the_second)
+    monkeypatch.setattr("gaitdisc.run.run_study.compute_unit", killed_for_the_second)
     done = run_study(study, copy, Workers(jobs=2))
     assert [response.participant for response in done.responses] == ["P01"]
     [refusal] = done.refusals
@@ -147,7 +147,7 @@ def alone(study, **changes):
 
 def test_the_device_is_what_the_augmented_model_adds(study, tmp_path):
     shares = []
-    unit = computed_unit(study, study.participants[0], tmp_path, shares.append)
+    unit = compute_unit(study, study.participants[0], tmp_path, shares.append)
     response = unit.response
     assert response is not None
     nominal, augmented, exo = (response.r2_of("ankle_angle_r", model) for model in ("nominal", "augmented", "exo"))
@@ -162,7 +162,7 @@ def test_the_device_is_what_the_augmented_model_adds(study, tmp_path):
 
 def test_one_condition_only_is_refused_by_name(study, tmp_path):
     lonely, person = alone(study, trials=study.participants[0].trials[:1])
-    unit = computed_unit(lonely, person, tmp_path, lambda _: None)
+    unit = compute_unit(lonely, person, tmp_path, lambda _: None)
     assert unit.response is None
     assert says(unit.refusals[0].reason, "P01", "1", "'nominal', none", "'exo'")
 
@@ -171,7 +171,7 @@ def test_two_trials_of_one_condition_are_pooled_and_not_chosen_between(study, tm
     first, second = study.participants[0].trials
     halves = [first.model_copy(update={"crop_s": crop}) for crop in ((0.0, 15.0), (15.0, 30.0))]
     twice, person = alone(study, trials=(*halves, second))
-    unit = computed_unit(twice, person, tmp_path, lambda _: None)
+    unit = compute_unit(twice, person, tmp_path, lambda _: None)
     assert says(unit.unfitted, "P01", "2", "'nominal', 1", "'exo'")
     assert unit.response is None and unit.refusals == ()
     nominal, exo = unit.cycles
@@ -182,11 +182,11 @@ def test_two_trials_of_one_condition_are_pooled_and_not_chosen_between(study, tm
 
 def test_an_excluded_person_is_left_out_with_the_reason(study, tmp_path):
     without, person = alone(study, excluded="changed shoes")
-    assert computed_unit(without, person, tmp_path, lambda _: None).refusals[0].reason.endswith("changed shoes")
+    assert compute_unit(without, person, tmp_path, lambda _: None).refusals[0].reason.endswith("changed shoes")
 
 
 def test_a_held_out_part_longer_than_the_trial_is_refused(study, tmp_path):
     held = study.held_out.model_copy(update={"seconds": 60.0, "share": None})
-    unit = computed_unit(study.model_copy(update={"held_out": held}), study.participants[0], tmp_path, lambda _: None)
+    unit = compute_unit(study.model_copy(update={"held_out": held}), study.participants[0], tmp_path, lambda _: None)
     assert says(unit.refusals[0].reason, "too short to hold out", "60 s")
     assert len(unit.walks) == 2

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from texts import says
 
-from gaitdisc.discovery.discover_tracked import discovery_of, doubts, joints_of, shown_by
+from gaitdisc.discovery.discover_tracked import doubts, make_discovery, search_joints, summarise_joint
 from gaitdisc.discovery.tracked_pass import (
     balance,
     moments_of_angle_noise,
@@ -64,7 +64,7 @@ def searched(walk, moment=None, seed=1):
         pulls = noisy.pulls.copy()
         pulls[:, 1, 2] -= moment
         noisy = replace(noisy, pulls=pulls)
-    return joints_of(noisy, moments_of_angle_noise(walk, 0.3))[1]
+    return search_joints(noisy, moments_of_angle_noise(walk, 0.3))[1]
 
 
 @pytest.mark.parametrize("seed", [1, 2, 3])
@@ -91,14 +91,14 @@ def test_a_spring_and_late_and_weak_muscles_are_named_at_their_joint(leg_walk):
 
 def test_a_joint_says_what_it_shows_and_warns_of_what_has_no_name(leg_walk):
     walk = leg_walk()
-    said = shown_by(walk, 2, searched(walk)[1])
+    said = summarise_joint(walk, 2, searched(walk)[1])
     assert (
         said.severity == "note"
         and "it would show a spring from" in said.what
         and "% of its lowering muscles" in said.what
     )
     odd = 30 * np.sign(np.sin(2 * np.pi * 3.1 * walk.motion.time))
-    unnamed = shown_by(walk, 2, searched(walk, odd)[1])
+    unnamed = summarise_joint(walk, 2, searched(walk, odd)[1])
     assert unnamed.kind == "without a name" and doubts([said]) == []
     (doubt,) = doubts([said, unnamed])
     assert says(doubt.what, "1 of 2 joints", "no", "left, 3 times", "more")
@@ -109,14 +109,14 @@ def test_a_walk_of_half_a_second_is_refused(leg_walk):
     walk = leg_walk()
     short = replace(walk, motion=replace(walk.motion, time=walk.motion.time[:30]))
     with pytest.raises(SamplingError, match=r"0.83 s.*more.*6 Hz.*0.48 s"):
-        joints_of(short, np.zeros((1, 1, 3)))
+        search_joints(short, np.zeros((1, 1, 3)))
 
 
 def answered(walk, moment):
     pulls = walk.pulls.copy()
     pulls[:, 1, 2] -= moment
     noise = np.random.default_rng(0).normal(0, 0.5, (4, len(walk.times), 3))
-    return discovery_of(*joints_of(replace(walk, pulls=pulls), noise))
+    return make_discovery(*search_joints(replace(walk, pulls=pulls), noise))
 
 
 def test_a_named_spring_stands_with_its_numbers_and_the_gap_that_it_closes(leg_walk):
@@ -136,4 +136,4 @@ def test_a_named_spring_stands_with_its_numbers_and_the_gap_that_it_closes(leg_w
 def test_where_nothing_is_left_nothing_is_named(leg_walk):
     found = answered(leg_walk(), 0.0)
     assert (found.verdict, found.effects) == ("no_gap", ())
-    assert discovery_of(joints_of(leg_walk(), np.ones((1, 48, 3)))[0], []).runs.measured.size == 0
+    assert make_discovery(search_joints(leg_walk(), np.ones((1, 48, 3)))[0], []).runs.measured.size == 0

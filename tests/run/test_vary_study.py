@@ -6,7 +6,7 @@ from texts import says
 from gaitdisc.errors import SchemaError
 from gaitdisc.response.variants import Variants, load_variant_run
 from gaitdisc.response.vary import ALL, AS_STUDIED
-from gaitdisc.run.vary_study import computed_variants, vary_study
+from gaitdisc.run.vary_study import compute_variants, vary_study
 from gaitdisc.run.workers import Workers
 from gaitdisc.saved.provenance import Refusal
 
@@ -34,7 +34,7 @@ def test_a_question_that_is_none(study, tmp_path):
 
 def computed(study, folder, question):
     shares = []
-    found = computed_variants(study, study.participants[0], folder, question, shares.append)
+    found = compute_variants(study, study.participants[0], folder, question, shares.append)
     return found, shares
 
 
@@ -79,7 +79,7 @@ def test_a_file_that_cannot_be_read_refuses_this_participant(study, tmp_path):
     gone = study.participants[0].trials[0].model_copy(update={"files": ("gone.mot",)})
     person = study.participants[0].model_copy(update={"trials": (gone, study.participants[0].trials[1])})
     for question in ("modalities", "sensitivity"):
-        refused = computed_variants(study, person, tmp_path, question, lambda _: None)
+        refused = compute_variants(study, person, tmp_path, question, lambda _: None)
         assert isinstance(refused, Refusal)
         assert says(refused.reason, "1", "be read") and "gone.mot" not in refused.reason
     assert not list(Path(tmp_path).rglob("variants.json"))

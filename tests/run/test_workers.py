@@ -10,9 +10,9 @@ from gaitdisc.run.workers import (
     ClusterError,
     Lost,
     Workers,
-    computed_in_processes,
-    computed_side_by_side,
-    computed_units,
+    compute_in_processes,
+    compute_side_by_side,
+    compute_units,
 )
 
 WITHOUT_CLUSTER = "the extra 'cluster' is not installed"
@@ -59,7 +59,7 @@ def test_here_is_one_process():
 @pytest.mark.parametrize("jobs", [1, 2])
 def test_units_come_in_order_and_everybody_is_reported(study, jobs):
     shares = []
-    found = computed_units(
+    found = compute_units(
         Workers(jobs=jobs), named_after_half, study.participants, lambda who, share: shares.append((who, share)), str
     )
     assert list(found) == ["P01", "P02"]
@@ -74,7 +74,7 @@ def killed_for_the_second(*, participant, progress):
 
 
 def test_a_participant_whose_process_is_killed_is_refused(study):
-    found = computed_units(
+    found = compute_units(
         Workers(jobs=2), killed_for_the_second, study.participants, lambda *_: None, lambda lost: lost
     )
     first, second = found
@@ -86,7 +86,7 @@ def test_a_participant_whose_process_is_killed_is_refused(study):
 def test_a_cluster_computes_every_unit():
     distributed = pytest.importorskip("distributed", reason=WITHOUT_CLUSTER)
     with distributed.LocalCluster(n_workers=1, processes=False, dashboard_address=None) as here:
-        found = list(computed_side_by_side(Workers(cluster=here.scheduler_address), squared, [3, 1, 2]))
+        found = list(compute_side_by_side(Workers(cluster=here.scheduler_address), squared, [3, 1, 2]))
     assert found == [(3, 9), (1, 1), (2, 4)]
 
 
@@ -94,7 +94,7 @@ def test_a_cluster_computes_every_unit():
 def test_a_worker_that_is_killed_in_the_middle_costs_nothing(cluster, tmp_path):
     from functools import partial
 
-    found = list(computed_side_by_side(Workers(cluster=cluster), partial(dies_once, str(tmp_path)), [1, 2, 3, 4]))
+    found = list(compute_side_by_side(Workers(cluster=cluster), partial(dies_once, str(tmp_path)), [1, 2, 3, 4]))
     assert found == [(1, 1), (2, 4), (3, 9), (4, 16)]
     assert (tmp_path / "died").exists()
 
@@ -114,7 +114,7 @@ def test_a_scheduler_that_does_not_answer(monkeypatch):
     pytest.importorskip("distributed", reason=WITHOUT_CLUSTER)
     monkeypatch.setattr("gaitdisc.run.workers.CONNECT_S", 0.5)
     with pytest.raises(ClusterError, match=r"tcp://127.0.0.1:9.*omit --cluster"):
-        list(computed_side_by_side(Workers(cluster="tcp://127.0.0.1:9"), squared, [1]))
+        list(compute_side_by_side(Workers(cluster="tcp://127.0.0.1:9"), squared, [1]))
 
 
 def squared_or_killed(number, folder="", victim=3, kills=0, wait_s=0.0):
@@ -144,12 +144,12 @@ def computed(folder):
 
 
 def test_units_come_in_order(tmp_path):
-    assert list(computed_in_processes(2, Squared(tmp_path), [3, 1, 2])) == [(3, 9), (1, 1), (2, 4)]
-    assert list(computed_in_processes(2, Squared(tmp_path), [])) == []
+    assert list(compute_in_processes(2, Squared(tmp_path), [3, 1, 2])) == [(3, 9), (1, 1), (2, 4)]
+    assert list(compute_in_processes(2, Squared(tmp_path), [])) == []
 
 
 def test_a_process_that_is_killed_once_costs_nothing_but_its_own_time(tmp_path):
-    found = list(computed_in_processes(2, Squared(tmp_path, kills=1, wait_s=0.3), [1, 2, 3, 4, 5]))
+    found = list(compute_in_processes(2, Squared(tmp_path, kills=1, wait_s=0.3), [1, 2, 3, 4, 5]))
     assert found == [(1, 1), (2, 4), (3, 9), (4, 16), (5, 25)]
     assert (tmp_path / "killed0").exists()
     assert computed(tmp_path) == dict.fromkeys((1, 2, 3, 4, 5), 1), "somebody else was computed again"
@@ -157,7 +157,7 @@ def test_a_process_that_is_killed_once_costs_nothing_but_its_own_time(tmp_path):
 
 @pytest.mark.parametrize("victim", [1, *(pytest.param(one, marks=pytest.mark.slow) for one in (3, 5))])
 def test_a_process_that_is_killed_twice_is_lost_in_words_and_the_others_are_not(tmp_path, victim):
-    found = dict(computed_in_processes(2, Squared(tmp_path, victim=victim, kills=9), [1, 2, 3, 4, 5]))
+    found = dict(compute_in_processes(2, Squared(tmp_path, victim=victim, kills=9), [1, 2, 3, 4, 5]))
     lost = found.pop(victim)
     assert isinstance(lost, Lost)
     assert says(lost.reason, "(SIGKILL)", "2 times") and says(lost.reason, "--jobs 1", "more")
@@ -171,7 +171,7 @@ def too_large(_):
 
 
 def test_memory_that_runs_out_is_as_a_kill():
-    [(_, lost)] = computed_in_processes(1, too_large, [1])
+    [(_, lost)] = compute_in_processes(1, too_large, [1])
     assert says(lost.reason, "2 times", "memory") and says(lost.reason, "use a machine", "more")
 
 
@@ -181,7 +181,7 @@ def wrong(_):
 
 def test_a_defect_is_not_hidden():
     with pytest.raises(KeyError, match="a defect"):
-        list(computed_in_processes(2, wrong, [1, 2]))
+        list(compute_in_processes(2, wrong, [1, 2]))
 
 
 class Unreadable:
@@ -193,11 +193,11 @@ class Unreadable:
 
 def test_what_cannot_be_sent_is_no_kill():
     with pytest.raises(RuntimeError, match="un-serialize"):
-        list(computed_in_processes(1, squared_or_killed, [Unreadable()]))
+        list(compute_in_processes(1, squared_or_killed, [Unreadable()]))
 
 
 def test_whoever_stops_listening_stops_the_processes(tmp_path):
-    units = computed_in_processes(2, Squared(tmp_path, wait_s=1.0), list(range(10)))
+    units = compute_in_processes(2, Squared(tmp_path, wait_s=1.0), list(range(10)))
     next(units)
     units.close()
     time.sleep(2.5)

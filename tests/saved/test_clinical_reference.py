@@ -12,7 +12,7 @@ from texts import says
 from gaitdisc.clinic.clinical_reference import FILE, Limits, Score, load_reference, read_published, save_reference
 from gaitdisc.clinic.reading import read_beside
 from gaitdisc.errors import SchemaError
-from gaitdisc.saved.unit_folder import sealed_text
+from gaitdisc.saved.unit_folder import seal_text
 
 
 def test_every_second_percent_becomes_a_band_on_101_points(tmp_path):
@@ -83,10 +83,10 @@ def test_what_was_changed_or_is_no_reference_is_refused(tmp_path):
         load_reference(tmp_path)
     del data["own_sha256"]
     data["legs"]["walk"][0]["curves"]["knee_flexion"].pop()
-    path.write_text(sealed_text(data))
+    path.write_text(seal_text(data))
     with pytest.raises(SchemaError, match="not have 101 points"):
         load_reference(tmp_path)
-    path.write_text(sealed_text({**data, "format": 9}))
+    path.write_text(seal_text({**data, "format": 9}))
     with pytest.raises(SchemaError, match="format 1"):
         load_reference(tmp_path)
 

@@ -28,7 +28,7 @@ from gaitdisc.response.variants import (
 from gaitdisc.run.run_study import REFUSED, Refused
 from gaitdisc.saved.provenance import Refusal
 from gaitdisc.saved.study_run import save_run
-from gaitdisc.saved.unit_folder import damaged_units, unit_name
+from gaitdisc.saved.unit_folder import damage_lines, unit_name
 
 SEED, MUTATIONS = 11, 20
 DEEP = "[" * 20_000
@@ -100,7 +100,7 @@ def mutated(content, chance):
 def test_the_whole_run_is_read(folder):
     for place in LOAD:
         read(folder, place)
-    assert damaged_units(folder) == ()
+    assert damage_lines(folder) == ()
 
 
 @pytest.mark.parametrize("place", LOAD)
@@ -117,7 +117,7 @@ def test_damaged_bytes_are_refused_in_words(folder, place):
                 read(folder, place)
             except SchemaError as error:
                 assert f"{file.name} is " in str(error) and says(str(error), "`gaitdisc run` keeps")
-                assert len(damaged_units(folder)) == 1
+                assert len(damage_lines(folder)) == 1
             else:  # of the JSON file, blanks between its words alone
                 assert json.loads(content) == json.loads(whole)
         file.write_bytes(whole)
@@ -160,7 +160,7 @@ def test_an_edited_number_or_word_is_found(folder, place):
         file.write_text(json.dumps({**whole, key: other}))
         with pytest.raises(SchemaError, match=r"\.json is "):
             read(folder, place)
-        assert len(damaged_units(folder)) == 1
+        assert len(damage_lines(folder)) == 1
 
 
 def test_a_run_of_before_the_hash_says_so(folder):
@@ -170,7 +170,7 @@ def test_a_run_of_before_the_hash_says_so(folder):
         file.write_text(json.dumps(data))
     with pytest.raises(SchemaError, match=r"run\.json.*version of gaitdisc"):
         load_run(folder)
-    [line] = damaged_units(folder)
+    [line] = damage_lines(folder)
     assert line.startswith("modalities/people/P01/variants.json, ") and says(line, "5 more: without its own hash")
 
 

@@ -5,8 +5,8 @@ from gaitdisc.discovery.effect_words import (
     amount,
     at_place,
     brief_text,
+    display_unit,
     estimate_text,
-    shown_unit,
     spoken,
     with_unit,
     would_distinguish,
@@ -33,9 +33,9 @@ def test_digits_are_those_that_the_step_leaves(value, step, text):
 
 
 def test_only_angles_and_their_rates_are_turned_to_degrees():
-    assert shown_unit("rad/s^2")[0] == "deg/s^2"
-    assert shown_unit("N m s/rad") == ("N m s/rad", 1.0)
-    assert shown_unit("radish") == ("radish", 1.0)
+    assert display_unit("rad/s^2")[0] == "deg/s^2"
+    assert display_unit("N m s/rad") == ("N m s/rad", 1.0)
+    assert display_unit("radish") == ("radish", 1.0)
 
 
 def test_an_interval_that_is_not_known_is_not_said_and_a_negative_one_with_a_word():

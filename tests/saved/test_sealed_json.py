@@ -18,22 +18,22 @@ from gaitdisc.recording import Finding
 from gaitdisc.report.saved_page import draw_saved
 from gaitdisc.response.participant_response import RESPONSE, load_run
 from gaitdisc.response.participants_result import TESTS
-from gaitdisc.run.citations import citations_of
+from gaitdisc.run.citations import list_citations
 from gaitdisc.saved import kind as kinds
 from gaitdisc.saved import unit_folder
 from gaitdisc.saved.kind import Kind, Saved, load_saved
-from gaitdisc.saved.provenance import Refusal, code_sha256, installed_versions, made_now
-from gaitdisc.saved.study_run import UNITS, created_before, save_run
+from gaitdisc.saved.provenance import Refusal, code_sha256, list_versions, provenance_now
+from gaitdisc.saved.study_run import UNITS, keep_creation, save_run
 from gaitdisc.saved.unit_folder import (
     OWN,
     check_files,
     file_sha256,
     lies_on_disk,
+    load_finding,
     load_unit,
     read_sealed,
     save_unit,
-    sealed_text,
-    stored_finding,
+    seal_text,
     unit_name,
 )
 
@@ -44,13 +44,13 @@ NUMBERS = st.floats(allow_nan=False) | st.integers() | st.text() | st.booleans()
 @given(data=st.dictionaries(st.text().filter(lambda key: key != OWN), NUMBERS | st.lists(NUMBERS, max_size=3)))
 def test_what_is_written_is_read(tmp_path_factory, data):
     path = tmp_path_factory.mktemp("sealed") / "walk.json"
-    path.write_text(sealed_text(data), encoding="utf-8")
+    path.write_text(seal_text(data), encoding="utf-8")
     assert read_sealed(path) == json.loads(json.dumps(data))
 
 
 def test_another_order_and_another_editors_line_ends_change_nothing(tmp_path):
     path = tmp_path / "walk.json"
-    named = json.loads(sealed_text({"seconds": 60.0, "rate_hz": 100.0}))
+    named = json.loads(seal_text({"seconds": 60.0, "rate_hz": 100.0}))
     path.write_bytes(json.dumps(dict(reversed(named.items()))).replace(",", ",\r\n").encode())
     assert read_sealed(path) == {"seconds": 60.0, "rate_hz": 100.0}
 
@@ -67,7 +67,7 @@ def test_another_order_and_another_editors_line_ends_change_nothing(tmp_path):
 )
 def test_what_was_changed_is_refused(tmp_path, changed, words):
     path = tmp_path / "walk.json"
-    path.write_text(changed(sealed_text({"seconds": 60.0, "rate_hz": 100.0})))
+    path.write_text(changed(seal_text({"seconds": 60.0, "rate_hz": 100.0})))
     with pytest.raises(SchemaError, match=words):
         read_sealed(path)
 
@@ -145,7 +145,7 @@ def test_a_field_that_does_not_fit_the_schema_is_named(response, tmp_path):
 
 def test_a_finding_comes_back_as_it_was():
     gap = Finding("warning", "gap", "a.mot", "0.1 s missing", "the windows", "knee_angle_r", ((1.0, 1.1), (2.0, 2.3)))
-    assert stored_finding(json.loads(json.dumps(asdict(gap)))) == gap
+    assert load_finding(json.loads(json.dumps(asdict(gap)))) == gap
 
 
 def test_a_table_saved_under_an_earlier_name_of_a_column_has_the_name_of_today(tmp_path):
@@ -189,7 +189,7 @@ def test_no_result_is_refused(tmp_path):
 
 def test_a_fitted_model_has_neither_page_nor_citations(tmp_path):
     (tmp_path / "model.json").touch()
-    for refused in (draw_saved, citations_of):
+    for refused in (draw_saved, list_citations):
         with pytest.raises(SchemaError, match=r"model\.json, a fitted model"):
             refused(tmp_path)
 
@@ -231,12 +231,12 @@ def made_at(run, created):
 def test_a_run_that_repeats_the_saved_one_keeps_its_time(run, tmp_path):
     save_run(made_at(run, "2026-01-01T00:00:00+00:00"), tmp_path)
     later = made_at(run, "2026-02-02T00:00:00+00:00")
-    assert created_before(later, tmp_path).provenance.created.startswith("2026-01-01")
+    assert keep_creation(later, tmp_path).provenance.created.startswith("2026-01-01")
     other = replace(later, title="another title")
     renewed = replace(later, renewed=("walks/P01-exo",))
-    assert created_before(other, tmp_path) == other
-    assert created_before(renewed, tmp_path) == renewed
-    assert created_before(later, tmp_path / "empty") == later
+    assert keep_creation(other, tmp_path) == other
+    assert keep_creation(renewed, tmp_path) == renewed
+    assert keep_creation(later, tmp_path / "empty") == later
 
 
 def test_tables(run):
@@ -248,21 +248,21 @@ def test_tables(run):
 
 
 def test_versions_name_what_computes_the_numbers():
-    versions = installed_versions()
+    versions = list_versions()
     assert {"gaitdisc", "python", "numpy", "torch", "ezc3d"} <= set(versions)
     assert all(versions.values())
     assert code_sha256()[:12] in versions["gaitdisc"]
 
 
 def test_what_is_made_now_says_when_and_by_what():
-    made = made_now({"filters": {"order": 4}}, 3, {"a.mot": "ff"}, "4.2")
+    made = provenance_now({"filters": {"order": 4}}, 3, {"a.mot": "ff"}, "4.2")
     assert (made.settings, made.seed, made.files, made.section) == (
         {"filters": {"order": 4}},
         3,
         {"a.mot": "ff"},
         "4.2",
     )
-    assert made.versions == installed_versions()
+    assert made.versions == list_versions()
     assert timedelta(0) <= datetime.now(UTC) - datetime.fromisoformat(made.created) < timedelta(minutes=1)
 
 

@@ -11,9 +11,9 @@ from gaitdisc.channel import Channel
 from gaitdisc.errors import SamplingError
 from gaitdisc.ingest.reading import read_trial
 from gaitdisc.recording import Recording, Source, Strides
-from gaitdisc.signals.butterworth import effective_cutoff_hz, highpassed, lowpassed, needed_samples, short_run_findings
-from gaitdisc.signals.gaps import filled, gap_findings
-from gaitdisc.signals.recorded_filter import recorded_filter, spectrum_of
+from gaitdisc.signals.butterworth import count_needed, effective_cutoff_hz, high_pass, low_pass, short_run_findings
+from gaitdisc.signals.gaps import fill_gaps, gap_findings
+from gaitdisc.signals.recorded_filter import find_filter, mean_spectrum
 
 KNEE = Channel("knee_angle_r", "angle", "deg", "r")
 
@@ -33,7 +33,7 @@ def gain(filter_, frequency, rate=100.0, **settings):
 
 
 @pytest.mark.parametrize("order", [2, 4])
-@pytest.mark.parametrize(("filter_", "kind", "cutoff"), [(lowpassed, "lowpass", 6.0), (highpassed, "highpass", 20.0)])
+@pytest.mark.parametrize(("filter_", "kind", "cutoff"), [(low_pass, "lowpass", 6.0), (high_pass, "highpass", 20.0)])
 def test_a_sine_at_the_effective_cutoff_is_3_db_down_without_lag(filter_, kind, cutoff, order):
     frequency = effective_cutoff_hz(cutoff, 100.0, order, kind)
     along, across = gain(filter_, frequency, cutoff_hz=cutoff, order=order)
@@ -42,23 +42,23 @@ def test_a_sine_at_the_effective_cutoff_is_3_db_down_without_lag(filter_, kind, 
 
 
 def test_at_the_design_cutoff_two_passes_are_6_db_down():
-    assert gain(lowpassed, 6.0, cutoff_hz=6.0)[0] == pytest.approx(0.5, abs=2e-3)
+    assert gain(low_pass, 6.0, cutoff_hz=6.0)[0] == pytest.approx(0.5, abs=2e-3)
 
 
 def test_the_roll_off_is_that_of_eighth_order():
     rate = 1000.0  # far from half the rate, where the bilinear transform bends nothing
-    one, two = gain(lowpassed, 12.0, rate, cutoff_hz=6.0)[0], gain(lowpassed, 24.0, rate, cutoff_hz=6.0)[0]
+    one, two = gain(low_pass, 12.0, rate, cutoff_hz=6.0)[0], gain(low_pass, 24.0, rate, cutoff_hz=6.0)[0]
     assert 20 * np.log10(one / two) == pytest.approx(48.2, abs=0.5)
 
 
 def test_a_constant_stays_and_a_highpass_takes_it_away():
     x = recording(np.full(300, 12.3))
-    assert np.allclose(lowpassed(x).values, 12.3, atol=1e-12)
-    assert np.allclose(highpassed(x, 5.0).values, 0.0, atol=1e-12)
+    assert np.allclose(low_pass(x).values, 12.3, atol=1e-12)
+    assert np.allclose(high_pass(x, 5.0).values, 0.0, atol=1e-12)
 
 
 def test_edges_are_marked_for_1_8_periods():
-    marks = lowpassed(recording(np.sin(np.arange(500) / 20))).suspect[:, 0]
+    marks = low_pass(recording(np.sin(np.arange(500) / 20))).suspect[:, 0]
     assert np.flatnonzero(~marks)[[0, -1]].tolist() == [30, 469]
 
 
@@ -66,7 +66,7 @@ def test_a_short_gap_is_bridged_and_marked_a_long_one_stays():
     x = np.sin(2 * np.pi * np.arange(1000) / 100)
     x[200:208] = np.nan
     x[500:530] = np.nan
-    done = lowpassed(recording(x), 6.0)
+    done = low_pass(recording(x), 6.0)
     assert np.isfinite(done.values[200:208, 0]).all()
     assert done.suspect[200:208, 0].all()
     assert np.isnan(done.values[500:530, 0]).all()
@@ -80,7 +80,7 @@ def test_a_run_too_short_is_left_out_and_said():
     x = np.sin(np.arange(400) / 20)
     x[100:120] = np.nan
     x[130:150] = np.nan
-    assert np.isnan(lowpassed(recording(x)).values[120:130, 0]).all()
+    assert np.isnan(low_pass(recording(x)).values[120:130, 0]).all()
     (finding,) = short_run_findings(recording(x))
     assert says(finding.what, "1 segment", "fewer", "18 samples (0.180 s)")
     assert "needs 18 samples" in finding.spoils
@@ -88,15 +88,15 @@ def test_a_run_too_short_is_left_out_and_said():
 
 
 def test_a_recording_too_short_is_refused():
-    assert needed_samples(6.0, 100.0) == 18
+    assert count_needed(6.0, 100.0) == 18
     with pytest.raises(SamplingError, match=r"6 Hz.*18 samples.*walk\.mot.*17.*longer"):
-        lowpassed(recording(np.zeros(17)))
+        low_pass(recording(np.zeros(17)))
 
 
 @pytest.mark.parametrize("cutoff", [50.0, 80.0, 0.0, -1.0])
 def test_a_cutoff_outside_of_the_band_is_refused(cutoff):
     with pytest.raises(SamplingError, match=r"0 Hz.*50 Hz.*walk\.mot.*100 samples"):
-        lowpassed(recording(np.zeros(500)), cutoff)
+        low_pass(recording(np.zeros(500)), cutoff)
 
 
 def test_a_heading_that_passes_180_deg_is_filtered_as_it_goes_on():
@@ -106,13 +106,14 @@ def test_a_heading_that_passes_180_deg_is_filtered_as_it_goes_on():
     raw = np.stack([(true + 180) % 360 - 180, (true + 180) % 360 - 180], axis=1)
     raw[260:265] = np.nan
     channels = (Channel("pelvis_rotation", "angle", "deg"), Channel("RFootProgressAngles.z", "angle", "deg", "r"))
-    smooth = lowpassed(Recording(t, raw, channels))
-    plain = lowpassed(Recording(t, np.stack([true, true], axis=1), channels))
+    smooth = low_pass(Recording(t, raw, channels))
+    plain = low_pass(Recording(t, np.stack([true, true], axis=1), channels))
     apart = (smooth.values - plain.values + 180) % 360 - 180
     assert np.abs(apart[40:-40]).max() < 0.2
     assert np.abs(smooth.values).max() <= 180
     assert (
-        np.abs((filled(Recording(t, raw, channels)).values[260:265, 0] - true[260:265] + 180) % 360 - 180).max() < 0.1
+        np.abs((fill_gaps(Recording(t, raw, channels)).values[260:265, 0] - true[260:265] + 180) % 360 - 180).max()
+        < 0.1
     )
 
 
@@ -121,7 +122,7 @@ def test_a_real_turn_in_a_laboratory_turned_by_120_deg(gait_data):
     file = gait_data / "young_straight_and_turn" / "HC030A" / "turn" / "HC030A22.c3d"
     pelvis = read_trial(file).stream("kinematics").selected(["LPelvisAngles.z"])
     turned = pelvis.with_values((pelvis.values + 120 + 180) % 360 - 180)
-    there = (lowpassed(turned).values - 120 - lowpassed(pelvis).values + 180) % 360 - 180
+    there = (low_pass(turned).values - 120 - low_pass(pelvis).values + 180) % 360 - 180
     assert np.nanmax(np.abs(there)) < 1e-6
 
 
@@ -142,39 +143,39 @@ def broken(x, start, length):
 @given(st.integers(25, 900), st.integers(1, 10))
 def test_a_cubic_is_filled_exactly_and_marked(start, length):
     x = TIME**3 - 4 * TIME**2 + TIME
-    done = filled(broken(x, start, length))
+    done = fill_gaps(broken(x, start, length))
     assert np.allclose(done.values[:, 0], x, atol=1e-8)
     assert np.flatnonzero(done.suspect[:, 0]).tolist() == list(range(start, start + length))
 
 
 def test_what_is_measured_is_not_touched():
-    done = filled(broken(np.sin(TIME), 300, 8))
+    done = fill_gaps(broken(np.sin(TIME), 300, 8))
     kept = np.r_[0:300, 308:1000]
     assert np.array_equal(done.values[kept, 0], np.sin(TIME)[kept])
 
 
 def test_a_long_gap_stays_open_and_spoils_150_ms_beside_it():
-    done = filled(broken(np.sin(TIME), 300, 11))
+    done = fill_gaps(broken(np.sin(TIME), 300, 11))
     assert np.isnan(done.values[300:311, 0]).all()
     assert np.flatnonzero(done.suspect[:, 0]).tolist() == list(range(285, 326))
 
 
 def test_a_gap_at_an_end_stays_open():
-    assert np.isnan(filled(broken(np.sin(TIME), 0, 3)).values[:3, 0]).all()
-    assert np.isnan(filled(broken(np.sin(TIME), 997, 3)).values[997:, 0]).all()
+    assert np.isnan(fill_gaps(broken(np.sin(TIME), 0, 3)).values[:3, 0]).all()
+    assert np.isnan(fill_gaps(broken(np.sin(TIME), 997, 3)).values[997:, 0]).all()
 
 
 def test_strides_bring_200_ms_back():
     x = 20 * np.sin(2 * np.pi * TIME) + 5 * np.cos(6 * np.pi * TIME) + 0.5 * TIME
     strides = Strides(np.arange(9.0), np.arange(1.0, 10.0), "r", "force")
-    done = filled(broken(x, 430, 20), strides)
+    done = fill_gaps(broken(x, 430, 20), strides)
     assert np.abs(done.values[:, 0] - x).max() < 0.3
-    assert np.isnan(filled(broken(x, 430, 21), strides).values[430:451, 0]).all()
+    assert np.isnan(fill_gaps(broken(x, 430, 21), strides).values[430:451, 0]).all()
 
 
 def test_too_few_whole_strides_make_no_template():
     strides = Strides(np.arange(4.0), np.arange(1.0, 5.0), "r", "force")
-    assert np.isnan(filled(broken(np.sin(TIME), 130, 15), strides).values[130:145, 0]).all()
+    assert np.isnan(fill_gaps(broken(np.sin(TIME), 130, 15), strides).values[130:145, 0]).all()
 
 
 def test_findings_tell_short_from_long():
@@ -190,7 +191,7 @@ def test_a_short_gap_at_an_end_is_a_note_and_stays_open(samples, severity):
     """A recording that begins 50 ms later would be said to lack nothing."""
     late = broken(np.sin(TIME), 0, samples)
     assert [one.severity for one in gap_findings(late)] == [severity]
-    assert np.isnan(filled(late).values[:samples]).all()
+    assert np.isnan(fill_gaps(late).values[:samples]).all()
 
 
 def test_an_empty_channel_is_one_gap():
@@ -219,7 +220,7 @@ def _trials(noise, cutoff=None, order=2, signal=_signal):
 
 @pytest.mark.parametrize(("cutoff", "noise"), [(3.0, 0.1), (6.0, 0.01), (6.0, 0.1), (10.0, 0.01), (10.0, 0.1)])
 def test_the_cut_off_is_found(cutoff, noise):
-    found = recorded_filter(_trials(noise, cutoff), RATE)
+    found = find_filter(_trials(noise, cutoff), RATE)
     assert found.cutoff_hz == pytest.approx(cutoff, rel=0.06)
     assert found.gained > 100 and found.signal < 0.1
 
@@ -228,18 +229,18 @@ def test_gaps_and_written_digits_do_not_matter():
     trials = [np.round(one, 4) for one in _trials(0.02, 6.0)]
     for trial in trials:
         trial[700:730] = trial[2100:2110] = np.nan
-    assert recorded_filter(trials, RATE).cutoff_hz == pytest.approx(6.0, rel=0.06)
+    assert find_filter(trials, RATE).cutoff_hz == pytest.approx(6.0, rel=0.06)
 
 
 def test_raw_records_show_none():
-    assert recorded_filter(_trials(0.02), RATE) is None
-    assert recorded_filter([np.round(one, 3) for one in _trials(1e-5)], RATE) is None
+    assert find_filter(_trials(0.02), RATE) is None
+    assert find_filter([np.round(one, 3) for one in _trials(1e-5)], RATE) is None
     slow = [lfilter([0.05], [1, -0.95], one) for one in _trials(1.0)]
-    assert recorded_filter(slow, RATE) is None
+    assert find_filter(slow, RATE) is None
 
 
 def test_a_smooth_signal_without_noise_is_one_with_a_signal_in_the_way_or_none():
-    found = recorded_filter(_trials(0.0), RATE)
+    found = find_filter(_trials(0.0), RATE)
     assert found is None or found.signal > 10
 
 
@@ -249,23 +250,23 @@ def _broad(seed):
 
 def test_where_the_signal_is_in_the_way_a_like_one_helps():
     trials, like = _trials(0.02, 6.0, signal=_broad), [1.2 * _broad(seed) for seed in range(4)]
-    found = recorded_filter(trials, RATE, like)
+    found = find_filter(trials, RATE, like)
     assert found.cutoff_hz == pytest.approx(6.0, rel=0.1)
-    assert recorded_filter([_broad(seed) for seed in range(4)], RATE, like) is None
+    assert find_filter([_broad(seed) for seed in range(4)], RATE, like) is None
 
 
 def test_a_record_too_short_shows_none():
-    assert recorded_filter([np.zeros(127)], RATE) is None
-    assert spectrum_of([np.full(500, np.nan)]) is None
+    assert find_filter([np.zeros(127)], RATE) is None
+    assert mean_spectrum([np.full(500, np.nan)]) is None
 
 
 def test_the_spectrum_is_that_of_whole_stretches():
     trial = np.sin(2 * np.pi * 10 * LONG)
     trial[1000:1005] = np.nan
-    spectrum = spectrum_of([trial])
+    spectrum = mean_spectrum([trial])
     assert spectrum.frequency[np.argmax(spectrum.power)] == pytest.approx(0.1, abs=0.003)
     assert spectrum.windows == 2 + 6
 
 
 def test_a_steeper_filter_is_not_taken_for_one_of_order_2():
-    assert recorded_filter(_trials(0.1, 6.0, order=4), RATE) is None
+    assert find_filter(_trials(0.1, 6.0, order=4), RATE) is None

@@ -10,8 +10,8 @@ from texts import says
 from gaitdisc.channel import Channel
 from gaitdisc.ingest.reading import read_trial
 from gaitdisc.recording import Recording, Source, Strides
-from gaitdisc.recording.strides import interpolated
-from gaitdisc.signals.butterworth import lowpassed
+from gaitdisc.recording.strides import interpolate
+from gaitdisc.signals.butterworth import low_pass
 from gaitdisc.signals.channel_quality import (
     channel_findings,
     drift_findings,
@@ -20,7 +20,7 @@ from gaitdisc.signals.channel_quality import (
     plateaus,
     swing_baseline,
 )
-from gaitdisc.signals.derivatives import differentiated
+from gaitdisc.signals.derivatives import derivative
 from gaitdisc.signals.gaps import spike_findings, spikes, without_spikes
 
 FORCE = Channel("ground_force_r_vy", "vertical_force", "N", "r")
@@ -228,8 +228,8 @@ def test_a_spike_is_found_within_the_range_of_a_joint_and_does_not_spread(made, 
     rows = slice(700, 700 + samples)
     spiked = with_column(walk, "knee_angle_r", walk["knee_angle_r"][rows] + height, rows)
     assert np.flatnonzero(spikes(spiked).any(axis=1)).tolist() == list(range(700, 700 + samples))
-    smooth = lowpassed(without_spikes(spiked))
-    assert np.abs(smooth.values - lowpassed(walk).values).max() < 1.0
+    smooth = low_pass(without_spikes(spiked))
+    assert np.abs(smooth.values - low_pass(walk).values).max() < 1.0
     assert np.asarray(smooth.suspect)[700 : 700 + samples, 1].all()
     [finding] = spike_findings(spiked)
     assert finding.channel == "knee_angle_r"
@@ -253,10 +253,10 @@ def test_what_is_not_finite_spreads_nowhere():
     broken = x.copy()
     broken[200] = np.inf
     walk = Recording(t, broken[:, None], (knee,))
-    assert np.abs(lowpassed(walk).values - lowpassed(walk.with_values(x[:, None])).values).max() < 0.05
-    assert not np.isinf(differentiated(broken[:, None], 100.0)).any()
-    assert np.isnan(differentiated(broken[:, None], 100.0)[198:203]).all()
-    read = interpolated(t, broken[:, None], np.array([1.995, 2.0, 2.005]))
+    assert np.abs(low_pass(walk).values - low_pass(walk.with_values(x[:, None])).values).max() < 0.05
+    assert not np.isinf(derivative(broken[:, None], 100.0)).any()
+    assert np.isnan(derivative(broken[:, None], 100.0)[198:203]).all()
+    read = interpolate(t, broken[:, None], np.array([1.995, 2.0, 2.005]))
     assert np.isnan(read).all()
     curves = Strides(np.array([1.0, 2.5]), np.array([2.4, 3.5]), "r", "events").normalised(walk)
     assert not np.isinf(curves).any()

@@ -17,7 +17,7 @@ from gaitdisc.signals.contact_movement import (
     stance_windows,
 )
 from gaitdisc.signals.contacts import event_contacts
-from gaitdisc.signals.direction import given_direction, walking_direction
+from gaitdisc.signals.direction import state_direction, walking_direction
 from gaitdisc.signals.stride_quality import late_change, late_change_findings
 from gaitdisc.signals.strides import cut_strides
 
@@ -39,7 +39,7 @@ def walker(speed=0.0, noise=0.0):
 
 @pytest.mark.parametrize("speed", [0.0, 1.3])
 def test_contacts_are_where_the_heel_is_farthest_in_front(speed):
-    found = marker_contacts(walker(speed), {"r": "RHEE"}, ["SACR"], given_direction((1, 0, 0)))["r"]
+    found = marker_contacts(walker(speed), {"r": "RHEE"}, ["SACR"], state_direction((1, 0, 0)))["r"]
     assert len(found) == len(CONTACTS)
     assert np.abs(found.time - CONTACTS).max() < 0.006
     assert says(found.note, "RHEE", "SACR")
@@ -82,21 +82,21 @@ def test_real_turns_against_the_events_of_their_files(gait_data):
 
 
 def test_noise_makes_no_contacts():
-    found = marker_contacts(walker(noise=0.003), {"r": "RHEE"}, ["SACR"], given_direction((1, 0, 0)))["r"]
+    found = marker_contacts(walker(noise=0.003), {"r": "RHEE"}, ["SACR"], state_direction((1, 0, 0)))["r"]
     assert len(found) == len(CONTACTS)
     assert np.abs(found.time - CONTACTS).max() < 0.03
 
 
 def test_a_gap_at_contact_gives_none():
     walk = with_column(walker(), "RHEE.x", np.nan, slice(290, 305))
-    found = marker_contacts(walk, {"r": "RHEE"}, ["SACR"], given_direction((1, 0, 0)))["r"]
+    found = marker_contacts(walk, {"r": "RHEE"}, ["SACR"], state_direction((1, 0, 0)))["r"]
     assert len(found) == len(CONTACTS) - 1
 
 
 def test_a_heel_that_does_not_swing_is_refused():
     walk = walker()
     with pytest.raises(StrideError, match=r"RHEE.*0\.1 m.*0\.000 m"):
-        marker_contacts(walk, {"r": "RHEE"}, ["SACR"], given_direction((0, 1, 0)))
+        marker_contacts(walk, {"r": "RHEE"}, ["SACR"], state_direction((0, 1, 0)))
 
 
 OFFS = np.array([0.62, 1.637, 2.65])
@@ -123,20 +123,20 @@ def test_a_window_lies_in_the_stance_after_each_contact_and_before_the_first():
 
 def test_the_toe_leaves_where_it_is_farthest_behind():
     windows = stance_windows(np.array([1.0, 2.0]), 1.0)
-    found = marker_foot_off(_toe(), "RTOE", ["SACR"], given_direction((1, 0, 0)), windows)
+    found = marker_foot_off(_toe(), "RTOE", ["SACR"], state_direction((1, 0, 0)), windows)
     assert np.abs(found - OFFS).max() < 0.002  # between the samples, which are 0.01 s apart
 
 
 def test_walking_the_other_way_has_no_such_time():
     windows = stance_windows(np.array([1.0, 2.0]), 1.0)
-    found = marker_foot_off(_toe(), "RTOE", ["SACR"], given_direction((-1, 0, 0)), windows)
+    found = marker_foot_off(_toe(), "RTOE", ["SACR"], state_direction((-1, 0, 0)), windows)
     assert not any(np.abs(found - at).min() < 0.05 for at in OFFS) if len(found) else True
 
 
 def test_a_gap_in_the_window_gives_none():
     toe = with_column(with_column(_toe(), "RTOE", np.nan, slice(140, 200)), "SACR", np.nan, slice(140, 200))
     windows = stance_windows(np.array([1.0, 2.0]), 1.0)
-    found = marker_foot_off(toe, "RTOE", ["SACR"], given_direction((1, 0, 0)), windows)
+    found = marker_foot_off(toe, "RTOE", ["SACR"], state_direction((1, 0, 0)), windows)
     assert found == pytest.approx(OFFS[[0, 2]], abs=0.002)
 
 

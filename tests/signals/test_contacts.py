@@ -12,7 +12,7 @@ from gaitdisc.errors import ChannelError, StrideError
 from gaitdisc.recording import Event, Recording, Source, Trial
 from gaitdisc.signals.contact_movement import angle_contacts, marker_contacts
 from gaitdisc.signals.contacts import Contacts, event_contacts, force_contacts, loaded, order_findings, plate_contacts
-from gaitdisc.signals.direction import given_direction, walking_direction
+from gaitdisc.signals.direction import state_direction, walking_direction
 from gaitdisc.signals.strides import cut_strides
 
 
@@ -263,12 +263,12 @@ def test_the_leading_heel_tells_the_foot():
     slow = np.arange(300) / 100
     right, left = (np.outer(ahead, [1, 0, 0]) for ahead in (np.full(300, 0.6), np.where(slow < 1.3, 0.0, 1.2)))
     marked = markers_at(slow, {"RHEE": right, "LHEE": left})
-    found = plate_contacts(plates, marked, {"r": "RHEE", "l": "LHEE"}, given_direction((1, 0, 0)))
+    found = plate_contacts(plates, marked, {"r": "RHEE", "l": "LHEE"}, state_direction((1, 0, 0)))
     assert found["r"].time == pytest.approx([1.005], abs=1e-3)
     assert found["l"].time == pytest.approx([1.605], abs=1e-3)
     blind = markers_at(slow, {"RHEE": right, "LHEE": left * [np.nan, 1, 1]})
     with pytest.raises(StrideError, match=r"plate1.*1\.005 s"):
-        plate_contacts(plates, blind, {"r": "RHEE", "l": "LHEE"}, given_direction((1, 0, 0)))
+        plate_contacts(plates, blind, {"r": "RHEE", "l": "LHEE"}, state_direction((1, 0, 0)))
 
 
 @pytest.mark.parametrize("missing", ["RHEE", "LHEE"])
@@ -279,7 +279,7 @@ def test_one_heel_in_front_of_the_pelvis_or_behind_it_tells_the_foot(missing):
     slow = np.arange(300) / 100
     ahead = {"RHEE": np.full(300, 0.6), "LHEE": np.where(slow < 1.3, 0.0, 1.2), "SACR": np.where(slow < 1.3, 0.3, 0.9)}
     ahead[missing] = np.full(300, np.nan)
-    given = {"heels": {"r": "RHEE", "l": "LHEE"}, "direction": given_direction((1, 0, 0)), "pelvis": ("SACR",)}
+    given = {"heels": {"r": "RHEE", "l": "LHEE"}, "direction": state_direction((1, 0, 0)), "pelvis": ("SACR",)}
     marked = markers_at(slow, {name: np.outer(one, [1, 0, 0]) for name, one in ahead.items()})
     found = plate_contacts(forces_, marked, **given)
     assert found["r"].time == pytest.approx([1.005], abs=1e-3)

@@ -3,7 +3,7 @@ import pytest
 from changed_trials import markers_at, with_column
 
 from gaitdisc.errors import ChannelError, StrideError
-from gaitdisc.signals.direction import given_direction, marker_position, pelvis_position, walking_direction
+from gaitdisc.signals.direction import marker_position, pelvis_position, state_direction, walking_direction
 
 HEELS, PELVIS = {"r": "RHEE", "l": "LHEE"}, ("SACR",)
 
@@ -85,9 +85,9 @@ def test_a_swing_without_a_direction_is_refused():
 
 
 def test_a_given_direction_is_made_a_unit_vector():
-    assert given_direction((0, -3, 0)).forward.tolist() == [0, -1, 0]
+    assert state_direction((0, -3, 0)).forward.tolist() == [0, -1, 0]
     with pytest.raises(StrideError, match="perpendicular and not"):
-        given_direction((0, 0, 1))
+        state_direction((0, 0, 1))
 
 
 def test_positions_and_names():

@@ -17,7 +17,7 @@ from gaitdisc.signals.emg import (
     burst_ratio,
     emg_findings,
     emg_sizes,
-    enveloped,
+    envelopes,
     live_channels,
     order_of_muscles,
     other_unit_findings,
@@ -146,36 +146,36 @@ def single(x, rate=1000.0, channel=SOLEUS):
 
 def test_a_sine_gives_its_mean_rectified_value():
     t = np.arange(5000) / 1000
-    out = enveloped(single(0.003 * np.sin(2 * np.pi * 110 * t)))["emg_sol_r"]
+    out = envelopes(single(0.003 * np.sin(2 * np.pi * 110 * t)))["emg_sol_r"]
     assert out[1000:4000] == pytest.approx(0.003 * 2 / np.pi, rel=0.01)
 
 
 def test_a_modulated_carrier_gives_its_modulation():
     t = np.arange(10000) / 1000
     loud = 1 + 0.5 * np.sin(2 * np.pi * 1.0 * t)
-    out = enveloped(single(loud * np.sin(2 * np.pi * 150 * t)))["emg_sol_r"]
+    out = envelopes(single(loud * np.sin(2 * np.pi * 150 * t)))["emg_sol_r"]
     assert np.abs(out - 2 / np.pi * loud)[1000:-1000].max() < 0.01
 
 
 def test_movement_artefact_below_40_hz_is_gone():
     t = np.arange(5000) / 1000
-    out = enveloped(single(np.sin(2 * np.pi * 5 * t)))["emg_sol_r"]
+    out = envelopes(single(np.sin(2 * np.pi * 5 * t)))["emg_sol_r"]
     assert np.abs(out[1000:4000]).max() < 1e-4
 
 
 def test_a_slow_rate_is_refused():
     with pytest.raises(SamplingError, match=r"40 Hz.*above 80.*walk\.c3d.*80.*EMG"):
-        enveloped(single(np.random.default_rng(0).normal(size=500), 80.0))
+        envelopes(single(np.random.default_rng(0).normal(size=500), 80.0))
 
 
 def test_an_envelope_is_refused():
     with pytest.raises(SamplingError, match=r"walk\.c3d, emg_sol_r.*500 samples.*below"):
-        enveloped(single(0.1 + np.abs(np.random.default_rng(0).normal(size=500))))
+        envelopes(single(0.1 + np.abs(np.random.default_rng(0).normal(size=500))))
 
 
 def test_an_angle_is_refused():
     with pytest.raises(ChannelError, match=r"walk\.c3d.*'knee_angle_r'.*angle"):
-        enveloped(single(np.zeros(500), channel=Channel("knee_angle_r", "angle", "deg", "r")))
+        envelopes(single(np.zeros(500), channel=Channel("knee_angle_r", "angle", "deg", "r")))
 
 
 def walk(*names, swing=()):

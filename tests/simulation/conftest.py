@@ -2,7 +2,7 @@
 
 import pytest
 
-from gaitdisc.simulation.simulation_file import simulation_of
+from gaitdisc.simulation.simulation_file import parse_simulation
 
 ANKLE = """
 title = "Ankle"            # a joint
@@ -34,7 +34,7 @@ omega = "(tau + ankle_moment - b*omega - spring)/inertia"
 
 @pytest.fixture
 def ankle():
-    return simulation_of(ANKLE, "ankle.toml")
+    return parse_simulation(ANKLE, "ankle.toml")
 
 
 @pytest.fixture

@@ -8,7 +8,7 @@ from solving import solve
 from gaitdisc.errors import ReadError
 from gaitdisc.simulation.compiled_simulation import Drive, Rows
 from gaitdisc.simulation.running import compile_simulation
-from gaitdisc.simulation.simulation_file import bundled, bundled_names
+from gaitdisc.simulation.simulation_file import bundled, list_bundled
 
 
 def _run(simulation, steps, rate=100.0, starts=None, inputs=None):
@@ -22,7 +22,7 @@ def _run(simulation, steps, rate=100.0, starts=None, inputs=None):
 
 
 def test_all_are_there():
-    assert set(bundled_names()) == {
+    assert set(list_bundled()) == {
         "ankle", "lorenz", "mass_spring_damper", "muscle_activation", "pendulum", "swing_leg", "van_der_pol",
         "van_der_pol_published",
     }  # fmt: skip
@@ -30,7 +30,7 @@ def test_all_are_there():
         bundled("lorentz")
 
 
-@pytest.mark.parametrize("name", bundled_names())
+@pytest.mark.parametrize("name", list_bundled())
 def test_each_runs_and_says_what_it_is(name):
     simulation = bundled(name)
     starts = [0.1 if state.initial is None else state.initial for state in simulation.states]

@@ -8,29 +8,29 @@ from made_simulation import system
 
 from gaitdisc.errors import SchemaError, SimulationError
 from gaitdisc.simulation.compiled_simulation import Drive, Rows
-from gaitdisc.simulation.delays import delayed_in_series, refuse_delays
+from gaitdisc.simulation.delays import delay_series, refuse_delays
 from gaitdisc.simulation.parts import Input, Parameter, State
 from gaitdisc.simulation.python_simulation import python_simulation
 from gaitdisc.simulation.running import compile_simulation
-from gaitdisc.simulation.simulation_file import simulation_of
+from gaitdisc.simulation.simulation_file import parse_simulation
 
 
 @given(st.floats(0, 3), st.integers(1, 200))
 def test_a_line_is_delayed_exactly(seconds, count):
     t = np.arange(count) / 100
     np.testing.assert_allclose(
-        delayed_in_series(5 * t, np.array(seconds), 100.0), 5 * np.maximum(t - seconds, 0), atol=1e-12
+        delay_series(5 * t, np.array(seconds), 100.0), 5 * np.maximum(t - seconds, 0), atol=1e-12
     )
 
 
 def test_a_phase_is_delayed_through_the_wrap():
     phase = (np.arange(200) / 100 * 0.9) % 1.0
-    late = delayed_in_series(phase, np.array(0.155), 100.0, wraps=True)
+    late = delay_series(phase, np.array(0.155), 100.0, wraps=True)
     np.testing.assert_allclose(late[16:], ((np.arange(16, 200) / 100 - 0.155) * 0.9) % 1.0, atol=1e-12)
 
 
 def test_each_sample_may_have_its_own_delay():
-    assert delayed_in_series(np.arange(4.0), np.array([0.0, 0.1, 0.0, 0.3]), 10.0).tolist() == [0, 0, 2, 0]
+    assert delay_series(np.arange(4.0), np.array([0.0, 0.1, 0.0, 0.3]), 10.0).tolist() == [0, 0, 2, 0]
 
 
 def test_an_observed_state_is_delayed_to_the_third_order():
@@ -89,17 +89,17 @@ def late(what, value=0.2):
 )
 def test_a_file_with_such_a_delay_is_refused_when_it_is_read(text, words):
     with pytest.raises(SchemaError, match=words):
-        simulation_of(text)
+        parse_simulation(text)
 
 
 @pytest.mark.parametrize("what", ["x, 0", "x, late", "u, -0.05", "u, 0.05", "x, 2*late - 0.1"])
 def test_delays_that_have_a_meaning_are_read(what):
-    assert "delay" in simulation_of(late(what)).equations[0][1]
+    assert "delay" in parse_simulation(late(what)).equations[0][1]
 
 
 @pytest.mark.parametrize("what", ["x, 1e4", "x, 40*late", "u, -8", "u, 8"])
 def test_a_delay_as_long_as_the_shortest_trial_is_refused(what):
-    simulation = simulation_of(late(what))
+    simulation = parse_simulation(late(what))
     refuse_delays(simulation)
     with pytest.raises(SimulationError, match=r"\[equations\].*shorter.*'b'.*8 s"):  # fmt: skip
         refuse_delays(simulation, 8.0, "b")

@@ -6,7 +6,7 @@ import pytest
 from gaitdisc.errors import SimulationError
 from gaitdisc.simulation.compiled_simulation import Drive, Rows
 from gaitdisc.simulation.running import compile_simulation, divergences, refuse_divergence
-from gaitdisc.simulation.simulation_file import simulation_of
+from gaitdisc.simulation.simulation_file import parse_simulation
 
 TEXT = """title = "growth"
 [states.x]
@@ -22,7 +22,7 @@ y = "wild*y - calm*y{more}"
 
 
 def _run(more="", values=None):
-    compiled = compile_simulation(simulation_of(TEXT.format(more=more)))
+    compiled = compile_simulation(parse_simulation(TEXT.format(more=more)))
     drive = Drive.of([np.empty((101, 0))] * 2, 100.0, [0.0, 5.0])
     rows = Rows(np.array([0, 1]), np.array([0, 10]), np.array([[1.0, 0.0], [1.0, 1.0]]), values)
     return compiled, drive, rows, *compiled.run(drive, rows, 80)
@@ -60,7 +60,7 @@ def test_with_a_delay():
     ],
 )
 def test_a_record_so_coarse_is_likelier_one_in_milliseconds(rate, words):
-    compiled = compile_simulation(simulation_of(TEXT.format(more="")))
+    compiled = compile_simulation(parse_simulation(TEXT.format(more="")))
     drive, rows = Drive.of([np.empty((101, 0))], rate), Rows(np.array([0]), np.array([0]), np.array([[1.0, 1.0]]))
     with pytest.raises(SimulationError, match=words):
         refuse_divergence(compiled, drive, rows, *compiled.run(drive, rows, 80))

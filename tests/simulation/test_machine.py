@@ -5,15 +5,15 @@ import math
 import numpy as np
 import pytest
 
-from gaitdisc.simulation.expression import parsed
-from gaitdisc.simulation.program import at_points, compiled_program
+from gaitdisc.simulation.expression import parse
+from gaitdisc.simulation.program import at_points, compile_program
 
 X = np.concatenate([np.linspace(-30, 30, 301), [1e-8, -1e-8, 1e-3, 350.0, -350.0, 1e5, -1e5]])
 
 
 def _values(text, x):
     x = np.asarray(x, float)
-    return at_points(compiled_program([parsed(text)], ["x"]), [x])[0]
+    return at_points(compile_program([parse(text)], ["x"]), [x])[0]
 
 
 @pytest.mark.parametrize("name", ["sin", "cos", "tan", "atan", "tanh", "exp", "abs"])

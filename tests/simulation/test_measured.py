@@ -7,7 +7,7 @@ from texts import says
 from gaitdisc.errors import ReadError, SamplingError, ShapeError
 from gaitdisc.simulation.compiled_simulation import Drive
 from gaitdisc.simulation.even_time import TrialColumns
-from gaitdisc.simulation.measured import Measured, measured_of_trials
+from gaitdisc.simulation.measured import Measured, check_measured
 
 
 def _trial(name="1", count=50, rate=100.0, time=None, observed=None):
@@ -17,7 +17,7 @@ def _trial(name="1", count=50, rate=100.0, time=None, observed=None):
 
 
 def _measured(*trials):
-    return measured_of_trials(trials, ["u"], ["x"], "walk.csv")
+    return check_measured(trials, ["u"], ["x"], "walk.csv")
 
 
 def test_trials_of_different_lengths():

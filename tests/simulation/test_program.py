@@ -8,34 +8,34 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from gaitdisc.errors import SimulationError
-from gaitdisc.simulation.expression import parsed
-from gaitdisc.simulation.program import CODES, at_points, compiled_program, leaf_columns
+from gaitdisc.simulation.expression import parse
+from gaitdisc.simulation.program import CODES, at_points, compile_program, leaf_columns
 
 
 def _value(text, **values):
-    program = compiled_program([parsed(text)], list(values))
+    program = compile_program([parse(text)], list(values))
     return at_points(program, [np.array([float(value)]) for value in values.values()])[0, 0]
 
 
 def test_what_is_shared_is_computed_once():
-    program = compiled_program([parsed("sin(k*x) + x*k"), parsed("sin(x*k)**2")], ["x", "k"])
+    program = compile_program([parse("sin(k*x) + x*k"), parse("sin(x*k)**2")], ["x", "k"])
     assert [int(op) for op in program.code[:, 0]].count(CODES["sin"]) == 1
     assert len(program.code) == 4 + 2  # product, sine, sum, square; two stores
 
 
 def test_what_depends_on_parameters_alone_comes_first():
-    program = compiled_program([parsed("x*exp(k**2.5)/(2 + 3)")], ["x", "k"], ["k"])
+    program = compile_program([parse("x*exp(k**2.5)/(2 + 3)")], ["x", "k"], ["k"])
     assert program.setup == 3  # power, exponential, 2 + 3
     assert program.code[program.setup :, 0].tolist() == [CODES["*"], CODES["/"], CODES["store"]]
 
 
 def test_what_nobody_needs_is_left_out():
-    program = compiled_program([parsed("x")], ["x"], (), {"unused": parsed("sin(x)")})
+    program = compile_program([parse("x")], ["x"], (), {"unused": parse("sin(x)")})
     assert program.code[:, 0].tolist() == [CODES["store"]]
 
 
 def test_registers_are_used_again():
-    program = compiled_program([parsed(" + ".join(f"sin({i}*x)" for i in range(1, 100)))], ["x"])
+    program = compile_program([parse(" + ".join(f"sin({i}*x)" for i in range(1, 100)))], ["x"])
     assert program.registers < 1 + 99 + 8
 
 
@@ -52,7 +52,7 @@ def test_max_of_three():
 
 
 def test_a_delay_is_a_leaf_of_its_own():
-    program = compiled_program([parsed("delay(x, d)*delay(x, d)*delay(v, d)")], ["x", "v", "d"])
+    program = compile_program([parse("delay(x, d)*delay(x, d)*delay(v, d)")], ["x", "v", "d"])
     assert [signal for signal, _ in program.delays] == ["x", "v"]
     assert program.used().tolist() == [False, False, False, True, True]
 
@@ -80,13 +80,13 @@ def test_columns_are_in_the_order_of_a_program():
 
 
 def test_one_number_serves_all_points():
-    program = compiled_program([parsed("a*b"), parsed("b")], ["a", "b", "unused"])
+    program = compile_program([parse("a*b"), parse("b")], ["a", "b", "unused"])
     found = at_points(program, [np.arange(200.0), np.array(3.0), np.array(np.nan)])
     np.testing.assert_array_equal(found, [3 * np.arange(200.0), np.full(200, 3.0)])
 
 
 def test_late_signals_are_asked_for():
-    program = compiled_program([parsed("delay(a, 0.1) + a")], ["a"])
+    program = compile_program([parse("delay(a, 0.1) + a")], ["a"])
     assert at_points(program, [np.ones(2)], np.array([[5.0], [6.0]]))[0].tolist() == [6.0, 7.0]
     with pytest.raises(SimulationError, match="signals must be given"):
         at_points(program, [np.ones(2)])

@@ -9,7 +9,7 @@ from made_simulation import effect_text
 
 from gaitdisc.errors import GaitdiscError, ReadError, SchemaError
 from gaitdisc.simulation.parts import Input, Parameter, Sensor, Term
-from gaitdisc.simulation.simulation_file import read_simulation, simulation_of
+from gaitdisc.simulation.simulation_file import parse_simulation, read_simulation
 from gaitdisc.simulation.writing import simulation_text
 
 
@@ -27,7 +27,7 @@ def test_every_part_is_read(ankle, ankle_text, tmp_path):
 
 
 def test_a_number_is_an_expression():
-    assert simulation_of("[states.x]\n[equations]\nx = 1.5\n").equations == (("x", "1.5"),)
+    assert parse_simulation("[states.x]\n[equations]\nx = 1.5\n").equations == (("x", "1.5"),)
 
 
 @pytest.mark.parametrize(
@@ -62,7 +62,7 @@ def test_a_number_is_an_expression():
 )
 def test_a_fault_is_told_with_its_place(ankle_text, old, new, words):
     with pytest.raises(GaitdiscError) as refusal:
-        simulation_of(ankle_text.replace(old, new, 1), "ankle.toml")
+        parse_simulation(ankle_text.replace(old, new, 1), "ankle.toml")
     assert "ankle.toml" in str(refusal.value)
     assert words in str(refusal.value)
 
@@ -126,14 +126,16 @@ def test_doubling_definitions_stay_small():
 
     lines = "\n".join(f'd{i} = "d{i - 1}*d{i - 1}"' for i in range(1, 400))
     text = HEAD.replace('"-x"', '"d399"') + f'[definitions]\nd0 = "x"\n{lines}\n'
-    assert len(compile_simulation(simulation_of(text)).right_hand_side.code) == 400
+    assert len(compile_simulation(parse_simulation(text)).right_hand_side.code) == 400
 
 
 def test_an_exponent_without_end_is_a_row_without_end():
     text = HEAD.replace('"-x"', '"9**9**9**9*x"')
     from gaitdisc.simulation.running import compile_simulation
 
-    assert np.isinf(compile_simulation(simulation_of(text)).rates(np.zeros(1), np.ones((1, 1)), np.empty((1, 0)))[0, 0])
+    assert np.isinf(
+        compile_simulation(parse_simulation(text)).rates(np.zeros(1), np.ones((1, 1)), np.empty((1, 0)))[0, 0]
+    )
 
 
 ERRING = """
@@ -147,11 +149,11 @@ wander = 0.5   # s
 
 def test_the_errors_of_an_input_are_read_and_written_back(ankle_text):
     text = ankle_text.replace("[inputs.tau]", ERRING + "[inputs.tau]")
-    read = simulation_of(text)
+    read = parse_simulation(text)
     assert read.inputs[0] == Input("motor", "N m", gain=0.1, sd=3.0, wander=0.5)
     assert (read.inputs[1].gain, read.inputs[1].sd, read.inputs[1].wander) == (None, None, None)
     assert simulation_text(read) == read.layout
-    assert simulation_of(simulation_text(replace(read, layout=""))) == read
+    assert parse_simulation(simulation_text(replace(read, layout=""))) == read
 
 
 @pytest.mark.parametrize(
@@ -170,7 +172,7 @@ def test_the_errors_of_an_input_are_read_and_written_back(ankle_text):
 def test_a_fault_of_an_input_is_told_with_its_line(ankle_text, old, new, words):
     text = ankle_text.replace('[inputs.phase]\nunit = "1"\n', ERRING.replace(old, new))
     with pytest.raises(SchemaError) as refusal:
-        simulation_of(text, "ankle.toml")
+        parse_simulation(text, "ankle.toml")
     assert words in str(refusal.value)
     assert re.match(r"ankle.toml, line \d+, \[inputs\] (motor|phase): ", str(refusal.value))
 
@@ -187,7 +189,7 @@ lowpass = 6.0
 
 
 def test_an_observation_in_the_long_form_is_read(ankle_text):
-    read = simulation_of(ankle_text + LONG)
+    read = parse_simulation(ankle_text + LONG)
     assert read.observations == (("omega", "omega"), ("ankle_angle_r", "57.2958*theta"))
     assert read.sensors == (Sensor("ankle_angle_r", "deg", 0.3, 6.0),)
     assert read.sensor("omega") == Sensor("omega")
@@ -208,5 +210,5 @@ def test_an_observation_in_the_long_form_is_read(ankle_text):
 def test_a_fault_of_an_observation_is_told_with_its_line(ankle_text, old, new, words):
     line = (ankle_text + LONG).split("\n").index("[observations.ankle_angle_r]") + 1
     with pytest.raises(GaitdiscError) as refusal:
-        simulation_of((ankle_text + LONG).replace(old, new), "ankle.toml")
+        parse_simulation((ankle_text + LONG).replace(old, new), "ankle.toml")
     assert f"ankle.toml, line {line}, " in str(refusal.value) and words in str(refusal.value)

@@ -7,14 +7,14 @@ from math import sin as sine
 import numpy as np
 import pytest
 
-from gaitdisc.simulation.expression import parsed, written
-from gaitdisc.simulation.traced import NotTraced, traced_equations
+from gaitdisc.simulation.expression import parse, written
+from gaitdisc.simulation.traced import NotTraced, trace_equations
 
 GRAVITY = 9.81
 
 
 def equations(function, *names):
-    return [written(tree) for tree in traced_equations(function, lambda value: (tuple(map(value, names)), {}))]
+    return [written(tree) for tree in trace_equations(function, lambda value: (tuple(map(value, names)), {}))]
 
 
 def value_at(text, **names):
@@ -115,7 +115,7 @@ def test_methods_objects_and_partial_functions_are_written_down_too(motor):
 def test_what_a_function_does_is_written_down(function, texts):
     found = equations(function, *function.__code__.co_varnames[: function.__code__.co_argcount])
     assert found == texts
-    assert [written(parsed(text)) for text in found] == texts
+    assert [written(parse(text)) for text in found] == texts
 
 
 @pytest.mark.parametrize(

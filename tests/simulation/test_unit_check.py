@@ -8,7 +8,7 @@ from texts import says
 from gaitdisc.errors import SchemaError, SimulationError
 from gaitdisc.simulation.parts import Parameter, Sensor, State, Term
 from gaitdisc.simulation.simulation import Simulation
-from gaitdisc.simulation.simulation_file import bundled, bundled_names, simulation_of
+from gaitdisc.simulation.simulation_file import bundled, list_bundled, parse_simulation
 from gaitdisc.simulation.unit_check import refuse_units, unit_findings
 
 TEXT = """title = "mass"
@@ -33,7 +33,7 @@ v = "(u + force - k*x)/m{more}"
 
 
 def _told(k="N/m", port="N", more="", effect=None):
-    simulation = simulation_of(TEXT.format(k=k, port=port, more=more))
+    simulation = parse_simulation(TEXT.format(k=k, port=port, more=more))
     simulation = simulation.with_parameter(Parameter("c", 1.0, "N s/m"))
     return [each.what for each in unit_findings(simulation.with_effect(effect) if effect else simulation)]
 
@@ -64,7 +64,7 @@ def test_units_that_do_not_fit_are_told(changed, words):
     assert any(words in what for what in _told(**changed))
 
 
-@pytest.mark.parametrize("name", bundled_names())
+@pytest.mark.parametrize("name", list_bundled())
 def test_what_comes_along_fits(name):
     assert unit_findings(bundled(name)) == ()
 
@@ -123,4 +123,4 @@ def test_a_file_is_refused_at_the_line_of_the_observation(ankle_text):
     text = f'{ankle_text}[observations.ankle]\nexpression = "theta"\nunit = "deg"\n'
     line = text.split("\n").index("[observations.ankle]") + 1
     with pytest.raises(SchemaError, match=rf"ankle.toml, line {line}, \[observations\]"):
-        simulation_of(text, "ankle.toml")
+        parse_simulation(text, "ankle.toml")

@@ -12,7 +12,7 @@ from gaitdisc.errors import ReadError, SchemaError, SimulationError, WriteError
 from gaitdisc.simulation.parts import Input, Parameter, Port, Sensor, State, Term
 from gaitdisc.simulation.python_simulation import python_simulation
 from gaitdisc.simulation.simulation import Simulation
-from gaitdisc.simulation.simulation_file import read_simulation, simulation_of
+from gaitdisc.simulation.simulation_file import parse_simulation, read_simulation
 from gaitdisc.simulation.writing import read_into, simulation_text, write_simulation
 
 SPRING = Term("ankle_moment", "port", "one_sided_spring", "-286.0*max(0, theta - 0.035)")
@@ -25,7 +25,7 @@ def test_an_effect_is_appended_and_nothing_else_changes(ankle, ankle_text):
 def test_only_what_changed_changes(ankle, ankle_text):
     changed = ankle.with_values({"k": 31.5}).with_input("tau", "1.2*tau").with_observation("theta", "theta + 0.01")
     text = simulation_text(changed)
-    assert simulation_of(text) == changed
+    assert parse_simulation(text) == changed
     before, after = ankle_text.split("\n"), text.split("\n")
     value, omega = [line for line in before if line not in after]
     assert value == "value = 25.0   # passive" and omega.startswith("omega = ")
@@ -36,20 +36,20 @@ def test_parameters_are_added_and_tables_replaced(ankle):
     changed = ankle.with_parameter(Parameter("x0", 0.03, "rad", 0.0, 0.1, "engagement"))
     changed = changed.with_parameter(Parameter("b", 1.3, "N m s/rad", 1.0, 2.0))
     text = simulation_text(changed)
-    assert simulation_of(text) == changed
+    assert parse_simulation(text) == changed
     assert "# passive" in text and "# a joint" in text
 
 
 @pytest.mark.parametrize("names", [["omega"], ["omega", "theta"], ["theta", "omega", "power"]])
 def test_observations(ankle_text, names):
-    given_ones = simulation_of(
+    given_ones = parse_simulation(
         ankle_text.replace(
             "[definitions]", '[observations]\ntheta = "theta"  # goniometer\nomega = "omega"\n\n[definitions]'
         )
     )
     changed = given_ones.with_observation("power", "tau*omega").observing(names)
     text = simulation_text(changed)
-    assert simulation_of(text) == changed
+    assert parse_simulation(text) == changed
     assert ("# goniometer" in text) == (names[0] == "theta")
 
 
@@ -58,50 +58,50 @@ def test_a_state_that_an_effect_brings_along_is_written_beside_the_others(ankle,
     text = simulation_text(more)
     kept = [line for line in text.splitlines() if line in ankle_text.splitlines()]
     assert len(kept) >= len(ankle_text.splitlines())
-    assert simulation_of(text) == more
+    assert parse_simulation(text) == more
     assert more.observations == ankle.observations
 
 
 def test_effects_that_were_there_are_taken_away(ankle, ankle_text):
-    augmented = simulation_of(simulation_text(ankle.with_effect(SPRING)))
+    augmented = parse_simulation(simulation_text(ankle.with_effect(SPRING)))
     assert simulation_text(augmented) == augmented.layout
     assert simulation_text(augmented.without_effects()) == ankle_text
     other = augmented.without_effects().with_effect(Term("omega", "equation", "constant_load", "1.0"))
-    assert simulation_of(simulation_text(other)) == other
+    assert parse_simulation(simulation_text(other)) == other
 
 
 def test_windows_line_ends_stay(ankle_text):
-    windows = simulation_of(ankle_text.replace("\n", "\r\n"))
+    windows = parse_simulation(ankle_text.replace("\n", "\r\n"))
     text = simulation_text(windows.with_values({"k": 30.0}).with_effect(SPRING))
     assert text.count("\r\n") == text.count("\n")
 
 
 def test_inline_tables_are_changed_where_they_stand():
-    inline = simulation_of(
+    inline = parse_simulation(
         '[states]\nx = {unit = "m"}  # metres\n[parameters]\nk = {value = 2}\n[equations]\nx = "-k*x"\n'
     )
     changed = inline.with_values({"k": 3.0})
     assert simulation_text(changed) == inline.layout.replace("value = 2", "value = 3.0")
-    assert simulation_of(simulation_text(changed)) == changed
+    assert parse_simulation(simulation_text(changed)) == changed
 
 
 def test_a_layout_that_does_not_fit_is_written_anew():
-    listed = simulation_of('effects = [{equation = "x", term = "1"}]  # one\n[states.x]\n[equations]\nx = "-x"\n')
+    listed = parse_simulation('effects = [{equation = "x", term = "1"}]  # one\n[states.x]\n[equations]\nx = "-x"\n')
     changed = listed.with_effect(Term("x", "equation", "constant_load", "0.5"))
-    assert simulation_of(simulation_text(changed)) == changed
+    assert parse_simulation(simulation_text(changed)) == changed
 
 
 def test_a_sensor_is_written_into_the_line_of_its_observation(ankle_text):
-    read = simulation_of(ankle_text + '[observations]\ntheta = "theta"  # goniometer\nomega = "omega"\n')
+    read = parse_simulation(ankle_text + '[observations]\ntheta = "theta"  # goniometer\nomega = "omega"\n')
     changed = read.with_sensor(Sensor("theta", sd=0.01))
     text = simulation_text(changed)
     assert text == read.layout.replace('theta = "theta"  #', 'theta = {expression = "theta", sd = 0.01}  #')
-    assert simulation_of(text) == changed
+    assert parse_simulation(text) == changed
 
 
 def test_a_number_as_an_expression_is_replaced():
-    falling = simulation_of("[states.v]\n[inputs.u]\n[equations]\nv = -9.81 # gravity\n")
-    changed = simulation_of(falling.layout.replace("-9.81", '"u"')).with_input("u", "2*u")
+    falling = parse_simulation("[states.v]\n[inputs.u]\n[equations]\nv = -9.81 # gravity\n")
+    changed = parse_simulation(falling.layout.replace("-9.81", '"u"')).with_input("u", "2*u")
     assert '"2*u" # gravity' in simulation_text(changed)
 
 
@@ -176,11 +176,11 @@ def test_what_is_written_is_read(simulation, sensor, value, expression):
     first = simulation.observations[0][0]
     simulation = simulation.with_sensor(replace(sensor, channel=first))
     text = simulation_text(simulation)
-    read = simulation_of(text)
+    read = parse_simulation(text)
     assert read == simulation
     changed = read.with_values({"k": value}).with_input("u", "2*delay(u, 0.1)").with_observation("seen", expression)
     changed = changed.with_effect(Term("v", "equation", "more", expression))
-    assert simulation_of(simulation_text(changed)) == changed
+    assert parse_simulation(simulation_text(changed)) == changed
 
 
 LONG = """
@@ -193,17 +193,17 @@ lowpass = 6.0
 
 
 def test_an_observation_in_the_long_form_is_written_back(ankle_text):
-    read = simulation_of(ankle_text + LONG)
+    read = parse_simulation(ankle_text + LONG)
     assert simulation_text(read) == read.layout
     changed = read.with_observation("ankle_angle_r", "1.1*57.2958*theta").with_observation("rate", "omega")
     text = simulation_text(changed)
-    assert simulation_of(text) == changed
+    assert parse_simulation(text) == changed
     assert 'expression = "1.1*57.2958*theta"   # seen' in text and "# cameras" in text
 
 
 def test_a_sensor_that_was_not_in_the_file_is_written_into_it(ankle):
     changed = ankle.with_sensor(Sensor("theta", "rad", 0.005)).with_sensor(Sensor("omega", lowpass=6.0))
-    assert simulation_of(simulation_text(changed)) == changed
+    assert parse_simulation(simulation_text(changed)) == changed
 
 
 def test_the_sensors_of_a_python_object_are_written_with_it(tmp_path):

@@ -11,7 +11,7 @@ from made_clinic import PROVENANCE, made_controls, made_person, made_run
 
 from gaitdisc.clinic.clinical_reference import PersonSession
 from gaitdisc.clinic.person_page import index_rows, write_index, write_person_page
-from gaitdisc.clinic.reading import contrast_of, read_beside
+from gaitdisc.clinic.reading import contrast, read_beside
 from gaitdisc.saved.provenance import Refusal
 
 BROWSER = next(filter(None, map(shutil.which, ("chromium", "chromium-browser", "google-chrome"))), None)
@@ -52,7 +52,7 @@ def pages(tmp_path_factory):
     person = made_person(HOSTILE, each=6, changed={"knee_angle_l": -30.0})
     first = read_beside(person, reference)
     second = read_beside(made_person(HOSTILE, condition=f"turn {HOSTILE}", each=6), reference)
-    session = PersonSession(f"P01 {HOSTILE}", (first, second), (contrast_of(first, second),))
+    session = PersonSession(f"P01 {HOSTILE}", (first, second), (contrast(first, second),))
     write_person_page(session, "P01", reference, PROVENANCE, folder)
     refused = Refusal("P02", "walk", f"a_file_of_a_very_long_name_{'x' * 90} {HOSTILE}")
     write_index(made_run(person, refusals=(refused,)), index_rows(session, "P01"), reference, folder)

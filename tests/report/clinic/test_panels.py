@@ -23,7 +23,7 @@ from gaitdisc.clinic.panels import (
     svg,
     ticks,
 )
-from gaitdisc.clinic.reading import contrast_of, read_beside
+from gaitdisc.clinic.reading import contrast, read_beside
 from gaitdisc.processing.leg_curves import KINEMATICS, POWERS
 
 
@@ -154,6 +154,6 @@ def test_numbers_drawn_are_a_table_of_101_rows(reading):
 
 def test_two_sets_of_cycles_lie_over_each_other(reading):
     other = read_beside(made_person(session="after", changed={"knee_angle_l": 9.0}), None)
-    panels = contrast_sheet(contrast_of(reading, other), "l")
+    panels = contrast_sheet(contrast(reading, other), "l")
     assert [line.look for line in panels[0].lines] == ["before", "mean"]
     assert all(line.side == "l" for panel in panels for line in panel.lines)

@@ -15,7 +15,7 @@ from gaitdisc.clinic.laboratory import Laboratory, PageWords
 from gaitdisc.clinic.panels import Panel, sheet
 from gaitdisc.clinic.person_page import index_rows, write_index, write_person_page
 from gaitdisc.clinic.person_pdf import draw_panel, write_person_pdf
-from gaitdisc.clinic.reading import contrast_of, read_beside
+from gaitdisc.clinic.reading import contrast, read_beside
 from gaitdisc.processing.leg_curves import KINEMATICS
 from gaitdisc.recording import PERCENT
 from gaitdisc.report.figure import file_names
@@ -33,7 +33,7 @@ def _page(tmp_path, *people, title="P01", contrasts=()):
 def page(tmp_path_factory):
     folder = tmp_path_factory.mktemp("page")
     first, second = made_person(each=6), made_person(condition="turn", each=6)
-    pair = contrast_of(read_beside(first, REFERENCE), read_beside(second, REFERENCE))
+    pair = contrast(read_beside(first, REFERENCE), read_beside(second, REFERENCE))
     return _page(folder, first, second, contrasts=(pair,))
 
 
@@ -159,7 +159,7 @@ def test_before_and_after_stand_on_the_first_sheet_of_page_and_pdf(tmp_path):
         )
         for k, word in enumerate(("before", "after"))
     ]
-    session = PersonSession("P01 before after", (pair[1], pair[0]), (contrast_of(*pair),))
+    session = PersonSession("P01 before after", (pair[1], pair[0]), (contrast(*pair),))
     assert session.before_after is session.contrasts[0]
     page = write_person_page(session, "P01", REFERENCE, PROVENANCE, tmp_path).read_text(encoding="utf-8")
     headings = re.findall(r"<h2[^>]*>([^<]*)</h2>", page)

@@ -9,15 +9,15 @@ from texts import says
 from gaitdisc.clinic.clinical_reference import Limits, Noted, PersonSession
 from gaitdisc.clinic.laboratory import PageWords, english_words, read_words, write_words
 from gaitdisc.clinic.person_page import index_rows, write_index, write_person_page
-from gaitdisc.clinic.reading import contrast_of, read_beside
+from gaitdisc.clinic.reading import contrast, read_beside
 from gaitdisc.clinic.rules import rule_words
 from gaitdisc.clinic.sentences import (
     MOST,
     contrast_sentences,
-    noted_sentences,
     outstanding_sentences,
     quality_sentence,
     score_sentences,
+    write_noted,
 )
 from gaitdisc.errors import SchemaError
 from gaitdisc.recording import PERCENT
@@ -121,7 +121,7 @@ def _noted(side, value, rule="knee", tier=2, words=SWING):
     ],
 )  # fmt: skip
 def test_what_says_one_thing_is_one_sentence_of_its_highest_tier(noted, tier, parts):
-    found = noted_sentences(noted, tier)
+    found = write_noted(noted, tier)
     assert len(found) == len(parts)
     for said, own in zip(found, parts, strict=True):
         assert said.startswith("Reduced knee flexion in swing: ") and all(part in said for part in own)
@@ -145,11 +145,11 @@ def test_a_difference_is_said_with_place_p_and_counts():
     bump = 15.0 * ((PERCENT >= 65) & (PERCENT <= 80))
     before = read_beside(made_person(session="before", each=8, spread=0.0), None)
     after = read_beside(made_person(session="after", each=8, spread=0.0, seed=1, changed={"knee_angle_l": bump}), None)
-    said, *_ = contrast_sentences(contrast_of(before, after))
+    said, *_ = contrast_sentences(contrast(before, after))
     assert says(said, "left: 15 deg more", "after", "before", "65", "80 %")
     assert said.endswith("8 and 8 cycles.")
     both = {"knee_angle_l": bump / 5, "hip_flexion_l": bump / 5}  # less than matters
     slightly = read_beside(made_person(session="after", each=8, spread=0.0, seed=1, changed=both), None)
-    assert says(contrast_sentences(contrast_of(before, slightly))[-1], "2 stretches", "less than 5 deg")
-    few = contrast_sentences(contrast_of(*(read_beside(made_person(session=w, each=2), None) for w in ("a", "b"))))
+    assert says(contrast_sentences(contrast(before, slightly))[-1], "2 stretches", "less than 5 deg")
+    few = contrast_sentences(contrast(*(read_beside(made_person(session=w, each=2), None) for w in ("a", "b"))))
     assert says(few[0], "not tested. a permutation")
