@@ -60,7 +60,10 @@ def load_discovery(folder: Path) -> Discovery:
         return Discovery(
             verdict=data["verdict"],
             sentence=data["sentence"],
-            where=tuple(map(_where, data["where"])),
+            where=tuple(
+                Whereabouts(kind, place, **_restore(dict(others)))
+                for (kind, place), *others in (row.items() for row in data["where"])
+            ),
             effects=tuple(map(_effect, data["effects"])),
             rivals=tuple(map(_effect, data["rivals"])),
             train=_gap(data["gap"]["train"]),
@@ -78,7 +81,12 @@ def load_discovery(folder: Path) -> Discovery:
             explanations=tuple(map(_explanation, data.get("explanations", ()))),
             given=data.get("given", ""),
             beside=_restore(data.get("beside", {})),
-            conditions=tuple(map(_condition, data.get("conditions", ()))),
+            conditions=tuple(
+                ConditionAnswer(
+                    **row | {"effects": tuple(map(_effect, row["effects"])), "beside": _restore(row["beside"])}
+                )
+                for row in data.get("conditions", ())
+            ),
         )
     except (KeyError, TypeError, ValueError, AttributeError) as error:
         if hasattr(error, "needed"):  # a refusal of its own
@@ -93,11 +101,6 @@ def _restore(value: Any) -> Any:
     if isinstance(value, list):
         return tuple(_restore(one) for one in value)
     return float("nan") if value is None else value
-
-
-def _where(row: Mapping[str, Any]) -> Whereabouts:
-    (kind, place), *others = row.items()
-    return Whereabouts(kind, place, **_restore(dict(others)))
 
 
 def _effect(row: Mapping[str, Any]) -> FoundEffect:
@@ -116,10 +119,6 @@ def _effect(row: Mapping[str, Any]) -> FoundEffect:
         reads_as_effect=reading["effect"] or "",
         **{name: row[name] for name in ("tied", "small", "states") if name in row},
     )
-
-
-def _condition(row: Mapping[str, Any]) -> ConditionAnswer:
-    return ConditionAnswer(**{**row, "effects": tuple(map(_effect, row["effects"])), "beside": _restore(row["beside"])})
 
 
 def _explanation(row: Mapping[str, Any]) -> Explanation:

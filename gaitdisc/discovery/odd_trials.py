@@ -173,7 +173,9 @@ def _shift(bench: _Bench, fit: Fitted, segments: Segments) -> Iterator[Change]:
         run = segments.of(measured.observed)[mine] / bench.spread - fit.residual[mine] / bench.spread
         slopes, begin = fit.slopes[mine], segments.begin[mine]
         now, *left = (_left(seen, run, slopes, begin + shift) for shift in (0, *shifts))
-        promising = [place for place in _lowest(np.array(left)) if left[place] < PROMISING * now]
+        padded = np.array([np.inf, *left, np.inf])  # local minima, the least first
+        lowest = np.flatnonzero((padded[1:-1] <= padded[:-2]) & (padded[1:-1] <= padded[2:]))
+        promising = [k for k in sorted(lowest.tolist(), key=lambda k: left[k]) if left[k] < PROMISING * now]
         likely |= {shifts[place] for place in promising[:SHIFTS_TRIED]}
     for shift in sorted(likely):
         words = f"its channels are {abs(shift) / measured.rate:.3g} s too {'late' if shift > 0 else 'early'}"
@@ -204,13 +206,6 @@ def _left(seen: Values, run: Values, slopes: Values, begin: NDArray[np.intp]) ->
     kept = np.repeat(inside, run.shape[2], axis=1)
     rest = without(start_basis(slopes * kept[..., None]), flat[..., None])[..., 0]
     return float((rest**2).sum() / max(kept.sum(), 1))
-
-
-def _lowest(values: Values) -> list[int]:
-    """Places of the local minima, the least first."""
-    padded = np.concatenate([[np.inf], values, [np.inf]])
-    places = np.flatnonzero((values <= padded[:-2]) & (values <= padded[2:]))
-    return sorted(places.tolist(), key=lambda place: values[place])
 
 
 def without_trial_apart(case: Case) -> Measured:

@@ -190,7 +190,11 @@ def baseline_table(run: ResponseRun) -> Table | None:
     tests = run.over.baselines
     rows = []
     for (variable, model), found in tests.groupby(["variable", "model"], sort=False):
-        cells = [_against(found[found["first"] == kind].iloc[0]) for kind in BASELINE_WORDS]
+        cells = []
+        for row in (found[found["first"] == kind].iloc[0] for kind in BASELINE_WORDS):
+            interval = f"[{number(row['low'], 3)}, {number(row['high'], 3)}]"
+            shift = f"{number(row['shift'], 3)} {direction_found(row)}\n{interval}"
+            cells.append(shift if math.isfinite(row["p"]) else "not tested")
         rows.append((label(str(variable)), MODEL_WORDS[str(model)], str(int(found["n"].max())), *cells))
     order = [label(str(variable)) for variable in dict.fromkeys(tests["variable"])]
     rows.sort(key=lambda row: order.index(row[0]))
@@ -203,12 +207,6 @@ def baseline_table(run: ResponseRun) -> Table | None:
     groups = (("", 3), ("network minus baseline", 3))
     columns = ("variable", "model", "n", *(f"against {words}" for words in BASELINE_WORDS.values()))
     return Table("baselines", caption, columns, tuple(rows), tests, groups)
-
-
-def _against(row: pd.Series) -> str:
-    if not math.isfinite(row["p"]):
-        return "not tested"
-    return f"{number(row['shift'], 3)} {direction_found(row)}\n[{number(row['low'], 3)}, {number(row['high'], 3)}]"
 
 
 def baseline_sentences(run: ResponseRun) -> list[str]:

@@ -42,17 +42,15 @@ def r2(measured: ArrayLike, predicted: ArrayLike) -> NDArray[np.float64]:
     >>> r2(np.array([[0.0], [1.0], [2.0]]), np.array([[0.0], [1.0], [1.0]]))
     array([0.5])
     """
-    measured, predicted = (_columns(values) for values in (measured, predicted))
+    measured, predicted = (
+        values[:, None] if values.ndim == 1 else values
+        for values in (np.asarray(each, float) for each in (measured, predicted))
+    )
     meaningless = np.array([bool(reason) for reason in why_no_r2(measured, predicted)])
     y, f = (np.where(meaningless, 0.0, values) for values in (measured, predicted))
     sse = np.sum((y - f) ** 2, axis=0)
     sst = np.sum((y - y.mean(axis=0)) ** 2, axis=0) if len(y) else sse
     return np.where(meaningless, np.nan, 1.0 - sse / np.where(meaningless, 1.0, sst))
-
-
-def _columns(values: ArrayLike) -> NDArray[np.float64]:
-    array = np.asarray(values, float)
-    return array[:, None] if array.ndim == 1 else array
 
 
 def why_no_r2(measured: NDArray[np.float64], predicted: NDArray[np.float64]) -> tuple[str, ...]:
