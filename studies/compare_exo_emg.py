@@ -35,8 +35,8 @@ def run(data: Path, first: str = EASY, second: str = HARD) -> gd.Mismatch:
     stored = np.load(data / "ankle_exo_emg_grf" / "assisted.npz")
     signals = [str(name) for name in stored["signals"]][FORCES:]
     people = [f"S{number:02d}" for number in range(1, PEOPLE + 1)]
-    both = [[summary(stored[f"x_{who}{one}"], signals, who, one) for who in people] for one in (first, second)]
-    return compare_people(*both)
+    walks = {one: [summary(stored[f"x_{who}{one}"], signals, who, one) for who in people] for one in (first, second)}
+    return compare_people(walks[first], walks[second])
 
 
 def summary(strides: NDArray[np.float64], signals: list[str], person: str, condition: str) -> WalkSummary:

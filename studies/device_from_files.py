@@ -70,9 +70,8 @@ def summary(table: pd.DataFrame) -> pd.DataFrame:
 def run(people: int, seed: int, quick: bool, fit: bool = False) -> pd.DataFrame:
     """Hide each effect in each person's second walk, and search the files."""
     everyone = [draw_one(f"X{one + 1:02d}", seed + one, "fm"[one % 2]) for one in range(1 if quick else people)]
-    return pd.DataFrame(
-        [found_in(one, hidden, fit) for one in everyone for hidden in (("spring",) if quick else RIGHT)]
-    )
+    hiddens = ("spring",) if quick else RIGHT
+    return pd.DataFrame([found_in(one, hidden, fit) for one in everyone for hidden in hiddens])
 
 
 def found_in(person: Person, hidden: str, fit: bool) -> dict[str, object]:

@@ -263,7 +263,7 @@ def on_longer_runs(case: Case, now: CrossValidated) -> CrossValidated | None:
         shooting = replace(case.cut_learned_runs(samples), past=guess.states)
         shooting = shooting.with_noise(scale.white_error(before.model.fit))
         starts = guess.starts(shooting.segments)
-        begun = before.model.refit(shooting, starts=starts, turns=TURNS)
+        begun = before.model.refitted(shooting, starts=starts, turns=TURNS)
         longer = cross_validated(scale, ScoredModel(begun, shooting), begun.parts)
         if not scale.relative(longer.model.fit) < CRITERIA.near:
             break
@@ -274,7 +274,7 @@ def on_longer_runs(case: Case, now: CrossValidated) -> CrossValidated | None:
 def as_read_on(scale: GapScale, as_read: CrossValidated, longer: CrossValidated) -> CrossValidated:
     """Run the simulation as read over the runs of what was found; an error beyond the spread counts as the spread."""
     shooting = longer.shooting.with_noise(scale.white_error(as_read.model.fit))
-    model = as_read.model.refit(shooting, starts=longer.model.fit.starts, turns=TURNS)
+    model = as_read.model.refitted(shooting, starts=longer.model.fit.starts, turns=TURNS)
     most = CRITERIA.lost * (scale.spread / scale.size) ** 2
     square = np.fmin((model.fit.residual / scale.size) ** 2, most)  # the greater where a run has failed
     mean = float(square[shooting.known].mean())

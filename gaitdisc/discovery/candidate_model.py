@@ -71,7 +71,7 @@ class CandidateModel:
         """Information criterion (BIC): misfit plus log(N) for each number fitted; the smaller the better."""
         return self.fit.misfit + self.size * float(np.log(self.fit.white.size))
 
-    def refit(
+    def refitted(
         self,
         shooting: Shooting,
         parts: tuple[Part, ...] | None = None,

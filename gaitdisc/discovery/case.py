@@ -143,7 +143,7 @@ class Case:
         begun = fit_model(first, self.search.base, (), self.guess.starts(first.segments))
         guess = self.guess.with_run(first.segments, begun.fit.states)
         shooting = self.shooting(self.segments(self.learned, periods).spread(MOST_SEARCHED))
-        model = begun.refit(shooting, starts=guess.starts(shooting.segments))
+        model = begun.refitted(shooting, starts=guess.starts(shooting.segments))
         if not np.isfinite(model.fit.misfit):  # short runs leave hidden states open, and a long one may end with these
             model = fit_model(shooting, self.search.base, (), self.guess.starts(shooting.segments))
         return score(shooting.with_past(model.fit.states), model)
@@ -164,7 +164,7 @@ class Case:
     def fit_over(self, shooting: Shooting, now: ScoredModel) -> CandidateModel:
         """Fit a model to other runs, which begin along its own."""
         starts = self.guess.with_run(now.shooting.segments, now.model.fit.states).starts(shooting.segments)
-        return now.model.refit(shooting, starts=starts)
+        return now.model.refitted(shooting, starts=starts)
 
     def lengthen(self, now: ScoredModel, most: int = 10**9) -> ScoredModel:
         """Return a model fitted to runs as long as it can follow.

@@ -193,7 +193,7 @@ def check_on_longer_runs(case: Case, as_read: ScoredModel, named: ScoredModel) -
     kept = prune(case.search, longer, CRITERIA.margin).model.parts
     if len(kept) == len(named.model.parts):
         return named
-    return score(named.shooting, named.model.refit(named.shooting, kept))
+    return score(named.shooting, named.model.refitted(named.shooting, kept))
 
 
 def with_autocorrelation(

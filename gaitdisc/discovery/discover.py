@@ -59,7 +59,7 @@ def discover(simulation: Simulation, measured: Measured, request: Request = ALL)
             progress("the identified effects explain a trial that was left out: the search is repeated with it")
             case, as_read, verdict = explained(kept)
     progress("testing the answer on held-out data")
-    return answer(case, as_read, verdict, request.refit)
+    return answer(case, as_read, verdict, request.refitted)
 
 
 def weigh_explanations(

@@ -112,7 +112,7 @@ def _beside_the_simulation(
         return found
     cutoffs = tuple(found[number].cutoff_hz if number in found else None for number in range(len(measured.channels)))
     filtered = replace(now.shooting, record_filter=RecordFilter(cutoffs, measured.rate))
-    return found if now.model.refit(filtered).fit.misfit < now.model.fit.misfit else {}
+    return found if now.model.refitted(filtered).fit.misfit < now.model.fit.misfit else {}
 
 
 def _stitch(now: ScoredModel) -> Values:

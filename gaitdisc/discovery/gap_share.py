@@ -94,11 +94,11 @@ def cross_validated(scale: GapScale, begun: ScoredModel, parts: tuple[Part, ...]
     model, shooting = begun.model, begun.shooting
     enough = CONVERGED * shooting.seen.size / CRITERIA.independent
     shooting = shooting.with_noise(scale.white_error(model.fit))
-    model = model.refit(shooting, parts, turns=TURNS, enough=enough)
+    model = model.refitted(shooting, parts, turns=TURNS, enough=enough)
     if not np.isfinite(model.fit.misfit):
         return CrossValidated(model, shooting)
     shooting = shooting.with_noise(scale.white_error(model.fit)).with_past(model.fit.states)
-    model = model.refit(shooting, turns=AGAIN, enough=enough)
+    model = model.refitted(shooting, turns=AGAIN, enough=enough)
     if not np.isfinite(model.fit.misfit):
         return CrossValidated(model, shooting)
     square = float(np.mean((shooting.noise.size / scale.size) ** 2))

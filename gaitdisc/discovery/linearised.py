@@ -57,7 +57,7 @@ class Linearised:
 
     def among(self, some: NDArray[np.intp]) -> Linearised:
         """Return the maps of some of the segments."""
-        return Linearised(self.onward[some], self.pushed[some], self.land[some])
+        return Linearised(self.onward[some], self.pushed[some], self.landed[some])
 
     def of_push(self, place: int, push: Values) -> Values:
         """Return the change of state (segment, sample, state, candidate) that pushes at a place cause.
@@ -102,7 +102,7 @@ def linearise_along(
         states[1 + state, ..., state] += spans[state]
     for place in range(len(places)):
         many[1 + n + place, own + place] = PUSH
-    landed = shooting.land(machine, states, many)
+    landed = shooting.landed(machine, states, many)
     change = landed[1:] - landed[0]
     onward = np.moveaxis(change[:n] / spans[:, None, None, None], 0, -1)
     pushed = np.moveaxis(change[n:] / PUSH, 0, -1)

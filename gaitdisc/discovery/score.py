@@ -222,7 +222,9 @@ class Scorer:
         seen -= self.shooting.observed(self.model.machine, self.model.fit.states[None], self.model.fit.values[None])
         columns = self.shooting.whiten(np.moveaxis(seen / over[:, None, None, None], 0, -1))
         if candidate.verdict != "sensor_error":
-            landed = self.shooting.land(machine, states[:, :, :-1], values)[..., : line.land.shape[-1]] - line.land
+            landed = (
+                self.shooting.landed(machine, states[:, :, :-1], values)[..., : line.landed.shape[-1]] - line.landed
+            )
             columns += self._white(line.of_change(np.moveaxis(landed / over[:, None, None, None], 0, -1)))
         return [_Cell(number, one if whole else {}, {slot: none}, whole) for one in tried], columns
 

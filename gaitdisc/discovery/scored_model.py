@@ -67,7 +67,7 @@ class ScoredModel:
         """Return the model fitted again under another's noise, so that the two can be compared."""
         if other.shooting is self.shooting:
             return self
-        return ScoredModel(self.model.refit(other.shooting, turns=TURNS), other.shooting, self.gained)
+        return ScoredModel(self.model.refitted(other.shooting, turns=TURNS), other.shooting, self.gained)
 
 
 def score(shooting: Shooting, model: CandidateModel, rounds: int = 2) -> ScoredModel:
@@ -77,7 +77,7 @@ def score(shooting: Shooting, model: CandidateModel, rounds: int = 2) -> ScoredM
         used = model.fit.starts.shape[1] / model.fit.residual.shape[2]
         noise = find_noise(model.fit.residual, used, least=least, autocorrelation=shooting.filter_autocorrelation)
         shooting = shooting.with_noise(noise).with_past(model.fit.states)
-        model = model.refit(shooting, turns=TURNS)
+        model = model.refitted(shooting, turns=TURNS)
     return ScoredModel(model, shooting)
 
 

@@ -68,7 +68,7 @@ class Search:
 
     def with_part(self, now: ScoredModel, part: Part, turns: int = TURNS) -> CandidateModel:
         """Fit a model with one explanation more to the same runs."""
-        return now.model.refit(now.shooting, (*now.model.parts, part), turns=turns, enough=NEARLY)
+        return now.model.refitted(now.shooting, (*now.model.parts, part), turns=turns, enough=NEARLY)
 
     def far_off(self, now: ScoredModel) -> list[CandidateModel]:
         """Fit each number without bounds from other orders of magnitude: a slope at the file's does not reach these."""
@@ -79,7 +79,7 @@ class Search:
             begun = [self.with_part(now, Part(one, {"value": one.value * factor}), FEW_TURNS) for factor in DECADES]
             best = min(begun, key=lambda each: each.fit.misfit if np.isfinite(each.fit.misfit) else np.inf)
             if best.fit.misfit < now.model.fit.misfit:
-                found.append(now.model.refit(now.shooting, best.parts, best.fit.starts, TURNS, NEARLY))
+                found.append(now.model.refitted(now.shooting, best.parts, best.fit.starts, TURNS, NEARLY))
         return found
 
     def _report(self, worth: list[Score]) -> Iterator[Score]:
@@ -167,7 +167,7 @@ class Search:
 
     def with_others(self, now: ScoredModel, parts: tuple[Part, ...]) -> ScoredModel:
         """Return the simulation with other explanations, fitted to the runs of a model under its noise."""
-        return ScoredModel(now.model.refit(now.shooting, parts, turns=TURNS), now.shooting)
+        return ScoredModel(now.model.refitted(now.shooting, parts, turns=TURNS), now.shooting)
 
 
 def is_certain(model: CandidateModel, first: int = 0, end: int | None = None) -> bool:

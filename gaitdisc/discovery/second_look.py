@@ -193,7 +193,7 @@ def in_its_place(case: Case, now: ScoredModel, number: int, relative: Candidate)
         return None
     parts = [*fewer.model.parts]
     parts.insert(number, Part(scores[0].candidate, scores[0].values))
-    model = fewer.model.refit(now.shooting, tuple(parts), now.model.fit.starts, TURNS)
+    model = fewer.model.refitted(now.shooting, tuple(parts), now.model.fit.starts, TURNS)
     return ScoredModel(model, now.shooting, now.gained) if search.sensible(model) else None
 
 

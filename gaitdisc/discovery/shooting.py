@@ -75,7 +75,7 @@ class Shooting:
         states = states.reshape(*starts.shape[:2], self.segments.length, -1)
         return states, self.observed(machine, states, values)
 
-    def land(self, machine: Compiled, states: Values, values: Values) -> Values:
+    def landed(self, machine: Compiled, states: Values, values: Values) -> Values:
         """Run every step of every segment by itself, and return where it lands (version, segment, step, state).
 
         states (version, segment, step, state): where each step starts

@@ -122,7 +122,7 @@ def test_a_search_that_is_stopped_continues_with_the_same_command(lab, whole, tm
     words, fits, descended = (
         ("discover", lab / "good.toml", lab / "good.csv", "--out", tmp_path),
         [],
-        Shooting._descended,
+        Shooting._descend,
     )
 
     def stopping_at(last):
@@ -133,7 +133,7 @@ def test_a_search_that_is_stopped_continues_with_the_same_command(lab, whole, tm
             return descended(self, machine, now, *more)
 
         fits.clear()
-        monkeypatch.setattr(Shooting, "_descended", counted)
+        monkeypatch.setattr(Shooting, "_descend", counted)
 
     stopping_at(3)
     assert says(
@@ -143,7 +143,7 @@ def test_a_search_that_is_stopped_continues_with_the_same_command(lab, whole, tm
     assert "Stopped. So far: Coulomb friction in the equation of v; " in called(*words, ends=STOPPED).stderr
     stopping_at(np.inf)
     assert "continuing an earlier run: " in called(*words, "--no-report", ends=0).stderr
-    monkeypatch.setattr(Shooting, "_descended", descended)
+    monkeypatch.setattr(Shooting, "_descend", descended)
     for file in ("held_out.csv", "augmented.toml"):
         assert (tmp_path / file).read_bytes() == (whole[0] / file).read_bytes()
     found, wanted = (json.loads((one / "discovery.json").read_text(encoding="utf-8")) for one in (tmp_path, whole[0]))

@@ -132,7 +132,7 @@ def test_random_pushes_of_a_function_are_answered(tmp_path):
 def shape(case, as_read, cubic):
     """Return an answer without a name that is the truth: no effect of the catalogue but one comes near it."""
     part = Part(replace(cubic, name="unnamed"), {"factor": -14.0})
-    model = as_read.model.refit(as_read.shooting, (part,))
+    model = as_read.model.refitted(as_read.shooting, (part,))
     return score(as_read.shooting, model)
 
 
@@ -165,10 +165,10 @@ def test_one_that_is_in_the_answer_is_no_rival(case, named):
 def test_beside_one_of_two_a_rival_stands_in_the_place_of_the_other(case, as_read, cubic, named):
     drift = next(one for one in case.search.candidates if one.label == "sensor_drift@x")
     parts = (Part(cubic, {"factor": -14.0}), Part(drift, {"rate": 0.0}))
-    model = as_read.model.refit(as_read.shooting, parts)
+    model = as_read.model.refitted(as_read.shooting, parts)
     both = score(as_read.shooting, model)
     offset = next(one for one in case.search.candidates if one.label == "sensor_offset@x")
-    other = as_read.model.refit(as_read.shooting, (Part(offset, {"offset": 0.0}),))
+    other = as_read.model.refitted(as_read.shooting, (Part(offset, {"offset": 0.0}),))
     (rival,) = weigh_rivals(case.search, both, (replace(both, model=other),), 0.0)
     assert rival.scored.labels == ("cubic_stiffness@load", "sensor_offset@x")
     assert rival.tied

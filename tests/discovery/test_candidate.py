@@ -213,7 +213,7 @@ def test_parts_are_put_in_one_after_the_other_under_names_of_their_own():
 
 def test_the_true_explanation_is_fitted_to_its_true_number(case, as_read, cubic):
     part = Part(cubic, {"factor": 0.0})
-    model = as_read.model.refit(as_read.shooting, (part,))
+    model = as_read.model.refitted(as_read.shooting, (part,))
     error = float(np.sqrt(model.fit.covariance[0, 0]))
     assert model.parts[0].values["factor"] == pytest.approx(-14.0, abs=max(4 * error, 0.1))
     assert model.names == ({"factor": "part0_factor"},)
@@ -221,7 +221,7 @@ def test_the_true_explanation_is_fitted_to_its_true_number(case, as_read, cubic)
 
 
 def test_a_number_more_costs_the_logarithm_of_what_was_measured(case, as_read, cubic):
-    model = as_read.model.refit(as_read.shooting, (Part(cubic, {"factor": 0.0}),))
+    model = as_read.model.refitted(as_read.shooting, (Part(cubic, {"factor": 0.0}),))
     assert model.size == 1
     assert model.bic - model.fit.misfit == pytest.approx(np.log(model.fit.white.size))
 

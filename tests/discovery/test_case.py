@@ -104,7 +104,7 @@ def test_as_read_only_the_starts_are_fitted(as_read):
 
 def test_a_right_account_is_followed_over_half_a_trial_or_more_and_no_run_is_longer_than_wanted(case, as_read, cubic):
     part = Part(cubic, {"factor": -14.0})
-    true = as_read.model.refit(as_read.shooting, (part,))
+    true = as_read.model.refitted(as_read.shooting, (part,))
     longer = case.lengthen(score(as_read.shooting, true))
     assert longer.shooting.segments.length >= case.measured.samples.min() / 2
     assert longer.model.parts[0].values["factor"] == pytest.approx(-14.0, rel=0.005)

@@ -48,7 +48,7 @@ def beside(as_read, cubic, labelled):
 
     def fit(*idle):
         parts = (Part(labelled[one], dict.fromkeys(labelled[one].slots, 0.0)) for one in idle)
-        model = as_read.model.refit(as_read.shooting, (Part(cubic, {"factor": -14.0}), *parts))
+        model = as_read.model.refitted(as_read.shooting, (Part(cubic, {"factor": -14.0}), *parts))
         return score(as_read.shooting, model)
 
     return fit
@@ -64,7 +64,7 @@ def test_held_out_data_prefer_two_plain_effects_to_one_of_more_numbers_that_imit
     case, as_read, beside, labelled
 ):
     imitates = Part(labelled["periodic_forcing@load"], {"factor": 1.0, "factor_1": 1.0, "w": 3.0})
-    one = score(as_read.shooting, as_read.model.refit(as_read.shooting, (imitates,)))
+    one = score(as_read.shooting, as_read.model.refitted(as_read.shooting, (imitates,)))
     true, two = beside(), beside("viscous_damping@load")
     assert one.model.size > two.model.size > true.model.size
     assert prefer_on_held_out(case, one, (two,)) is two
@@ -82,7 +82,7 @@ def test_of_three_names_the_one_that_is_missed_least_goes(case, beside):
 def test_a_shape_that_the_held_out_data_do_not_bear_out_is_not_handed_out(case, as_read, cubic, beside, monkeypatch):
     both = beside("viscous_damping@load")
     wrong = replace(cubic, name="unnamed")
-    bad = as_read.model.refit(as_read.shooting, (Part(wrong, {"factor": 2.0}),), turns=0)
+    bad = as_read.model.refitted(as_read.shooting, (Part(wrong, {"factor": 2.0}),), turns=0)
     shape = ScoredModel(bad, as_read.shooting)
     for name, value in (
         ("search_runs", lambda *_: (as_read, both, [])),
@@ -98,7 +98,7 @@ def test_a_shape_that_the_held_out_data_do_not_bear_out_is_not_handed_out(case, 
 
 def test_a_shape_that_is_no_likelier_than_a_name_is_none_either_way(case, as_read, cubic, beside, monkeypatch):
     likelier, unnamed = beside("viscous_damping@load"), Part(replace(cubic, name="unnamed"), {"factor": -14.0})
-    shape = score(as_read.shooting, as_read.model.refit(as_read.shooting, (unnamed,)))
+    shape = score(as_read.shooting, as_read.model.refitted(as_read.shooting, (unnamed,)))
     borne = {likelier.labels: True, shape.labels: True}
     monkeypatch.setattr(decision, "prove_held_out", lambda *of: SimpleNamespace(bears_out=borne[of[-1].labels]))
     monkeypatch.setattr(decision, "with_random_pushes", lambda *_: "pushes")
@@ -154,7 +154,7 @@ def test_a_name_stands_though_a_number_of_the_file_may_be_anything_beside_it(cas
     likelier = [SimpleNamespace(bic=bic) for bic in (100.0, 0.0)]
     for name, value in (
         ("closing_most", Outcome(as_read, lost, 0.9, PairedTest(0.01, 9, 5.0), (), (), ())),
-        ("needed", lost),
+        ("keep_useful", lost),
         ("compared", likelier),
         ("held_out_proof", SimpleNamespace(bears_out=True, closed=0.9)),
     ):
@@ -204,7 +204,7 @@ def test_what_never_relaxes_or_yields_within_the_record_is_named_as_the_spring_t
 
 def test_what_relaxes_beyond_the_record_and_is_no_spring_either_is_not_named(case, as_read, cubic, labelled):
     parts = (Part(cubic, {"factor": -14.0}), Part(labelled["series_elasticity@load"], {"factor": 2.0, "tau": 5e13}))
-    model = as_read.model.refit(as_read.shooting, parts, turns=0)
+    model = as_read.model.refitted(as_read.shooting, parts, turns=0)
     endless = score(as_read.shooting, model)
     proof = prove_held_out(case, as_read, endless)
     found = prefer_relatives(case, as_read, Verdict("missing_physics", endless, (), proof=proof))

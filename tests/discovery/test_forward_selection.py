@@ -20,7 +20,7 @@ def test_what_is_hidden_is_let_in_alone(named):
 
 
 def _with(case, as_read, *parts):
-    return ScoredModel(as_read.model.refit(as_read.shooting, parts), as_read.shooting)
+    return ScoredModel(as_read.model.refitted(as_read.shooting, parts), as_read.shooting)
 
 
 def _idle_and_true(case, as_read, cubic):

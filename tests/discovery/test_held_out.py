@@ -24,7 +24,7 @@ from gaitdisc.discovery.scored_model import ScoredModel, score
 @pytest.fixture(scope="module")
 def runs(case, as_read, cubic):
     part = Part(cubic, {"factor": -14.0})
-    true = as_read.model.refit(as_read.shooting, (part,))
+    true = as_read.model.refitted(as_read.shooting, (part,))
     true = ScoredModel(true, as_read.shooting)
     return tuple(run_trials(case, one, case.held_out, as_read) for one in (as_read, true))
 
@@ -98,7 +98,7 @@ def test_the_start_of_a_long_run_is_found_by_way_of_short_ones():
     case = set_up_case(neuron(), record(truth, 2, Experiment(seconds=40.0, noise=0.05)))
     as_read = case.as_read()
     b = next(one for one in case.search.candidates if one.label == "wrong_parameter@b")
-    true = as_read.model.refit(as_read.shooting, (Part(b, {"value": 1.0}),))
+    true = as_read.model.refitted(as_read.shooting, (Part(b, {"value": 1.0}),))
     longer = case.lengthen(score(as_read.shooting, true))
     assert longer.shooting.segments.length > 4 * as_read.shooting.segments.length
     run = run_trials(case, longer, case.held_out, longer)

@@ -48,7 +48,7 @@ def test_a_change_of_the_start_goes_on_as_in_the_run(as_read, line):
 
 
 def test_steps_land_on_the_run(as_read, line):
-    np.testing.assert_allclose(line.land, as_read.model.fit.states[:, 1:], rtol=1e-9)
+    np.testing.assert_allclose(line.landed, as_read.model.fit.states[:, 1:], rtol=1e-9)
 
 
 def test_pushes_have_parameters_that_are_zero(case, as_read):

@@ -63,7 +63,7 @@ def test_the_best_limit_of_the_grid_is_near_the_true_one():
 
 def test_an_effect_that_is_let_in_already_promises_nothing_more(case, as_read, cubic):
     part = Part(cubic, {"factor": -14.0})
-    model = as_read.model.refit(as_read.shooting, (part,))
+    model = as_read.model.refitted(as_read.shooting, (part,))
     before, after = _scores(case, as_read), _scores(case, replace(as_read, model=model))
     assert after["cubic_stiffness@load"].gain < 1e-3 * before["cubic_stiffness@load"].gain
 

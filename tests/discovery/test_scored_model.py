@@ -12,7 +12,7 @@ from gaitdisc.discovery.scored_model import ScoredModel, compared, ranked, score
 @pytest.fixture(scope="module")
 def with_cubic(case, as_read, cubic):
     part = Part(cubic, {"factor": -14.0})
-    return ScoredModel(as_read.model.refit(as_read.shooting, (part,)), as_read.shooting)
+    return ScoredModel(as_read.model.refitted(as_read.shooting, (part,)), as_read.shooting)
 
 
 def test_under_its_own_noise_an_account_leaves_numbers_of_unit_variance(case, as_read, with_cubic):

@@ -67,7 +67,7 @@ def test_a_fit_that_failed_is_not_sensible(case, as_read):
 
 def _both(case, as_read, cubic):
     parts = (Part(cubic, {"factor": -14.0}), Part(DAMPER, {"factor": 0.0}))
-    return ScoredModel(as_read.model.refit(as_read.shooting, parts), as_read.shooting)
+    return ScoredModel(as_read.model.refitted(as_read.shooting, parts), as_read.shooting)
 
 
 def test_less_one_explanation_the_others_stay(case, as_read, cubic):

@@ -27,7 +27,7 @@ def _with(case, as_read, label, **values):
     """Return the simulation with one explanation in it, fitted from its numbers."""
     candidate = next(one for one in case.search.candidates if one.label == label)
     parts = (Part(candidate, values),)
-    model = as_read.model.refit(as_read.shooting, parts)
+    model = as_read.model.refitted(as_read.shooting, parts)
     return score(as_read.shooting, model)
 
 

@@ -72,7 +72,7 @@ def test_steps_land_where_the_run_goes_on():
     shooting, starts = _shooting()
     machine = compile_simulation(mass())
     states, _ = shooting.run(machine, starts[None], machine.defaults[None])
-    landed = shooting.land(machine, states[:, :, :-1], machine.defaults[None])
+    landed = shooting.landed(machine, states[:, :, :-1], machine.defaults[None])
     np.testing.assert_allclose(landed, states[:, :, 1:], rtol=1e-12)
 
 

@@ -101,7 +101,7 @@ def test_a_joint_says_what_it_shows_and_warns_of_what_has_no_name(leg_walk):
     unnamed = summarise_joint(walk, 2, searched(walk, odd)[1])
     assert unnamed.kind == "without a name" and doubts([said]) == []
     (doubt,) = doubts([said, unnamed])
-    assert says(doubt.what, "1 of 2 joints", "no", "left, 3 times", "more")
+    assert says(doubt.what, "1 of 2 joints", "unnamed residual", "3 times", "more")
     assert says(doubt.spoils, "the other joints")
 
 
