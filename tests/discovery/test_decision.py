@@ -156,7 +156,7 @@ def test_a_name_stands_though_a_number_of_the_file_may_be_anything_beside_it(cas
         ("closing_most", Outcome(as_read, lost, 0.9, PairedTest(0.01, 9, 5.0), (), (), ())),
         ("keep_useful", lost),
         ("compared", likelier),
-        ("held_out_proof", SimpleNamespace(bears_out=True, closed=0.9)),
+        ("prove_held_out", SimpleNamespace(bears_out=True, closed=0.9)),
     ):
         monkeypatch.setattr(decision, name, lambda *_, value=value: value)
     assert decision.plainest(case, now).found is lost
