@@ -153,7 +153,7 @@ def walking_part(trial: Trial) -> Trial:
     cut += [f"{end:.1f} to {time[-1]:.1f} s"] if np.isfinite(end) else []
     if not cut:
         return trial
-    what = f"nobody walks from {' and from '.join(cut)} (standing, or turning on the spot); this part is cut out"
+    what = f"no walking from {' and from '.join(cut)} (standing, or turning on the spot); this part is cut out"
     said = Finding("note", "standing", trial.name, what, "")
     streams = {key: part for key, one in trial.streams.items() if len((part := one.between(start, end)).time) > 1}
     events = tuple(event for event in trial.events if start <= event.time < end)

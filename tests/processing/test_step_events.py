@@ -162,7 +162,7 @@ def test_standing_before_and_after_a_walk_is_cut_out_and_said(walks, before_s, a
         walk = replace(walk, streams={key: walk.streams[key] for key in only}, events=())
         part = walking_part(_standing_about(walk, before_s, after_s))
         (said,) = [finding for finding in part.findings if finding.kind == "standing"]
-        assert (said.severity, said.file) == ("note", walk.name) and said.what.startswith("nobody walks from ")
+        assert (said.severity, said.file) == ("note", walk.name) and said.what.startswith("no walking from ")
         for recording in part.streams.values():
             assert recording.time[0] >= -0.6 and recording.time[-1] <= walk.streams[only[0]].time[-1] + 0.6
         assert over_ground(part)
