@@ -168,7 +168,7 @@ class PersonWalks:
         """Return one joint of the Nominal walk and another, whatever the moment model explains."""
         if lacking := not_compared(against(self.study, condition), self.participant):
             needed = f"both walks of {self.participant.id} are required"
-            raise SchemaError(needed, lacking, "Name one trial of each condition.")
+            raise SchemaError(needed, lacking.removesuffix("."), "Name one trial of each condition.")
         nominal, device = (self._record(word, joint) for word in (self.study.conditions.nominal, condition))
         if joint not in self._models:
             self._models[joint] = nominal_moment(nominal)
