@@ -20,7 +20,7 @@ def walk():
     forces = DATA / "CMC/results_no_spring/walk_subject_Actuation_force.sto"
     actuators = DATA / "gait10dof_Reserve_Actuators.xml"
     tracked = Tracked(DATA / "CMC/subject01_metabolics.osim", loads, forces, actuators)
-    return tracked_walks.tracked_pass(tracked, DATA / "IK/subject01_walk_IK.mot")
+    return tracked_walks.compute_pass(tracked, DATA / "IK/subject01_walk_IK.mot")
 
 
 def test_each_case_leaves_at_one_joint_what_is_planted(walk):
