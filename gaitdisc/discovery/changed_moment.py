@@ -32,7 +32,7 @@ from gaitdisc.processing.muscle_moment import (
     cycle,
     make_model,
     parts_of_stride,
-    solve_ridge,
+    solve_signed,
     solved,
     sum_pieces,
     tied,
@@ -250,7 +250,7 @@ def _weigh_mass(form: Form, nominal: Walk, device: Walk, per_kg: Values, parts: 
 
     def mass(each: Iterable[Sums], weights: Iterable[Values]) -> float:
         total = together(each, weights)
-        return float(solve_ridge(tied(total.squares, muscles), total.match, signed)[-1])
+        return float(solve_signed(tied(total.squares, muscles), total.match, signed)[-1])
 
     first = sums(nominal, form, np.zeros(len(nominal.moment)), form.usual)
     both = first, sums(device, own, per_kg, form.usual)

@@ -47,7 +47,7 @@ class Verdict:
 def decide(case: Case, as_read: ScoredModel) -> Verdict:
     """Search, and decide which of the contract's verdicts the data support."""
     as_read, named, rivals = search_runs(case, as_read)
-    named = check_on_longer_runs(case, as_read, named)
+    named = keep_on_longer_runs(case, as_read, named)
     exact = case.leaves_noise(named)
     plain = None if exact else plainest(case, named)
     if plain:
@@ -66,10 +66,10 @@ def decide(case: Case, as_read: ScoredModel) -> Verdict:
     if not names:
         wrong = wrong_starts(case.search.base, as_read)
         return Verdict("wrong_initial_condition" if wrong else "no_gap", as_read, tuple(rivals), starts=wrong)
-    longer, rivals = settle(case, named if exact else prune(case.search, named, np.inf, MOST_NAMES), rivals)
+    longer, rivals = refit_longer(case, named if exact else prune(case.search, named, np.inf, MOST_NAMES), rivals)
     kept = keep_useful(case, as_read, longer)
     if kept is not longer:  # named anew: the best of fewer is not the best less a part
-        alone = settle(case, rivals[0], rivals) if rivals else (kept, rivals)
+        alone = refit_longer(case, rivals[0], rivals) if rivals else (kept, rivals)
         if alone[0] is kept or (len(kept.model.parts) > 1 and prove(case, alone[0], kept, kept).bears_out):
             longer = score(kept.shooting, kept.model)
         else:
@@ -182,7 +182,7 @@ def search_runs(case: Case, as_read: ScoredModel) -> tuple[ScoredModel, ScoredMo
     return (longer, named, rivals) if named.model.parts else (as_read, as_read, rivals)
 
 
-def check_on_longer_runs(case: Case, as_read: ScoredModel, named: ScoredModel) -> ScoredModel:
+def keep_on_longer_runs(case: Case, as_read: ScoredModel, named: ScoredModel) -> ScoredModel:
     """Return what was selected less what longer runs have no use for, on the runs that it was found on.
 
     Where chaos keeps runs short, several explanations together can do what one does with another number.
@@ -270,7 +270,7 @@ def says_more(shape: ScoredModel, named: ScoredModel) -> bool:
     return shape.bic < named.bic - CRITERIA.margin
 
 
-def settle(case: Case, named: ScoredModel, rivals: list[ScoredModel]) -> tuple[ScoredModel, list[ScoredModel]]:
+def refit_longer(case: Case, named: ScoredModel, rivals: list[ScoredModel]) -> tuple[ScoredModel, list[ScoredModel]]:
     """Return what was named, fitted to long runs; where a rival comes near, the one that long runs prefer."""
     longer = case.lengthen(named)
     if len(named.model.parts) > 1:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass, replace
 from pathlib import Path
 
@@ -29,7 +29,7 @@ from gaitdisc.errors import ChannelError
 from gaitdisc.recording import Finding
 from gaitdisc.simulation.expression import names, parse
 from gaitdisc.simulation.measured import Measured
-from gaitdisc.simulation.measured_table import measure_recordings, read_measured
+from gaitdisc.simulation.measured_table import gather_recordings, read_measured
 from gaitdisc.simulation.simulation import Simulation
 from gaitdisc.simulation.writing import write_simulation
 from gaitdisc.whole_file import write_whole
@@ -71,7 +71,7 @@ def discover_engine(
     states = guess_states(replace(mapping, model=""), clean, window, rate_of).states  # coordinates, then speeds
     refuse_other_units(mapping, engine, data, states)
     refuse_other_conventions(mapping, engine, data, states)
-    met, read = _report_limits(engine, states, data), {engine.path: "model", **(files or {})}
+    met, read = tuple(_report_limits(engine, states, data)), {engine.path: "model", **(files or {})}
     fit = EngineFit(mapping, engine, data, states, progress=request.progress)
     request.progress(f"running {engine.path.name} by {engine.called} along every trial")
     as_read = write_model(engine, mapping)  # what the mapping says otherwise than the model's file
@@ -87,8 +87,8 @@ def discover_engine(
     findings = (
         *found.findings,
         *other_values(mapping, engine),
-        *(one for one in met if one.kind != "saturated"),
-        *(one for one in _report_limits(answer.written.engine, states, data) if one.kind == "saturated"),
+        *met,
+        *_report_saturation(answer.written.engine, data),
         *_list_warnings(engine, answer.written.engine),
         *(Finding("note", "written back", "model", what, "") for what in answer.written.notes),
         Finding("note", "own runs", "model", answer.runs.said, ""),
@@ -195,7 +195,7 @@ def read_trials(file: Path, mapping: Simulation) -> Measured:
         channels=tuple(channel for one in streams for channel in one.channels),
         suspect=np.hstack([np.asarray(one.suspect) for one in streams]),
     )
-    return measure_recordings([whole], mapping)
+    return gather_recordings([whole], mapping)
 
 
 def write_answer(answer: EngineAnswer, out: Path) -> list[str]:
@@ -223,26 +223,26 @@ def refuse_unmeasured(mapping: Simulation, engine: Engine, data: Measured) -> No
             )
 
 
-def _report_limits(engine: Engine, states: Values, data: Measured) -> tuple[Finding, ...]:
+def _report_limits(engine: Engine, states: Values, data: Measured) -> Iterator[Finding]:
     """Say in which samples a limit or a contact of the model acts: its own runs pass through these."""
-    found, inside = [], np.arange(states.shape[1]) < data.samples[:, None]
+    inside = np.arange(states.shape[1]) < data.samples[:, None]
     for one, q in zip(engine.coordinates, states[inside].T, strict=False):
-        share = 100 * np.mean((q <= one.low) | (q >= one.high))
-        if share:
+        if share := 100 * np.mean((q <= one.low) | (q >= one.high)):
             limits = f"{one.low:.3g} to {one.high:.3g} {one.unit}"
             what = f"{one.called} is at its limit ({limits}) in {share:.2g} % of samples"
-            found.append(Finding("note", "limit", "model", f"{what}: the model's own limit acts there", ""))
-    driven = data.drive.inputs[inside]
-    for one, u, (low, high) in zip(engine.controls, driven.T, engine.control_ranges, strict=False):
-        share = 100 * np.mean((u < low) | (u > high))
-        if share:
-            what = f"{one.name} is beyond its range ({low:.3g} to {high:.3g}) in {share:.2g} % of samples"
-            found.append(Finding("note", "saturated", "model", f"{what}: the engine clips it there", ""))
-    touched = getattr(engine, "contacts", 0)
-    if touched:
+            yield Finding("note", "limit", "model", f"{what}: the model's own limit acts there", "")
+    if touched := getattr(engine, "contacts", 0):
         what = f"bodies touch in the record ({touched} contacts at most): forces there are stiff, expanded as they are"
-        found.append(Finding("warning", "contact", "model", what, "results that depend on runs through a contact"))
-    return tuple(found)
+        yield Finding("warning", "contact", "model", what, "results that depend on runs through a contact")
+
+
+def _report_saturation(engine: Engine, data: Measured) -> Iterator[Finding]:
+    """Say in which samples a control is beyond its range, the model's own or one that was found."""
+    driven = data.drive.inputs[np.arange(data.drive.inputs.shape[1]) < data.samples[:, None]]
+    for one, u, (low, high) in zip(engine.controls, driven.T, engine.control_ranges, strict=False):
+        if share := 100 * np.mean((u < low) | (u > high)):
+            what = f"{one.name} is beyond its range ({low:.3g} to {high:.3g}) in {share:.2g} % of samples"
+            yield Finding("note", "saturated", "model", f"{what}: the engine clips it there", "")
 
 
 def _list_warnings(*engines: Engine) -> tuple[Finding, ...]:

@@ -65,7 +65,7 @@ def discover_study(
     for word in words:
         of = f"{word}: " if len(words) > 1 else ""
         own = replace(request, progress=lambda step, of=of: request.progress(f"{of}{step}"))
-        own.progress(f"reading both walks of {participant} and fitting the Nominal model")
+        own.progress(f"comparing both walks of {participant} by the Nominal model")
         try:
             answers[word] = _discover_condition(walks, word, own, joint)
         except GaitdiscError as error:

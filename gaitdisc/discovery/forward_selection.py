@@ -49,7 +49,7 @@ def select_forward(
             better = beside_others(search, better, [one for one in rivals if one is not now], explored)
         far = scale is not None and number > 1 and leaves(better, scale.noise) > FAR
         if number > 1:
-            better = better if far else settled(search, better, worth, explored)
+            better = better if far else settle(search, better, worth, explored)
             before, better = compared([before, better])
         gained = before.bic - better.bic
         if gained < worth or not is_certain(better.model) or (enough and len(better.model.parts) == number):
@@ -84,7 +84,7 @@ def beside_others(
     return ranked(compared(pairs), search.candidates)[0]
 
 
-def settled(search: Search, now: ScoredModel, worth: float, explored: set[Explanations]) -> ScoredModel:
+def settle(search: Search, now: ScoredModel, worth: float, explored: set[Explanations]) -> ScoredModel:
     """Exchange and eliminate explanations until nothing changes.
 
     worth: by which the criterion must get worse for one to stay

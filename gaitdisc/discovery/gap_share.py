@@ -102,7 +102,7 @@ def cross_validated(scale: GapScale, begun: ScoredModel, parts: tuple[Part, ...]
     if not np.isfinite(model.fit.misfit):
         return CrossValidated(model, shooting)
     square = float(np.mean((shooting.noise.size / scale.size) ** 2))
-    errors = leave_out_errors(model.fit) * square / shooting.known.mean()
+    errors = errors_left_out(model.fit) * square / shooting.known.mean()
     return CrossValidated(model, shooting, errors=errors, gap=scale.gap_above(float(errors.mean())))
 
 
@@ -113,7 +113,7 @@ def errs_more(one: CrossValidated, other: CrossValidated) -> float:
     return errors_rise_p(np.sqrt(other.errors), np.sqrt(one.errors))
 
 
-def leave_out_errors(fit: Fitted) -> Values:
+def errors_left_out(fit: Fitted) -> Values:
     """Return the mean squares of whitened residuals that the constants were estimated without (piece,).
 
     The fit is linear in its constants and start states around where it ended. Where whole runs are left out, their own

@@ -12,7 +12,7 @@ from gaitdisc.errors import LOG, SchemaError, SimulationError
 from gaitdisc.library.simulating import ModelLike, as_model
 from gaitdisc.recording import Recording
 from gaitdisc.simulation.measured import Measured
-from gaitdisc.simulation.measured_table import measure_recordings, measure_table, read_measured
+from gaitdisc.simulation.measured_table import gather_recordings, gather_table, read_measured
 from gaitdisc.simulation.python_simulation import PythonSimulation
 from gaitdisc.simulation.simulation import Simulation
 from gaitdisc.simulation.simulation_file import names_engine
@@ -123,14 +123,14 @@ def _measure(data: object, simulation: Simulation) -> tuple[Measured, dict[Path,
         return read_measured(data, simulation), {Path(data): "measured table"}
     several: Any = data if isinstance(data, list | tuple) else [data]
     if several and all(isinstance(one, Recording) for one in several):
-        return measure_recordings(several, simulation), {}
+        return gather_recordings(several, simulation), {}
     import pandas as pd
 
     if isinstance(data, list | tuple) and data and all(isinstance(one, pd.DataFrame) for one in data):
         trials = [_times(one).assign(trial=number) for number, one in enumerate(data, 1)]
-        return measure_table(pd.concat(trials), simulation, "the table"), {}
+        return gather_table(pd.concat(trials), simulation, "the table"), {}
     if isinstance(data, pd.DataFrame):
-        return measure_table(_times(data), simulation, "the table"), {}
+        return gather_table(_times(data), simulation, "the table"), {}
     raise SimulationError(
         "measured data must be a table, a file or recordings",
         f"found {type(data).__name__}",

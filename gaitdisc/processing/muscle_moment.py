@@ -221,7 +221,7 @@ def solved(total: Sums, muscles: int, respect: float = GAIN_RIDGE) -> Values:
     first = np.setdiff1d(np.arange(len(total.match)), waves)
     signed = np.zeros(len(first), bool)
     signed[: 2 * muscles] = signed[2 * muscles + 1 : 2 * muscles + 1 + FIRMNESS] = True
-    own = solve_ridge(tied(total.squares[np.ix_(first, first)], muscles, respect), total.match[first], signed)
+    own = solve_signed(tied(total.squares[np.ix_(first, first)], muscles, respect), total.match[first], signed)
     found = np.zeros(len(total.match))
     found[first] = own
     left = total.match[waves] - total.squares[np.ix_(waves, first)] @ own
@@ -238,7 +238,7 @@ def tied(squares: Values, muscles: int, respect: float = GAIN_RIDGE) -> Values:
     return normal
 
 
-def solve_ridge(normal: Values, match: Values, signed: NDArray[np.bool_]) -> Values:
+def solve_signed(normal: Values, match: Values, signed: NDArray[np.bool_]) -> Values:
     """Coefficients of normal equations by least squares, the `signed` ones not negative."""
     from scipy.optimize import lsq_linear
 

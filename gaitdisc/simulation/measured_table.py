@@ -33,10 +33,10 @@ def read_measured(path: Path | str, simulation: Simulation) -> Measured:
     under its own name) those are taken that the table has.
     """
     path = Path(path)
-    return measure_table(_table(path), simulation, path.name)
+    return gather_table(_table(path), simulation, path.name)
 
 
-def measure_table(table: pd.DataFrame, simulation: Simulation, source: str) -> Measured:
+def gather_table(table: pd.DataFrame, simulation: Simulation, source: str) -> Measured:
     """Trials of a table that is already read, as `read_measured` has them.
 
     table: columns `trial`, `time` [s], each input and each observed channel [the simulation's units]
@@ -61,7 +61,7 @@ def measure_table(table: pd.DataFrame, simulation: Simulation, source: str) -> M
     return check_measured(parts, inputs, channels, source, _report_left_out(simulation, columns, channels, source))
 
 
-def measure_recordings(recordings: Sequence[Recording], simulation: Simulation) -> Measured:
+def gather_recordings(recordings: Sequence[Recording], simulation: Simulation) -> Measured:
     """Trials of recordings, one each, converted to the simulation's units.
 
     recordings: with a channel for each input and each observation, at one rate

@@ -14,8 +14,8 @@ from gaitdisc.discovery.case import Case, set_up_case
 from gaitdisc.discovery.criteria import CRITERIA
 from gaitdisc.discovery.decision import (
     Verdict,
-    check_on_longer_runs,
     decide,
+    keep_on_longer_runs,
     keep_useful,
     prefer_on_held_out,
     prove_held_out,
@@ -37,9 +37,9 @@ def test_what_longer_runs_have_no_use_for_is_not_named(case, as_read, cubic, lab
         for parts in ((), (Part(cubic, {"factor": -14.0}), Part(labelled["viscous_damping@load"], {"factor": 0.0})))
     )
     assert not case.spans_a_period(read)
-    assert check_on_longer_runs(case, read, both).labels == ("cubic_stiffness@load",)
-    assert check_on_longer_runs(case, read, both).shooting.segments is shooting.segments
-    assert check_on_longer_runs(case, as_read, both) is both
+    assert keep_on_longer_runs(case, read, both).labels == ("cubic_stiffness@load",)
+    assert keep_on_longer_runs(case, read, both).shooting.segments is shooting.segments
+    assert keep_on_longer_runs(case, as_read, both) is both
 
 
 @pytest.fixture(scope="module")

@@ -5,7 +5,7 @@ from gaitdisc.discovery.candidate import Candidate
 from gaitdisc.discovery.candidate_model import Part
 from gaitdisc.discovery.case import set_up_case
 from gaitdisc.discovery.criteria import CRITERIA
-from gaitdisc.discovery.forward_selection import beside_others, exchange, prune, select_forward, settled
+from gaitdisc.discovery.forward_selection import beside_others, exchange, prune, select_forward, settle
 from gaitdisc.discovery.scored_model import ScoredModel, ranked
 
 DAMPER = Candidate("missing_physics", "port", "load", "viscous_damping", ("v",), None, "x")
@@ -41,7 +41,7 @@ def test_a_wrong_explanation_is_exchanged_for_the_true_one(case, as_read):
 
 
 def test_what_is_settled_holds_the_true_one_alone(case, as_read):
-    now = settled(case.search, _wrong_and_idle(case, as_read), CRITERIA.margin, set())
+    now = settle(case.search, _wrong_and_idle(case, as_read), CRITERIA.margin, set())
     assert now.labels == ("cubic_stiffness@load",)
 
 

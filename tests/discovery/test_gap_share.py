@@ -6,7 +6,7 @@ import pytest
 from gaitdisc.discovery.candidate_model import Part
 from gaitdisc.discovery.criteria import CRITERIA
 from gaitdisc.discovery.fitted import Fitted, Prior
-from gaitdisc.discovery.gap_share import FOLDS, GapScale, cross_validated, leave_out_errors
+from gaitdisc.discovery.gap_share import FOLDS, GapScale, cross_validated, errors_left_out
 from gaitdisc.discovery.scored_model import ScoredModel
 
 
@@ -74,27 +74,27 @@ def test_runs_are_left_out_and_their_own_starts_found():
         left = fit.white[run] - fit.slopes[run, :, STATES:] @ constants
         start = np.linalg.lstsq(fit.slopes[run, :, :STATES], left, rcond=None)[0]
         wanted.append(np.mean((left - fit.slopes[run, :, :STATES] @ start) ** 2))
-    pieces = leave_out_errors(fit)
+    pieces = errors_left_out(fit)
     assert pieces.reshape(RUNS, -1).mean(axis=1) == pytest.approx(wanted)
 
 
 def test_of_one_run_pieces_are_left_out():
     fit = linear_fit(runs=1)
     design, right = stacked(fit, [0])
-    pieces = np.array_split(np.arange(ROWS), len(leave_out_errors(fit)) + 1)[1:]
+    pieces = np.array_split(np.arange(ROWS), len(errors_left_out(fit)) + 1)[1:]
     wanted = []
     for piece in pieces:
         kept = np.setdiff1d(np.arange(ROWS), piece)
         found = np.linalg.lstsq(design[kept], right[kept], rcond=None)[0]
         wanted.append(np.mean((right[piece] - design[piece] @ found) ** 2))
-    assert leave_out_errors(fit) == pytest.approx(wanted)
+    assert errors_left_out(fit) == pytest.approx(wanted)
 
 
 def test_left_out_errors_are_greater_than_what_the_fit_leaves():
     fit = linear_fit()
     design, right = stacked(fit, range(RUNS))
     left = right - design @ np.linalg.lstsq(design, right, rcond=None)[0]
-    assert leave_out_errors(fit).mean() > np.mean(left**2)
+    assert errors_left_out(fit).mean() > np.mean(left**2)
 
 
 def test_a_prior_that_is_certain_holds_a_number_where_it_is():
@@ -102,4 +102,4 @@ def test_a_prior_that_is_certain_holds_a_number_where_it_is():
     held, without = linear_fit(prior=certain), linear_fit()
     slopes = without.slopes.copy()
     slopes[..., -1] = 0.0
-    assert leave_out_errors(held) == pytest.approx(leave_out_errors(replace(without, slopes=slopes)))
+    assert errors_left_out(held) == pytest.approx(errors_left_out(replace(without, slopes=slopes)))

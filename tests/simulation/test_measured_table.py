@@ -14,7 +14,7 @@ from gaitdisc.errors import ChannelError, GaitdiscError, ReadError, UnitError
 from gaitdisc.ingest.reading import read_trial
 from gaitdisc.recording import Recording, Source
 from gaitdisc.simulation.compiled_simulation import Rows
-from gaitdisc.simulation.measured_table import measure_recordings, measure_table, read_measured
+from gaitdisc.simulation.measured_table import gather_recordings, gather_table, read_measured
 from gaitdisc.simulation.parts import Sensor
 from gaitdisc.simulation.running import compile_simulation
 from gaitdisc.simulation.simulation_file import parse_simulation
@@ -128,7 +128,7 @@ def _recording(unit="deg", tau=None, quantity="angle"):
 
 
 def test_recordings_are_converted(ankle):
-    measured = measure_recordings([_recording(), _recording("rad")], ankle)
+    measured = gather_recordings([_recording(), _recording("rad")], ankle)
     np.testing.assert_allclose(measured.observed[0] / (math.pi / 180), measured.observed[1], atol=1e-12)
     assert measured.channels == ("theta",)
 
@@ -137,7 +137,7 @@ def test_suspect_samples_are_told(ankle):
     recording = _recording()
     marks = np.zeros((50, 3), bool)
     marks[3:9, 0] = True
-    findings = measure_recordings([recording.with_values(recording.values, marks)], ankle).findings
+    findings = gather_recordings([recording.with_values(recording.values, marks)], ankle).findings
     assert any(each.kind == "suspect" and "6 of 50 samples" in each.what for each in findings)
 
 
@@ -146,7 +146,7 @@ def test_a_real_walk_drives_a_knee(gait_data):
     folder = gait_data / "opensim_walks" / "mrs_emg_walking"
     walk = read_trial([folder / "IK_gait.mot", folder / "ID_gait.sto"]).on_one_base(100.0)
     knee = parse_simulation(KNEE)
-    measured = measure_recordings([walk], knee)
+    measured = gather_recordings([walk], knee)
     np.testing.assert_allclose(np.degrees(measured.observed[0, :, 0]), walk["knee_angle_r"], rtol=1e-12)
     np.testing.assert_array_equal(measured.drive.inputs[0, :, 0], walk["knee_angle_r_moment"])
     begin = np.arange(0, 190, 20)
@@ -159,15 +159,15 @@ def test_a_real_walk_drives_a_knee(gait_data):
 
 def test_recordings_with_faults(ankle):
     with pytest.raises(UnitError, match=r"'theta'.*walk\.mot.*'N m'"):
-        measure_recordings([_recording("N m")], ankle)
+        gather_recordings([_recording("N m")], ankle)
     with pytest.raises(UnitError, match=r"same kind as 'K'.*walk\.mot has it in 'degC'; .* by an offset"):
         warm = replace(ankle, states=(replace(ankle.states[0], unit="K"), *ankle.states[1:]))
-        measure_recordings([_recording("degC", quantity="signal")], warm)
+        gather_recordings([_recording("degC", quantity="signal")], warm)
     with pytest.raises(ReadError, match=r"walk.mot'?.*'tau': 21 rows.*0\.07 s"):
         absent = (np.arange(50) >= 7) & (np.arange(50) < 28)
-        measure_recordings([_recording(tau=np.where(absent, np.nan, np.arange(50.0)))], ankle)
+        gather_recordings([_recording(tau=np.where(absent, np.nan, np.arange(50.0)))], ankle)
     with pytest.raises(ChannelError, match="needs a measured column 'tau'"):
-        measure_recordings([_recording().selected(["theta", "phase"])], ankle)
+        gather_recordings([_recording().selected(["theta", "phase"])], ankle)
 
 
 @pytest.mark.parametrize(
@@ -205,7 +205,7 @@ def test_empty_cells_of_a_channel_are_read_as_missing(ankle, tmp_path):
 
 def test_recordings_are_converted_to_the_unit_of_the_observation(ankle):
     told = ankle.with_observation("theta", "57.2958*theta").observing(["theta"]).with_sensor(Sensor("theta", "deg"))
-    observed = measure_recordings([_recording("rad"), _recording("deg")], told).observed
+    observed = gather_recordings([_recording("rad"), _recording("deg")], told).observed
     np.testing.assert_allclose(observed[0], observed[1] / (math.pi / 180), atol=1e-9)
 
 
@@ -213,9 +213,9 @@ def test_a_table_in_memory_is_read_as_its_file_and_left_as_it_is(ankle, tmp_path
     table = _table().rename(columns={"theta": " theta "}).iloc[::-1].iloc[::-1]
     table.to_csv(tmp_path / "walk.csv", index=False)
     before = table.copy()
-    of_file, of_table = read_measured(tmp_path / "walk.csv", ankle), measure_table(table, ankle, "the table")
+    of_file, of_table = read_measured(tmp_path / "walk.csv", ankle), gather_table(table, ankle, "the table")
     np.testing.assert_allclose(of_table.observed, of_file.observed, rtol=1e-12)
     assert of_table.source == "the table" and of_table.trials == of_file.trials
     pd.testing.assert_frame_equal(table, before)
     with pytest.raises(ChannelError, match="the table has 'tau' twice"):
-        measure_table(pd.concat([table, table[["tau"]]], axis="columns"), ankle, "the table")
+        gather_table(pd.concat([table, table[["tau"]]], axis="columns"), ankle, "the table")
