@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from gaitdisc.discovery.candidate_model import Explanations
 from gaitdisc.discovery.criteria import CRITERIA
+from gaitdisc.discovery.effect_words import named_at
 from gaitdisc.discovery.gap_share import GapScale
 from gaitdisc.discovery.kept_work import note_found
 from gaitdisc.discovery.scored_model import ScoredModel, compared, leaves, ranked
@@ -56,7 +57,7 @@ def select_forward(
             break
         explained, now, turns = max(explained, gained), better, turns + 1
         explored.add(now.model.explanations)
-        note_found([part.candidate for part in now.model.parts])
+        note_found(" and ".join(named_at(part.candidate) for part in now.model.parts))
         if far:
             break
     return now, rivals

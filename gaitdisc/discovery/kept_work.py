@@ -7,7 +7,7 @@ of all these is its key, so that no result stands in for another.
 from __future__ import annotations
 
 import time
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterator
 from contextlib import contextmanager, suppress
 from contextvars import ContextVar
 from dataclasses import dataclass, field
@@ -15,8 +15,6 @@ from hashlib import sha256
 from pathlib import Path
 from typing import Any
 
-from gaitdisc.discovery.candidate import Candidate
-from gaitdisc.discovery.effect_words import named_at
 from gaitdisc.errors import GaitdiscError
 from gaitdisc.processing.kept_parts import FOLDER, hash_content, keep_part, read_part
 from gaitdisc.saved.provenance import list_versions
@@ -125,8 +123,8 @@ def keep(result: Any) -> None:
         work.add(result)
 
 
-def note_found(candidates: Sequence[Candidate]) -> None:
+def note_found(words: str) -> None:
     """Note what explains the data best so far."""
     work = _WORK.get()
     if work is not None:
-        work.found = " and ".join(map(named_at, candidates))
+        work.found = words

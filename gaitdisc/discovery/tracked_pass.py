@@ -12,8 +12,9 @@ from scipy.signal import butter, sosfiltfilt
 
 from gaitdisc.discovery.effect_words import amount
 from gaitdisc.discovery.record_filter import DENSE
+from gaitdisc.engines.motion import TrackedMotion
 from gaitdisc.engines.opensim_tracked import OpensimTracked
-from gaitdisc.engines.tracked_files import TrackedMotion, check_loads, read_tracked_motion
+from gaitdisc.engines.tracked_files import check_loads, read_tracked_motion
 from gaitdisc.engines.tracked_mapping import Tracked
 from gaitdisc.errors import SchemaError
 from gaitdisc.recording import Finding

@@ -71,6 +71,25 @@ class Motion:
 
 
 @dataclass(frozen=True)
+class TrackedMotion:
+    """Coordinates with their rates, and forces of actuators, at the times that all files have."""
+
+    time: Values  # (sample,) [s]
+    q: Values  # (sample, coordinate) [rad, m]
+    v: Values
+    a: Values
+    actuators: tuple[str, ...]  # columns of the forces' file
+    forces: Values  # (sample, actuator) [N, N m]
+    differentiated: bool  # whether rates come from the angles
+    span: tuple[float, float] = (-np.inf, np.inf)  # of the file of angles [s]
+
+    @property
+    def rate_hz(self) -> float:
+        """Samples a second."""
+        return float((len(self.time) - 1) / (self.time[-1] - self.time[0]))
+
+
+@dataclass(frozen=True)
 class Pushes:
     """Forces that act at each step of a run beside those of the model's own file, and the states that they bring."""
 

@@ -5,18 +5,15 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import replace
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
-from gaitdisc.engines.motion import Coordinate, Motion, Values, new_name
+from gaitdisc.engines.motion import Coordinate, Motion, TrackedMotion, Values, new_name
 from gaitdisc.engines.opensim_model import OpensimModel
 from gaitdisc.engines.opensim_worker import PORT, ROTATIONAL, Ready, answer_questions
 from gaitdisc.engines.tracked_mapping import Tracked
 from gaitdisc.errors import SchemaError
-
-if TYPE_CHECKING:
-    from gaitdisc.engines.tracked_files import TrackedMotion
 
 TRANSLATIONAL = 2
 

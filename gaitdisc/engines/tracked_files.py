@@ -2,14 +2,13 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
 from numpy.typing import NDArray
 
 from gaitdisc.channel import Channel, nearest_word
-from gaitdisc.engines.motion import Coordinate, Values
+from gaitdisc.engines.motion import Coordinate, TrackedMotion, Values
 from gaitdisc.engines.opensim_tracked import OpensimTracked
 from gaitdisc.engines.tracked_mapping import Tracked, find_loads, read_xml
 from gaitdisc.errors import ChannelError, ReadError, SamplingError, SchemaError, UnitError
@@ -24,25 +23,6 @@ SHORTEST_S = 0.5
 EDGE_PERIODS = 1.0  # of the low-pass, left out at both ends of the angles where rates come from them
 PASSIVE = ("LimitForce", "CoordinateForce", "BushingForce", "Ligament", "SpringForce", "GeneralizedForce")  # of classes
 MOST_RAD, MOST_M = 4 * np.pi, 50.0
-
-
-@dataclass(frozen=True)
-class TrackedMotion:
-    """Coordinates with their rates, and forces of actuators, at the times that all files have."""
-
-    time: Values  # (sample,) [s]
-    q: Values  # (sample, coordinate) [rad, m]
-    v: Values
-    a: Values
-    actuators: tuple[str, ...]  # columns of the forces' file
-    forces: Values  # (sample, actuator) [N, N m]
-    differentiated: bool  # whether rates come from the angles
-    span: tuple[float, float] = (-np.inf, np.inf)  # of the file of angles [s]
-
-    @property
-    def rate_hz(self) -> float:
-        """Samples a second."""
-        return float((len(self.time) - 1) / (self.time[-1] - self.time[0]))
 
 
 def draft_tracked(

@@ -3,6 +3,7 @@
 import pytest
 
 from gaitdisc.discovery.candidate import Candidate
+from gaitdisc.discovery.effect_words import named_at
 from gaitdisc.discovery.kept_work import keep, kept_work, note_found, recall
 from gaitdisc.errors import SchemaError
 
@@ -63,11 +64,11 @@ def test_nothing_stays_behind_a_refusal(tmp_path):
 def test_whoever_stops_it_reads_what_was_found(tmp_path):
     said = "So far: one-sided spring at the ankle_moment port; "
     with pytest.raises(KeyboardInterrupt, match=said), kept_work(tmp_path, lambda _: None):
-        note_found([SPRING])
+        note_found(named_at(SPRING))
         raise KeyboardInterrupt
 
 
 def test_without_a_folder_nothing_is_kept():
-    note_found([SPRING])
+    note_found(named_at(SPRING))
     keep(1)
     assert recall("a") is None

@@ -8,8 +8,7 @@ import pytest
 from driven_walker import DrivenWalker
 
 from gaitdisc.discovery.tracked_pass import Pass
-from gaitdisc.engines.motion import Coordinate
-from gaitdisc.engines.tracked_files import TrackedMotion
+from gaitdisc.engines.motion import Coordinate, TrackedMotion
 from gaitdisc.ingest.storage import write_storage
 from gaitdisc.ingest.study import Conditions, Models, Participant, PlannedTrial, Study
 
