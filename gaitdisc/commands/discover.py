@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import time
 from collections.abc import Callable, Sequence
+from dataclasses import replace
 from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
@@ -48,6 +49,10 @@ def discover(  # noqa: PLR0913, PLR0917 these are the options of a command
         str, typer.Option(help="Fit exactly these effects without a search: effect@place, separated by commas.")
     ] = "",
     alpha: Annotated[float, typer.Option(help="Maximum false-positive rate.")] = 0.05,
+    twins: Annotated[
+        int,
+        typer.Option(help="Simulate so many records with the effect and without it, and search them as well.", min=0),
+    ] = 0,
     draw: Annotated[bool, typer.Option("--report/--no-report", help="Write report.html as well.")] = True,
     quiet: Quiet = False,
 ) -> None:
@@ -78,8 +83,8 @@ def discover(  # noqa: PLR0913, PLR0917 these are the options of a command
 
             say("drawing the report")
             place = write_discovery_report(found, folder)
-        typer.echo("\n".join([found.public.sentence, *notes]))
-        for finding in found.public.findings:
+        typer.echo("\n".join([found.public.sentence, *notes] if found.twins is None else [found.twins.sentence]))
+        for finding in found.public.findings if found.twins is None else ():
             if finding.severity != "note":
                 LOG.info(finding.line())
         typer.echo(f"{'report' if draw else 'found'}: {place}")
@@ -93,19 +98,22 @@ def discover(  # noqa: PLR0913, PLR0917 these are the options of a command
         from gaitdisc.discovery.discover_files import discover_files
         from gaitdisc.discovery.folder import save_discovery
         from gaitdisc.discovery.kept_work import kept_work
+        from gaitdisc.discovery.twins import refuse_twins
         from gaitdisc.simulation.simulation_file import names_engine
         from gaitdisc.simulation.writing import write_simulation
         from gaitdisc.whole_file import write_together
 
         given = tuple(one.strip() for one in effects.split(",") if one.strip())
         with kept_work(out, say) as work:
-            request = Request.read(catalogue, given, alpha, work.progress)
+            request = Request.read(catalogue, given, alpha, work.progress, twins)
+            if twins and (measured is None or names_engine(simulation)):
+                refuse_twins(simulation.name)
             if measured is None:
                 _of_study(simulation, participant, request, out, with_model)
             elif names_engine(simulation):
                 _of_engine(simulation, measured, request, write)
             else:
-                with_model(*discover_files(simulation, measured, request))
+                with_model(*discover_files(simulation, measured, replace(request, answered=with_model)))
 
 
 def _of_engine(model: Path, measured: Path, request: Request, write: Callable[..., Discovery]) -> None:

@@ -21,7 +21,9 @@ from gaitdisc.toml_text import parse_toml
 if TYPE_CHECKING:
     from gaitdisc.discovery.candidate import Candidate
     from gaitdisc.discovery.candidate_model import CandidateModel
+    from gaitdisc.discovery.result import Discovery
     from gaitdisc.discovery.scored_model import ScoredModel
+    from gaitdisc.simulation.simulation import Simulation
 
 ROLES = ("x", "v", "y", "a", "b", "u")
 SIGNALS = ("t", "phase")
@@ -79,7 +81,8 @@ class Shape:
 class Request:
     """What a user requests: effects of their own beside those that come along, or exactly some and no search.
 
-    A door adds which explanations are possible there, and how the numbers of what was found are fitted once more.
+    A door adds which explanations are possible there, how the numbers of what was found are fitted once more, and what
+    it does with an answer before twins of the record are searched.
     """
 
     shapes: tuple[Shape, ...] = ()
@@ -92,6 +95,8 @@ class Request:
     refitted: Callable[[ScoredModel], CandidateModel] = field(
         default_factory=lambda: lambda found: found.model, compare=False
     )
+    twins: int = 0  # simulated records of each kind, which are searched as the record was
+    answered: Callable[[Discovery, Simulation], object] = field(default_factory=lambda: lambda *_: None, compare=False)
 
     @classmethod
     def read(
@@ -100,11 +105,14 @@ class Request:
         effects: tuple[str, ...] = (),
         alpha: float = ALPHA,
         progress: Callable[[str], None] = lambda _: None,
+        twins: int = 0,
     ) -> Request:
-        """Read a catalogue, if there is one, and note the effects and the rate of false finds."""
+        """Read a catalogue, if there is one, and note the effects, the rate of false finds and the number of twins."""
         if not 0 < alpha < 1:
             raise SchemaError("alpha must lie between 0 and 1", f"found {alpha:g}", "Use .05, for example.")
-        return cls(read_catalogue(catalogue) if catalogue else (), effects, catalogue, alpha, progress)
+        if twins < 0:
+            raise SchemaError("the number of twins must be 0 or more", f"found {twins}", "Use 20, for example.")
+        return cls(read_catalogue(catalogue) if catalogue else (), effects, catalogue, alpha, progress, twins=twins)
 
 
 ALL = Request()  # the effects that come along

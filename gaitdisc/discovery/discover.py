@@ -36,6 +36,12 @@ CLOSE = 0.3  # of its range, moved from one sample to the next: ten samples in a
 
 def discover(simulation: Simulation, measured: Measured, request: Request = ALL) -> tuple[Discovery, Simulation]:
     """Find where a simulation and measured trials disagree, name what is missing, add it, show the gap shrink."""
+    case, as_read, verdict = explain(simulation, measured, request)
+    return answer(case, as_read, verdict, request.refitted)
+
+
+def explain(simulation: Simulation, measured: Measured, request: Request = ALL) -> tuple[Case, ScoredModel, Verdict]:
+    """Return the case as it was decided, the simulation as read in it, and the verdict."""
     measured, progress = without_spikes(measured), request.progress
     begun = partial(set_up_case, simulation, request=request)
     whole = begun(measured)
@@ -59,7 +65,7 @@ def discover(simulation: Simulation, measured: Measured, request: Request = ALL)
             progress("the identified effects explain a trial that was left out: the search is repeated with it")
             case, as_read, verdict = explained(kept)
     progress("testing the answer on held-out data")
-    return answer(case, as_read, verdict, request.refitted)
+    return case, as_read, verdict
 
 
 def weigh_explanations(

@@ -11,10 +11,12 @@ from typing import TYPE_CHECKING, cast
 
 import numpy as np
 
+from gaitdisc.discovery.answer import answer
 from gaitdisc.discovery.catalogue import ALL, Request
-from gaitdisc.discovery.discover import discover, refuse_blow_up
+from gaitdisc.discovery.discover import explain, refuse_blow_up
 from gaitdisc.discovery.kept_work import recall
 from gaitdisc.discovery.result import DEVICE, SIMULATION, ConditionAnswer, Discovery, GapSize
+from gaitdisc.discovery.twins import TwinSource, search_twins
 from gaitdisc.errors import GaitdiscError, SamplingError
 from gaitdisc.ingest.public_words import PublicWords
 from gaitdisc.processing.kept_parts import hash_content
@@ -137,7 +139,8 @@ def find_missing(
         data = replace(data, findings=tuple(one for one in data.findings if one.spoils != MILLISECONDS))
     try:
         with np.errstate(over="ignore", invalid="ignore"):  # an explanation that runs away explains nothing
-            found, augmented = discover(model, data, request)
+            case, as_read, verdict = explain(model, data, request)
+            found, augmented = answer(case, as_read, verdict, request.refitted)
     except np.linalg.LinAlgError as error:
         raise SamplingError(
             "each sample of a simulation must be predictable from the previous one",
@@ -146,7 +149,11 @@ def find_missing(
         ) from error
     files = {**files, **({request.catalogue: "catalogue"} if request.catalogue else {})}
     listed = unit_findings(model) if isinstance(model, Simulation) else ()  # a function has no units to check
-    return seal(replace(found, findings=(*listed, *found.findings)), augmented, data, files), augmented
+    found = seal(replace(found, findings=(*listed, *found.findings)), augmented, data, files)
+    if request.twins:
+        request.answered(found, augmented)
+        found = search_twins(found, TwinSource(case, as_read, verdict), model, request)
+    return found, augmented
 
 
 def seal(found: Discovery, model: Simulation, data: Measured, files: dict[Path, str]) -> Discovery:

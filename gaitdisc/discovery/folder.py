@@ -18,6 +18,7 @@ from gaitdisc.discovery.result import (
     FoundEffect,
     GapSize,
     Runs,
+    Twins,
     Whereabouts,
 )
 from gaitdisc.saved.kind import Kind
@@ -80,6 +81,7 @@ def load_discovery(folder: Path) -> Discovery:
             ),
             explanations=tuple(map(_explanation, data.get("explanations", ()))),
             given=data.get("given", ""),
+            twins=Twins(**data["twins"]) if "twins" in data else None,
             beside=_restore(data.get("beside", {})),
             conditions=tuple(
                 ConditionAnswer(

@@ -38,6 +38,16 @@ class Trial:
         return self.fit.misfits
 
 
+@dataclass(frozen=True)
+class FirstSamples:
+    """A trial as one run, whose start is found by its first samples."""
+
+    segments: Segments
+    shooting: Shooting  # of the whole trial
+    fit: Fitted  # to the first samples
+    first: int  # sample before which the start is fitted
+
+
 def run_trials(case: Case, now: ScoredModel, trials: tuple[int, ...], like: ScoredModel) -> Trial:
     """Run a model over trials, finding nothing but the start states."""
     guess, runs = case.guess, []
@@ -64,18 +74,12 @@ def free_runs(case: Case, now: ScoredModel) -> tuple[float, float]:
     """
     scale, found = case.scale, []
     for trial in case.held_out:
-        samples = int(case.measured.drive.samples[trial])
-        segments = case.segments((trial,), samples / case.rhythm.samples)
-        first = segments.margin + max(min(round(case.rhythm.samples), samples // 3), 1)
-        seen = case.measured.observed.copy()
-        seen[trial, first:] = np.nan
-        shooting = case.shooting(segments).with_noise(white_noise(scale.size))
-        begun = replace(shooting, measured=replace(case.measured, observed=seen))
-        run = _start_runs(begun, now, case.guess.starts(segments))
-        whole = shooting.at(now.model.machine, (), run.values, run.starts)
+        begun = begin_by_first_samples(case, now, trial)
+        segments, shooting = begun.segments, begun.shooting
+        whole = shooting.at(now.model.machine, (), begun.fit.values, begun.fit.starts)
         error = np.where(np.isfinite(whole.residual), (whole.residual / scale.spread) ** 2, CRITERIA.lost)
         slopes = np.nan_to_num(whole.slopes.reshape(*whole.residual.shape, -1))
-        late = (segments.samples[:, segments.compared] >= first)[..., None] & shooting.known
+        late = (segments.samples[:, segments.compared] >= begun.first)[..., None] & shooting.known
         early = slopes[~late & shooting.known]
         doubt = (
             np.einsum("...i,ij,...j", slopes, np.linalg.pinv(early.T @ early), slopes)
@@ -90,6 +94,18 @@ def free_runs(case: Case, now: ScoredModel) -> tuple[float, float]:
         found.append([np.fmin(error, CRITERIA.lost)[late].mean(), np.fmin(doubt, CRITERIA.lost)[late].mean()])
     error, doubt = np.mean(found, axis=0)
     return float(error), float(doubt)
+
+
+def begin_by_first_samples(case: Case, now: ScoredModel, trial: int) -> FirstSamples:
+    """Find the start of a whole trial by its first samples alone."""
+    samples = int(case.measured.drive.samples[trial])
+    segments = case.segments((trial,), samples / case.rhythm.samples)
+    first = segments.margin + max(min(round(case.rhythm.samples), samples // 3), 1)
+    seen = case.measured.observed.copy()
+    seen[trial, first:] = np.nan
+    shooting = case.shooting(segments).with_noise(white_noise(case.scale.size))
+    begun = replace(shooting, measured=replace(case.measured, observed=seen))
+    return FirstSamples(segments, shooting, _start_runs(begun, now, case.guess.starts(segments)), first)
 
 
 def strays(case: Case, now: ScoredModel, before: float) -> bool:

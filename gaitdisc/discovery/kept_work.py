@@ -123,6 +123,16 @@ def keep(result: Any) -> None:
         work.add(result)
 
 
+@contextmanager
+def outside_work() -> Iterator[None]:
+    """Keep nothing of what is fitted within."""
+    token = _WORK.set(None)
+    try:
+        yield
+    finally:
+        _WORK.reset(token)
+
+
 def note_found(words: str) -> None:
     """Note what explains the data best so far."""
     work = _WORK.get()

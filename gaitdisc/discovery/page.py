@@ -195,6 +195,22 @@ def explanations_table(discovery: Discovery) -> Table:
     return Table("rivals", caption, headings, tuple(rows), _frame(records, columns))
 
 
+def twins_table(discovery: Discovery) -> Table:
+    """What the same search answers to simulated records like the user's."""
+    rows: list[tuple[str, str, int]] = []
+    kinds = (("yes", discovery.twins.with_effects), ("no", discovery.twins.without)) if discovery.twins else ()
+    for acts, answers in kinds:
+        rows += [(acts, *one) for one in sorted(answers.items(), key=lambda one: (-one[1], one[0]))]
+    caption = (
+        "Answers to simulated records with your inputs, trials and gaps: free runs of the simulation, with and without "
+        "what was found, and noise as estimated. They lack what the found effect leaves unexplained, so that answers "
+        "to measured records are wrong more often."
+    )
+    shown = tuple((acts, name if "@" in name else name.replace("_", " "), str(count)) for acts, name, count in rows)
+    columns = ("acts", "answer", "records")
+    return Table("twins", caption, ("the effect acts", *columns[1:]), shown, _frame(rows, columns))
+
+
 def data_findings(discovery: Discovery) -> Table:
     """What was seen in the files on the way."""
     return tabulate_findings(discovery.findings, f"Findings in the files, n = {len(discovery.findings)}.")
@@ -242,6 +258,7 @@ def write_discovery_report(discovery: Discovery, folder: Path) -> Path:
         "corrections": corrections_table(discovery),
         "where": where_table(discovery),
         "explanations": explanations_table(discovery),
+        "twins": twins_table(discovery),
         "findings": data_findings(discovery),
     }
     if discovery.conditions:

@@ -160,6 +160,31 @@ class ConditionAnswer:
 
 
 @dataclass(frozen=True)
+class Twins:
+    """What the same search answers to simulated records like the user's.
+
+    >>> Twins(20, "coulomb_friction@air", {"coulomb_friction@air": 19, "no_gap": 1}, {"no_gap": 20}).sentence[:70]
+    'In simulated records like these, the search names the same in 19 of 20'
+    """
+
+    records: int  # of each kind
+    named: str  # the answer that they are compared with: effects at their places, or the verdict
+    # answer -> records: simulated with what was found, and without it
+    with_effects: Mapping[str, int] = field(default_factory=dict)
+    without: Mapping[str, int] = field(default_factory=dict)
+
+    @property
+    def sentence(self) -> str:
+        """How often the answer returns, and how often something is named where nothing is missing."""
+        invented = sum(count for answer, count in self.without.items() if "@" in answer)
+        said = [f"an effect in {invented} of {self.records} in which nothing is missing"]
+        if self.with_effects:
+            same = self.with_effects.get(self.named, 0)
+            said.insert(0, f"the same in {same} of {self.records} in which it acts")
+        return f"In simulated records like these, the search names {', and '.join(said)}."
+
+
+@dataclass(frozen=True)
 class Runs:
     """Measured, simulated and augmented runs of one set of trials."""
 
@@ -230,6 +255,8 @@ class Discovery(Saved, file="discovery.json"):
         Of a study with several conditions besides Nominal: the answers of all.
     given : str
         ``proven`` or ``refuted`` by held-out data for effects that the user specified; empty after a search.
+    twins : Twins, optional
+        What the same search answers to simulated records like the user's.
     hide : callable, optional
         Returns the discovery as it is written: without words that may name a person.
     """
@@ -251,6 +278,7 @@ class Discovery(Saved, file="discovery.json"):
     explanations: tuple[Explanation, ...] = ()
     conditions: tuple[ConditionAnswer, ...] = ()
     given: str = ""
+    twins: Twins | None = None
     hide: Callable[[Discovery], Discovery] | None = field(default=None, repr=False, compare=False)
 
     def __post_init__(self) -> None:
@@ -307,6 +335,7 @@ class Discovery(Saved, file="discovery.json"):
                 for one in self.explanations
             ],
             **({"given": self.given} if self.given else {}),
+            **({"twins": asdict(self.twins)} if self.twins else {}),
             "sentence": self.sentence,
             "channels": dict(zip(self.channels, self.units, strict=True)),
             **({"beside": self.beside} if self.beside else {}),

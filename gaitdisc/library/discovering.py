@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 from gaitdisc.discovery.catalogue import Request
 from gaitdisc.discovery.discover_files import find_missing
+from gaitdisc.discovery.twins import refuse_twins
 from gaitdisc.errors import LOG, SchemaError, SimulationError
 from gaitdisc.library.simulating import ModelLike, as_model
 from gaitdisc.recording import Recording
@@ -30,6 +31,7 @@ def discover(
     progress: Callable[[str], None] | None = None,
     effects: Sequence[str] = (),
     alpha: float = 0.05,
+    twins: int = 0,
 ) -> tuple[Discovery, Simulation]:
     """Identify the effect that a model lacks in comparison with measured trials, estimate it, and add it to the model.
 
@@ -56,6 +58,9 @@ def discover(
     alpha : float, optional
         Maximum false-positive rate: the p-value of a named effect on held-out data is below it. For a tracked walk it
         is .05.
+    twins : int, optional
+        Number of records like yours that are simulated with what was found, and as many without; all are searched as
+        yours was, and `found.twins` says what was named. Not for models of MuJoCo and OpenSim.
 
     Returns
     -------
@@ -81,8 +86,12 @@ def discover(
     >>> found, augmented = gd.discover("ankle.toml", "walks.csv")  # doctest: +SKIP
     >>> print(found.sentence)  # doctest: +SKIP
     """
-    request = Request.read(None if catalogue is None else Path(catalogue), tuple(effects), alpha, progress or LOG.info)
+    request = Request.read(
+        None if catalogue is None else Path(catalogue), tuple(effects), alpha, progress or LOG.info, twins
+    )
     if isinstance(model, Path | str) and names_engine(model):
+        if twins:
+            refuse_twins(Path(model).name)
         return _of_engine(Path(model), data, request)
     simulation = as_model(model)
     measured, files = _measure(data, simulation)

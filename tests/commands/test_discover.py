@@ -1,6 +1,7 @@
 """`gaitdisc discover` end to end on a spring that truly has dry friction; and every refusal's words."""
 
 import json
+from dataclasses import replace
 
 import numpy as np
 import pandas as pd
@@ -11,7 +12,7 @@ from texts import says
 from gaitdisc.commands.options import REFUSED, STOPPED
 from gaitdisc.discovery.decision import Verdict
 from gaitdisc.discovery.folder import load_discovery
-from gaitdisc.discovery.result import ConditionAnswer
+from gaitdisc.discovery.result import ConditionAnswer, Twins
 from gaitdisc.discovery.shooting import Shooting
 from gaitdisc.errors import GaitdiscError
 from gaitdisc.simulation.simulation_file import read_simulation
@@ -150,6 +151,29 @@ def test_a_search_that_is_stopped_continues_with_the_same_command(lab, whole, tm
     own = {"provenance", "own_sha256"}
     assert {name: found[name] for name in found.keys() - own} == {name: wanted[name] for name in wanted.keys() - own}
     assert not (tmp_path / "kept").exists()
+
+
+def test_the_answer_stands_before_its_twins_are_searched(lab, tmp_path, monkeypatch, called):
+    """What twins say is printed and written after it; the search of twins is tested in tests/discovery."""
+    twins, before = Twins(20, "no_gap", {}, {"no_gap": 19, "gravity@v": 1}), []
+
+    def searched(found, *_):
+        before.append(json.loads((tmp_path / "discovery.json").read_text(encoding="utf-8")))
+        return replace(found, twins=twins)
+
+    monkeypatch.setattr("gaitdisc.discovery.discover.decide", lambda _, as_read: Verdict("no_gap", as_read, ()))
+    monkeypatch.setattr("gaitdisc.discovery.discover_files.search_twins", searched)
+    words = (lab / "good.toml", lab / "good.csv", "--out", tmp_path, "--twins", "20", "-q")
+    sentence, report, said, again = called("discover", *words, ends=0).stdout.splitlines()
+    assert before[0]["sentence"] == sentence and "twins" not in before[0] and report == again
+    assert said == "In simulated records like these, the search names an effect in 1 of 20 in which nothing is missing."
+    found, page = load_discovery(tmp_path), (tmp_path / "report.html").read_text(encoding="utf-8")
+    assert found.twins == twins and said in page and "How often this answer is right" in page
+
+
+def test_twins_are_refused_where_an_engine_runs_the_model(lab, tmp_path, called):
+    done = called("discover", lab / "leg.xml", lab / "good.csv", "--twins", "2", "--out", tmp_path, ends=REFUSED)
+    assert says(done.stderr, "twins need a simulation file or a Python function", "leg.xml", "Leave out")
 
 
 def test_without_a_report_and_without_progress(lab, tmp_path, monkeypatch, called):
