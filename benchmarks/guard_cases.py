@@ -24,6 +24,7 @@ FUNCTIONS = {name: getattr(math, name) for name in ("sin", "tanh", "exp", "sqrt"
 TRIALS = 4
 SETTLING = 0.25  # of a trial, which is run before the record begins
 SHARES = (0.1, 0.25)  # of the rms of a rate, which a law makes
+WEAK = (0.01, 0.1)  # of it, where it is not always found
 PUSHES = (0.01, 0.1)  # of the motion's standard deviation, by which pushes move it
 NOISE = (0.01, 0.04)  # of each channel's standard deviation
 CONSTANT = 0.1  # of a law's rms: what moves less about its mean is a constant
@@ -107,7 +108,8 @@ def hide_law(model: Model, kind: str, trial: Trial, motion: list[str], rng: np.r
 
     motion: the position (empty where there is none) and the rate that the law sees
     """
-    choices = CASES["laws"][kind]["rates"] | (CASES["laws"][kind]["positions"] if motion[0] else {})
+    laws = CASES["laws"][kind.removeprefix("pushed_")]
+    choices = laws["rates"] | (laws["positions"] if motion[0] else {})
     effect, states = str(rng.choice([*choices])), model.run(trial)
     names: dict[str, Any] = {key: f"{rng.uniform(*limits):.3g}" for key, limits in CASES["constants"].items()}
     for key, text in zip("pr", motion, strict=True):
@@ -123,7 +125,8 @@ def hide_law(model: Model, kind: str, trial: Trial, motion: list[str], rng: np.r
     if moved[:, column].std() < CONSTANT * change[column] or change[column] == 0:
         model.law = compile("0.0", "nothing", "eval")
         return hide_law(model, kind, trial, motion, rng)
-    term = f"{rng.uniform(*SHARES) * base[column] / change[column]:.5g}*({text})"
+    shares = WEAK if kind == "term" else SHARES
+    term = f"{rng.uniform(*shares) * base[column] / change[column]:.5g}*({text})"
     model.law = compile(term, effect, "eval")
     return {"effect": effect, "term": term}
 
@@ -177,16 +180,20 @@ def write_record(path: Path, trials: list[Trial], seen: list[dict[str, NDArray]]
     pd.concat(tables).to_csv(path, index=False, float_format="%.8g")
 
 
-def make_case(kind: str, number: int, seed: int, folder: Path) -> dict[str, Any]:
-    """Write a case's simulation and record; what is hidden in it is returned."""
+def make_case(kind: str, number: int, seed: int, folder: Path, again: int = 0) -> dict[str, Any]:
+    """Write a case's simulation and record; what is hidden in it is returned.
+
+    again: draws other noise for the same trials
+    """
     rng = np.random.default_rng([seed, zlib.crc32(kind.encode()), number])
     name = CASES["kinds"][kind][number % len(CASES["kinds"][kind])]
     system, model = CASES["systems"][name], Model(name)
     trials = draw_trials(system, model, 1 if kind == "one_trial" else TRIALS, rng)
     truth: dict[str, Any] = {"system": name, "noise": draw_share(NOISE, rng)}
-    if kind in (*CASES["laws"], "pushed"):
+    hidden = kind.removeprefix("pushed_") in CASES["laws"]
+    if hidden or kind == "pushed":
         model.port = truth["port"] = str(rng.choice([*system["ports"]]))
-    if kind in CASES["laws"]:
+    if hidden:
         truth |= hide_law(model, kind, trials[0], system["ports"][model.port], rng)
     if kind.startswith("pushed"):
         truth["pushes"] = draw_share(PUSHES, rng)
@@ -194,6 +201,7 @@ def make_case(kind: str, number: int, seed: int, folder: Path) -> dict[str, Any]
     runs = [pd.DataFrame(model.run(one), columns=model.states) for one in trials]
     channels = system["seen"] if kind == "hidden" else model.channels
     truth["sd"] = (truth["noise"] * pd.concat(runs)[channels].std()).to_dict()
+    rng = np.random.default_rng([seed, number, again]) if again else rng
     seen = [{key: run[key] + sd * rng.standard_normal(len(run)) for key, sd in truth["sd"].items()} for run in runs]
     if kind == "filtered":
         lowpass = butter(2, 2 * CUTOFF, output="sos")

@@ -96,7 +96,10 @@ def print_table(lines: list[dict[str, Any]]) -> None:
 if __name__ == "__main__":
     signal.signal(signal.SIGALRM, stop)
     GIVEN.out.mkdir(parents=True, exist_ok=True)
-    kinds, answers = [*CASES["kinds"]] if GIVEN.kinds == "all" else GIVEN.kinds.split(","), GIVEN.out / "answers.jsonl"
+    kinds, answers = (
+        [one for one in CASES["kinds"] if one != "term"] if GIVEN.kinds == "all" else GIVEN.kinds.split(","),
+        GIVEN.out / "answers.jsonl",
+    )
     answers.touch()
     lines = [json.loads(line) for line in answers.read_text(encoding="utf-8").splitlines()]
     there = {(one["kind"], one["number"]) for one in lines}
