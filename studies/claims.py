@@ -28,8 +28,8 @@ def read_section(place: str) -> str:
     """The text below a heading that begins with the words behind the page's name."""
     page, _, heading = place.partition(": ")
     parts = re.split(r"^(?=#+ )", (RESULTS / page).read_text(encoding="utf-8"), flags=re.MULTILINE)
-    [found] = [part for part in parts if part.lstrip("# ").startswith(heading)]
-    return found.replace("**", "")
+    [section] = [part for part in parts if part.lstrip("# ").startswith(heading)]
+    return section.replace("**", "")
 
 
 def find_cell(text: str, row: str, column: str) -> str:
@@ -63,15 +63,17 @@ def fill(words: str, text: str, free: bool) -> str:
 
 
 def write_table(subject: str) -> str:
-    """The table of a subject; its first column says what is claimed, the last one where the numbers stand."""
+    """The table of a subject. The page of the numbers stands in the last column, or below if all rows have the same."""
     rows, claims = [], tomllib.loads(CLAIMS.read_text(encoding="utf-8"))[subject]
-    columns = [name for name in claims[0] if name not in ("at", "command")]
+    columns = [name for name in claims[0] if name != "at"]
     for claim in claims:
         text = "\n".join(read_section(place) for place in claim["at"])
         files = ", ".join(dict.fromkeys(place.partition(": ")[0] for place in claim["at"]))
-        row = [fill(claim[name], text, name == columns[0]) for name in columns]
-        rows.append((*row, *([f"`{claim['command']}`"] if "command" in claim else []), files))
-    return markdown_table(" | ".join([*columns, *(["command"] if "command" in claims[0] else []), "file"]), rows)
+        words = {name: fill(claim[name], text, name == columns[0]) for name in columns if name != "command"}
+        rows.append([words.get(name, f"`{claim[name]}`") for name in columns] + [files])
+    if len({row[-1] for row in rows}) > 1:
+        return markdown_table(" | ".join([*columns, "file"]), rows)
+    return markdown_table(" | ".join(columns), [row[:-1] for row in rows]) + f"\n\nTables: `studies/results/{files}`."
 
 
 if __name__ == "__main__":

