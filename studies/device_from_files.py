@@ -39,7 +39,7 @@ from gaitdisc.cohort.person import STIFFNESS, Person, Spring, draw_one
 from gaitdisc.cohort.walk import TrueWalk, walked
 from gaitdisc.discovery.changed_moment import NORMAL_95
 from gaitdisc.discovery.device_study import FOOT_SHOWS_AT, PersonWalks, weigh_foot
-from gaitdisc.discovery.discover_files import discover_study
+from gaitdisc.discovery.discover_device import discover_study
 from gaitdisc.discovery.result import Estimate, FoundEffect
 from gaitdisc.ingest.c3d_writing import write_c3d
 from gaitdisc.ingest.storage import write_storage

@@ -136,7 +136,7 @@ def _of_study(
     path: Path, participant: str, request: Request, out: Path, write: Callable[[Discovery, Simulation, Path], Discovery]
 ) -> None:
     """Compare each condition of a participant, or of all, with the Nominal walk."""
-    from gaitdisc.discovery.discover_files import discover_study
+    from gaitdisc.discovery.discover_device import discover_study
     from gaitdisc.ingest.study_file import load_study
     from gaitdisc.saved.unit_folder import unit_name
 
@@ -167,7 +167,7 @@ def _of_study(
 
 def _everyone(people: Sequence[str], out: Path, discovered: Callable[[str, Path], dict[str, Discovery]]) -> None:
     """Search each participant in turn, each into a folder; who cannot be searched costs nobody else."""
-    from gaitdisc.discovery.device_study import lines, over_conditions
+    from gaitdisc.discovery.discover_device import lines, over_conditions
     from gaitdisc.errors import GaitdiscError
     from gaitdisc.spreadsheet import write_csv
 

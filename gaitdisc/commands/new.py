@@ -23,7 +23,7 @@ def new(
         Path | None,
         typer.Option(help="For a walk with an .osim model: its recorded ground forces (.xml, ExternalLoads)."),
     ] = None,
-    forces: Annotated[Path | None, typer.Option(help="For such a walk: the forces of the actuators (.sto).")] = None,
+    forces: Annotated[Path | None, typer.Option(help="For such a walk: forces or net moments (.sto).")] = None,
     actuators: Annotated[
         Path | None, typer.Option(help="Reserve and residual actuators of these forces (.xml).")
     ] = None,
@@ -79,9 +79,9 @@ def _write_tracked(file: Path, model: Path, loads: Path | None, forces: Path | N
     from gaitdisc.words import counted
 
     _claim_mapping(file, model)
-    tracked, engine = draft_tracked(model, loads, forces, actuators)
+    tracked, engine, columns = draft_tracked(model, loads, forces, actuators)
     write_tracked_mapping(tracked, file)
-    given = f"forces of {counted(len(engine.actuators), 'actuator')}" if tracked.forces else "no forces of muscles"
+    given = f"forces in {counted(len(columns), 'column')}" if tracked.forces else "no forces of muscles"
     typer.echo(
         f"{file} written: {engine.mass_kg:.1f} kg, {counted(len(engine.coordinates), 'free coordinate')}, {given}. "
         f"Read it, then run: gaitdisc discover {file} KINEMATICS.mot"

@@ -7,7 +7,7 @@ from collections.abc import Mapping
 from dataclasses import replace
 from functools import partial
 from pathlib import Path
-from typing import TYPE_CHECKING, cast
+from typing import cast
 
 import numpy as np
 
@@ -15,9 +15,9 @@ from gaitdisc.discovery.answer import answer
 from gaitdisc.discovery.catalogue import ALL, Request
 from gaitdisc.discovery.discover import explain, refuse_blow_up
 from gaitdisc.discovery.kept_work import recall
-from gaitdisc.discovery.result import DEVICE, SIMULATION, ConditionAnswer, Discovery, GapSize
+from gaitdisc.discovery.result import SIMULATION, Discovery, GapSize
 from gaitdisc.discovery.twins import TwinSource, search_twins
-from gaitdisc.errors import GaitdiscError, SamplingError
+from gaitdisc.errors import SamplingError
 from gaitdisc.ingest.public_words import PublicWords
 from gaitdisc.processing.kept_parts import hash_content
 from gaitdisc.recording import Finding
@@ -32,9 +32,6 @@ from gaitdisc.simulation.simulation_file import read_simulation
 from gaitdisc.simulation.unit_check import unit_findings
 from gaitdisc.simulation.writing import simulation_text
 
-if TYPE_CHECKING:
-    from gaitdisc.discovery.device_study import PersonWalks
-
 
 def discover_files(simulation: Path, measured: Path, request: Request = ALL) -> tuple[Discovery, Simulation]:
     """Find what a simulation file lacks against a table of measured trials."""
@@ -43,87 +40,6 @@ def discover_files(simulation: Path, measured: Path, request: Request = ALL) -> 
     data = read_measured(measured, model)
     files = {simulation: "simulation", measured: "measured table"}
     return find_missing(model, data, request, files)
-
-
-def discover_study(
-    study: Path, participant: str, request: Request = ALL, joint: str = "ankle_angle"
-) -> dict[str, tuple[Discovery, Simulation]]:
-    """Find what the device does at a participant's joint in each further condition of a study.
-
-    A condition that cannot be answered costs no other: all say why. The error is raised where none can be.
-
-    returns condition -> the answer, and the Nominal model with what was found in it
-    """
-    # imported here: a simulation file needs no filters and no pandas
-    from gaitdisc.discovery.device_study import PersonWalks
-    from gaitdisc.ingest.study_file import load_study
-
-    read = load_study(study)
-    person = read.participant(participant)
-    words = (read.conditions.device or "", *read.conditions.others)
-    answers: dict[str, tuple[Discovery, Simulation]] = {}
-    errors: dict[str, GaitdiscError] = {}
-    walks = PersonWalks(read, person)
-    for word in words:
-        of = f"{word}: " if len(words) > 1 else ""
-        own = replace(request, progress=lambda step, of=of: request.progress(f"{of}{step}"))
-        own.progress(f"comparing both walks of {participant} by the Nominal model")
-        try:
-            answers[word] = _discover_condition(walks, word, own, joint)
-        except GaitdiscError as error:
-            errors[word] = error
-    if not answers:
-        raise errors[words[0]]
-    if len(words) == 1:
-        return answers
-    seen = {word: one.public for word, (one, _) in answers.items()}
-    rows = [
-        ConditionAnswer(word, str(errors[word])) if word in errors
-        else ConditionAnswer(word, seen[word].sentence, seen[word].verdict, seen[word].effects, seen[word].beside)
-        for word in words
-    ]  # fmt: skip
-    return {word: (replace(one, conditions=tuple(rows)), model) for word, (one, model) in answers.items()}
-
-
-def _discover_condition(
-    walks: PersonWalks, condition: str, request: Request, joint: str
-) -> tuple[Discovery, Simulation]:
-    """Find what the Nominal moment model lacks in another walk of a participant.
-
-    Where a walk lacks EMG or moments, only the motion of both is compared, and the sentence says so.
-    """
-    from gaitdisc.discovery.device_study import NoMomentsError, against, beside, with_foot_mass
-    from gaitdisc.discovery.joint_and_trials import cut_walk_trials, joint_model
-    from gaitdisc.discovery.nominal_model import nominal_and_trials
-    from gaitdisc.ingest.public_words import list_words
-
-    study, person, progress = walks.study, walks.participant, request.progress
-    called = list_words(study, person).files
-    others = {*study.conditions.words} - {study.conditions.nominal, condition}
-    own = [file for trial in person.trials if trial.condition not in others for file in trial.files]
-    files = {study.path_of(file): called[Path(file).name] for file in own}
-    try:
-        both = walks.calibrated(condition, joint)
-    except NoMomentsError as lacking:
-        progress("comparing the motion alone")
-        motion = nominal_and_trials(against(study, condition), person.id, joint)
-        found, augmented = find_missing(*motion, request, files)
-        why = f"{lacking.needed[:1].upper()}{lacking.needed[1:]}, but {lacking.found}"
-        how = "only the motion of both walks was compared, which gives no moment of the device"
-        return replace(found, sentence=f"{why}: {how}. {found.sentence}"), augmented
-    model = joint_model(both.device, both.both_walks_model)
-    data = cut_walk_trials(both.device, both.both_walks_model, model)
-    if study.conditions.others:
-        model = replace(model, title=f"{model.title}, {condition}")
-    found, augmented = find_missing(model, data, replace(request, possible=both.weighed), files)
-    found, augmented = both.with_model_error(found), model if both.agrees else augmented
-    errors = beside(both, found)
-    if joint == "ankle_angle" and not found.effects:
-        progress("estimating the mass of the foot at knee and hip")
-        found = with_foot_mass(found, walks, condition)
-    if found.provenance is not None:
-        found = replace(found, provenance=replace(found.provenance, section=DEVICE))
-    return replace(found, findings=(*both.findings, *found.findings), beside=errors), augmented
 
 
 def find_missing(

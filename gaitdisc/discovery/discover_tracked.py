@@ -113,6 +113,9 @@ def make_discovery(base: Simulation, joints: list[JointFinding]) -> Discovery:
     if not named:
         rivals = [_effect(base, one.rivals[0]) for one in ordered[:1]]
     units = tuple(sensor.unit for sensor in base.sensors)
+    measured, left = (np.column_stack([getattr(one.joint, name) for one in joints]) for name in ("demanded", "left"))
+    closed = np.column_stack([one.named.predicted if one.named else 0.0 * one.joint.left for one in joints])
+    walk = [one[None] for one in (measured, measured - left, measured - left + closed)]
     found = Discovery(
         named[0][1].part.candidate.verdict if named else "no_gap",
         "",
@@ -123,7 +126,7 @@ def make_discovery(base: Simulation, joints: list[JointFinding]) -> Discovery:
         held_out=_gap(joints, [one.named.predicted if one.named else 0.0 for one in joints]),
         channels=tuple(f"net_{one.joint.port}" for one in joints),
         units=units,
-        runs=_runs(joints),
+        runs=Runs(np.arange(1), joints[0].joint.time[None], np.zeros((1, 0)), *walk, names=("whole walk",)),
     )
     sizes = found.held_out.channels.values()
     if named or not ordered or all(before < CRITERIA.agrees * floor for before, _, floor in sizes):
@@ -154,14 +157,6 @@ def _gap(joints: list[JointFinding], taken: list[Values | float]) -> GapSize:
     before, after, floor = np.sqrt(np.mean((np.array(list(sizes.values())).T / spreads) ** 2, axis=1)).tolist()
     first = min((one.named.test for one in joints if one.named), key=lambda test: test.p, default=None)
     return GapSize(before, after, floor, first.p if first else float("nan"), sizes, first.pieces if first else 0)
-
-
-def _runs(joints: list[JointFinding]) -> Runs:
-    """The whole walk, each block of its time with what was learned from the rest."""
-    measured, left = (np.column_stack([getattr(one.joint, name) for one in joints]) for name in ("demanded", "left"))
-    named = np.column_stack([one.named.predicted if one.named else 0.0 * one.joint.left for one in joints])
-    whole = [one[None] for one in (measured, measured - left, measured - left + named)]
-    return Runs(np.arange(1), joints[0].joint.time[None], np.zeros((1, 0)), *whole, names=("whole walk",))
 
 
 def stretch_used(walk: Pass, file: str) -> str:

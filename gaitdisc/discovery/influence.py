@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from itertools import compress
 
 import numpy as np
 
@@ -31,24 +32,23 @@ class Idle:
 
     def findings(self, source: str, kind: str) -> tuple[Finding, ...]:
         """One for each kind."""
+        idle = (
+            ("warning", kind, self.places, "a search there: an effect that does not show cannot be identified"),
+            ("note", "parameter", self.parameters, "nothing; these data cannot determine its value"),
+            ("note", "state", self.states, "nothing; these data cannot determine its initial value"),
+        )
         return tuple(
-            Finding(severity, "no influence", source, f"{said} no effect on what is measured", spoils)
-            for severity, said, spoils in (
-                (
-                    "warning",
-                    _say_names(kind, self.places),
-                    "a search there: an effect that does not show cannot be identified",
-                ),
-                ("note", _say_names("parameter", self.parameters), "nothing; these data cannot determine its value"),
-                ("note", _say_names("state", self.states), "nothing; these data cannot determine its initial value"),
+            Finding(
+                severity, "no influence", source, f"{_say_names(part, names)} no effect on what is measured", spoils
             )
-            if said
+            for severity, part, names, spoils in idle
+            if names
         )
 
 
 def _say_names(kind: str, names: tuple[str, ...]) -> str:
     words = " and ".join(repr(name) for name in names)
-    return f"{kind} {words} has" if len(names) == 1 else f"{kind}s {words} have" if names else ""
+    return f"{kind} {words} has" if len(names) == 1 else f"{kind}s {words} have"
 
 
 def idle_parts(shooting: Shooting, simulation: Simulation, places: tuple[Place, ...], starts: Values) -> Idle:
@@ -56,31 +56,26 @@ def idle_parts(shooting: Shooting, simulation: Simulation, places: tuple[Place, 
 
     starts (segment, state): where each run begins
     """
-    machine = pushable(simulation, places)
-    n, own = starts.shape[1], len(simulation.parameters)
-    versions = n + own + len(places)
-    many_starts = np.repeat(starts[None], 1 + versions, axis=0)
-    values = np.repeat(machine.defaults[None], 1 + versions, axis=0)
-    for state, size in enumerate(np.abs(starts).max(axis=0)):
-        many_starts[1 + state, :, state] += NUDGE * max(size, 1.0)
-    for number in range(own + len(places)):
-        size = abs(machine.defaults[number]) or 1.0
-        values[1 + n + number, number] += NUDGE * size
+    machine = pushable(simulation, places)  # its parameters: those of the simulation, then a push at each place
+    states, parameters = starts.shape[1], len(simulation.parameters)
+    nudges = np.arange(1, 1 + states + len(machine.defaults))  # version 0 is as it is, each other has one nudge
+    of_states, of_numbers = np.split(nudges, [states])
+    many_starts, values = (np.repeat(one[None], 1 + len(nudges), axis=0) for one in (starts, machine.defaults))
+    many_starts[of_states, :, np.arange(states)] += NUDGE * np.maximum(np.abs(starts).max(axis=0), 1.0)[:, None]
+    sizes = np.abs(machine.defaults)
+    values[of_numbers, np.arange(len(of_numbers))] += NUDGE * np.where(sizes, sizes, 1.0)
     with np.errstate(all="ignore"):  # a run that leaves every bound has been changed
         _, seen = shooting.run(machine, many_starts, values)
         change = np.abs(seen[1:] - seen[0]).max(axis=(1, 2))
         size = np.abs(seen[0]).max(axis=(0, 1))
     changed = ~(change <= ROUNDING * size)
-    idle = ~changed.any(axis=1)
     over_time = ~(np.ptp(seen[0].reshape(-1, seen.shape[3]), axis=0) <= ROUNDING * size)
-    names = [state.name for state in simulation.states]
+    idle_states, idle_parameters, idle_places = np.split(~changed.any(axis=1), [states, states + parameters])
     return Idle(
-        tuple(place.name for place, still in zip(places, idle[n + own :], strict=True) if still),
-        tuple(part.name for part, still in zip(simulation.parameters, idle[n : n + own], strict=True) if still),
-        tuple(name for name, still in zip(names, idle[:n], strict=True) if still),
-        tuple(
-            name for name, moves in zip(machine.observed, over_time | changed[:n].any(axis=0), strict=True) if not moves
-        ),
+        tuple(compress((place.name for place in places), idle_places)),
+        tuple(compress((part.name for part in simulation.parameters), idle_parameters)),
+        tuple(compress((state.name for state in simulation.states), idle_states)),
+        tuple(compress(machine.observed, ~(over_time | changed[:states].any(axis=0)))),
     )
 
 

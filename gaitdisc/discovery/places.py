@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import re
 from dataclasses import dataclass, replace
-from itertools import combinations
+from itertools import combinations, permutations
 
 import numpy as np
 
@@ -45,12 +45,11 @@ def kinematic_rates(simulation: Simulation, machine: Compiled) -> dict[str, str]
     rng = np.random.default_rng(0)
     x, u = rng.uniform(0.1, 1.0, (16, len(states))), rng.uniform(0.1, 0.9, (16, len(simulation.inputs)))
     rates = _rates(machine, x, u)
-    pairs = {}
-    for position, name in enumerate(states):
-        for rate, other in enumerate(states):
-            if rate != position and np.array_equal(rates[:, position], x[:, rate]):
-                pairs[name] = other
-    return pairs
+    return {
+        name: other
+        for (position, name), (rate, other) in permutations(enumerate(states), 2)
+        if np.array_equal(rates[:, position], x[:, rate])
+    }
 
 
 def list_places(simulation: Simulation, machine: Compiled) -> tuple[Place, ...]:
@@ -61,23 +60,23 @@ def list_places(simulation: Simulation, machine: Compiled) -> tuple[Place, ...]:
         return tuple(_place(simulation, "equation", name, name, rate_of) for name in named)
     found = []
     for port in (one.name for one in simulation.ports):
-        own = find_driven_state(simulation, machine, port)
-        moved = moved_by(simulation, machine, port)[:, machine.states.index(rate_of.get(own, own))]
-        found.append(replace(_place(simulation, "port", port, own, rate_of), power=float(np.sign(moved.sum()))))
+        moved = moved_by(simulation, machine, port)
+        own = find_driven_state(machine.states, port, moved)
+        power = float(np.sign(moved[:, machine.states.index(rate_of.get(own, own))].sum()))
+        found.append(replace(_place(simulation, "port", port, own, rate_of), power=power))
     return tuple(found)
 
 
-def find_driven_state(simulation: Simulation, machine: Compiled, port: str) -> str:
+def find_driven_state(states: tuple[str, ...], port: str, moved: Values) -> str:
     """Name the state that a port drives: the one it is named after, or else the one whose derivative it moves most.
 
     In a chain of bodies a moment at one joint may move another joint's angle more than its own.
     """
-    names = [state.name for state in simulation.states]
-    namesakes = [name for name in names if name in port.split("_")]
-    begins = max((name for name in names if port.startswith(f"{name}_")), key=len, default="")
+    namesakes = [name for name in states if name in port.split("_")]
+    begins = max((name for name in states if port.startswith(f"{name}_")), key=len, default="")
     if begins or len(namesakes) == 1:
         return begins or namesakes[0]
-    return names[int(np.argmax(np.abs(moved_by(simulation, machine, port)).mean(axis=0)))]
+    return states[int(np.argmax(np.abs(moved).mean(axis=0)))]
 
 
 def moved_by(simulation: Simulation, machine: Compiled, port: str) -> Values:

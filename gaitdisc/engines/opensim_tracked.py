@@ -53,7 +53,7 @@ class OpensimTracked(OpensimModel):
         return self._query("demanded", motion.time, motion.q, motion.v, motion.a, loaded)
 
     def arms(self, time: Values, q: Values, names: tuple[str, ...]) -> Values:
-        """Generalised force of each actuator's unit force (sample, actuator, coordinate)."""
+        """Generalised force (sample, name, coordinate) of each actuator's unit force, or unit net moment."""
         return self._query("arms", time, q, list(names))
 
     def other(self, path: Path) -> OpensimTracked:
@@ -70,9 +70,8 @@ class _Tracked:
     def loaded(self, loads: Path, data: Path, actuators: Path | None) -> None:
         osim, model = self.osim, self.model
         if actuators:
-            more = osim.ForceSet(str(actuators))
-            for k in range(more.getSize()):
-                model.updForceSet().cloneAndAppend(more.get(k))
+            for one in osim.ForceSet(str(actuators)):
+                model.updForceSet().cloneAndAppend(one)
         model.finalizeConnections()
         external = osim.ExternalLoads(str(loads), True)
         external.setDataFileName(str(data))
@@ -103,8 +102,7 @@ class _Tracked:
     def described(self) -> dict[str, Any]:
         osim, model = self.osim, self.model
         base = []
-        for k in range(model.getJointSet().getSize()):
-            joint = model.getJointSet().get(k)
+        for joint in model.getJointSet():
             if joint.getParentFrame().findBaseFrame().getName() == "ground" and joint.numCoordinates() > 1:
                 base += [joint.get_coordinates(i).getName() for i in range(joint.numCoordinates())]
         zero = np.zeros((1, len(self.names)))
@@ -152,23 +150,24 @@ class _Tracked:
 
     def arms(self, time: Any, q: Any, names: list[str]) -> Any:
         osim, found = self.osim, np.zeros((len(q), len(names), len(self.names)))
-        paths, others = [], []
+        paths, others, at = [], [], [""] * len(names)
         for number, name in enumerate(names):
-            path = osim.PathActuator.safeDownCast(self.given[name])
-            own = osim.CoordinateActuator.safeDownCast(self.given[name])
-            if path is not None:
+            given = self.given.get(name)
+            if given is None:  # a net moment, called after its coordinate
+                at[number] = name.rpartition("_")[0]
+            elif (own := osim.CoordinateActuator.safeDownCast(given)) is not None:
+                at[number] = own.getCoordinate().getName()
+            elif (path := osim.PathActuator.safeDownCast(given)) is not None:
                 paths.append((number, path))
-            elif own is not None and own.getCoordinate().getName() in self.names:
-                found[:, number, self.names.index(own.getCoordinate().getName())] = 1.0
             else:
-                others.append((number, self.given[name]))
-        still = np.zeros(len(self.names))
+                others.append((number, given))
         for k, t in enumerate(time):
             self.state.setTime(float(t))
-            slopes = self.placed(q[k], still)
+            slopes = self.placed(q[k], 0.0 * q[k])
             for column, name in enumerate(self.names):
-                with_it = {other: own[name] for other, own in slopes.items() if name in own}
-                self._speeds({name: 1.0, **with_it})
+                with_it = {name: 1.0} | {other: own[name] for other, own in slopes.items() if name in own}
+                found[k, :, column] = [with_it.get(one, 0.0) for one in at]
+                self._speeds(with_it)
                 self.model.realizeVelocity(self.state)
                 for number, path in paths:
                     found[k, number, column] = -path.getLengtheningSpeed(self.state)

@@ -27,8 +27,8 @@ MOST_RAD, MOST_M = 4 * np.pi, 50.0
 
 def draft_tracked(
     model: Path, loads: Path | None, forces: Path | None = None, actuators: Path | None = None
-) -> tuple[Tracked, OpensimTracked]:
-    """What a model's walk is tracked with, once model and files have been found to belong together."""
+) -> tuple[Tracked, OpensimTracked, tuple[str, ...]]:
+    """What a walk is tracked with, and the columns of its forces, once all have been found to belong together."""
     if model.suffix.lower() != ".osim":
         raise SchemaError(
             "recorded ground forces can be tracked only in an OpenSim model",
@@ -47,8 +47,7 @@ def draft_tracked(
     tracked = Tracked(model, find_loads(loads), forces, actuators)
     check_loads(tracked)
     engine = OpensimTracked(tracked)
-    actuator_forces(tracked, engine.actuators)
-    return tracked, engine
+    return tracked, engine, actuator_forces(tracked, engine.actuators)[0]
 
 
 def check_loads(tracked: Tracked) -> None:
@@ -132,14 +131,18 @@ def read_tracked_motion(
     if rates:
         v, a = [on_time(*one) for one in rates]
     else:
-        q, v, a = _smooth(coordinates, tracked.lowpass_hz, time, q)
+        channels = tuple(Channel(one.called, "signal", one.unit) for one in coordinates)
+        smooth = low_pass(Recording(time, q, channels), tracked.lowpass_hz)
+        q, edge = np.array(smooth.values), int(EDGE_PERIODS * smooth.rate_hz / tracked.lowpass_hz)
+        q[:edge], q[len(q) - edge :] = np.nan, np.nan
+        v, a = derivative(q, smooth.rate_hz, 1), derivative(q, smooth.rate_hz, 2)
     pulls = on_time(forces[:, 0], forces[:, 1:]) if names else np.zeros((len(time), 0))
     inside &= np.isfinite(q).all(axis=1) & np.isfinite(v).all(axis=1) & np.isfinite(a).all(axis=1)
     kept = np.flatnonzero(inside)
     kept = np.arange(kept[0], kept[-1] + 1)
-    ends = float(time[0]), float(time[-1])
+    forces, span = pulls[kept], (float(time[0]), float(time[-1]))
     return TrackedMotion(
-        time[kept], q[kept], v[kept], a[kept], actuators=names, forces=pulls[kept], differentiated=not rates, span=ends
+        time[kept], q[kept], v[kept], a[kept], actuators=names, forces=forces, differentiated=not rates, span=span
     )
 
 
@@ -175,7 +178,10 @@ def _coordinates(path: Path, coordinates: tuple[Coordinate, ...], word: str) -> 
 
 
 def actuator_forces(tracked: Tracked, known: tuple[str, ...]) -> tuple[tuple[str, ...], Values]:
-    """Return the actuators of a forces' file, and its numbers with time first; what the loads give is passed over."""
+    """Return the columns of a forces' file, and its numbers with time first; what the loads give is passed over.
+
+    Each is an actuator, or the net moment of a coordinate by its name in OpenSim's inverse dynamics.
+    """
     path = tracked.forces
     if path is None:
         return (), np.zeros((0, 1))
@@ -185,16 +191,13 @@ def actuator_forces(tracked: Tracked, known: tuple[str, ...]) -> tuple[tuple[str
         f"{(one.findtext('applied_to_body') or '').strip().rpartition('/')[2]}_{one.get('name')}_"
         for one in read_xml(tracked.loads[0]).iter("ExternalForce")
     ]
-    passive = [
-        one.get("name", "")
-        for forces in read_xml(tracked.model).iter("ForceSet")
-        for one in forces.findall("objects/*")
-        if one.tag.endswith(PASSIVE)
-    ]
+    model = read_xml(tracked.model)
+    passive = [one.get("name", "") for one in model.iterfind(".//ForceSet/objects/*") if one.tag.endswith(PASSIVE)]
+    net = {f"{one.get('name')}_{word}" for one in model.iter("Coordinate") for word in ("moment", "force")}
     again = tuple(name for name in (*recorded, *passive) if name)  # the model or the loads' file gives these anyway
-    kept = [0, *(k for k, name in enumerate(names) if k and not name.startswith(again))]
+    kept = [0, *(k for k, name in enumerate(names) if k and (name in net or not name.startswith(again)))]
     for name in (names[k] for k in kept[1:]):
-        if name not in known:
+        if name not in known and name not in net:
             near = nearest_word(name, known)
             raise ChannelError(
                 "every column of the forces file must be an actuator of the model",
@@ -203,7 +206,7 @@ def actuator_forces(tracked: Tracked, known: tuple[str, ...]) -> tuple[tuple[str
                 + "If it is a reserve or residual actuator, name the file that defines it in [tracked] as actuators.",
             )
     lacking = [name for name in known if name not in names]
-    if lacking:
+    if lacking and not net.issuperset(names[k] for k in kept[1:]):  # net moments hold those of all muscles
         raise ChannelError(
             "the forces file must have a column for every actuator of the model",
             f"{path.name} lacks {lacking[0]!r}" + (f" and {len(lacking) - 1} more" if len(lacking) > 1 else ""),
@@ -238,15 +241,3 @@ def _select_shared(spans: dict[Path, Values], time: Values, tracked: Tracked) ->
             "Correct start_s and end_s in [tracked].",
         )
     return inside
-
-
-def _smooth(
-    coordinates: tuple[Coordinate, ...], cutoff_hz: float, time: Values, q: Values
-) -> tuple[Values, Values, Values]:
-    """Coordinates after a low-pass, and their two derivatives."""
-    channels = tuple(Channel(one.called, "signal", one.unit) for one in coordinates)
-    smooth = low_pass(Recording(time, q, channels), cutoff_hz)
-    values, rate = np.array(smooth.values), smooth.rate_hz
-    edge = int(EDGE_PERIODS * rate / cutoff_hz)
-    values[:edge], values[len(values) - edge :] = np.nan, np.nan
-    return values, derivative(values, rate, 1), derivative(values, rate, 2)

@@ -252,7 +252,7 @@ def test_of_a_study_everyone_is_searched_and_who_is_refused_costs_nobody_else(la
         rows = (ConditionAnswer("exo", "", "no_gap"), ConditionAnswer("turn", "walks are needed"))
         return dict.fromkeys(("exo", "soft"), (manufactured(conditions=rows), read_simulation(lab / "good.toml")))
 
-    monkeypatch.setattr("gaitdisc.discovery.discover_files.discover_study", searched)
+    monkeypatch.setattr("gaitdisc.discovery.discover_device.discover_study", searched)
     words = ("--participant", "all:knee_angle", "--out", tmp_path / "found", "--no-report", "-q")
     done = called("discover", tmp_path / "study.toml", *words, ends=0)
     assert says(done.stderr, "walks of W02", "turn: refused: walks are needed")

@@ -3,7 +3,7 @@ from hidden_in_a_mass import MASS, TWO_RODS, mass, two_rods
 
 from gaitdisc.discovery.candidate import list_candidates
 from gaitdisc.discovery.catalogue import read_shapes
-from gaitdisc.discovery.places import find_driven_state, kinematic_rates, list_places
+from gaitdisc.discovery.places import find_driven_state, kinematic_rates, list_places, moved_by
 from gaitdisc.simulation.running import compile_simulation
 from gaitdisc.simulation.simulation_file import parse_simulation
 
@@ -56,7 +56,8 @@ def test_in_a_chain_each_joint_sees_its_own_angle_first_then_the_difference_then
 
 def test_a_port_with_a_name_of_its_own_drives_what_it_moves_most():
     renamed = parse_simulation(TWO_RODS.replace("lower_moment", "brace"), "renamed.toml")
-    assert find_driven_state(renamed, compile_simulation(renamed), "brace") == "upper_rate"
+    machine = compile_simulation(renamed)
+    assert find_driven_state(machine.states, "brace", moved_by(renamed, machine, "brace")) == "upper_rate"
 
 
 def test_a_model_without_ports_takes_effects_in_every_equation():

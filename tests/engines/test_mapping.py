@@ -45,11 +45,6 @@ def test_a_walk_whose_motion_is_prescribed_has_nothing_to_run_forward(pendulum, 
         read_mapping(pendulum)
 
 
-def test_without_a_mapping_columns_have_the_coordinates_names(pendulum):
-    mapping, _ = read_mapping(pendulum)
-    assert mapping.observations == (("pivot", "pivot"),) and mapping.sensor("pivot").unit == "rad"
-
-
 @pytest.mark.parametrize(
     ("change", "words"),
     [
@@ -71,8 +66,9 @@ def test_what_is_not_the_models_is_refused(pendulum, change, words):
         read_mapping(file)
 
 
-def test_a_number_that_is_not_the_models_is_told(pendulum):
+def test_without_a_mapping_columns_and_numbers_are_the_models_and_another_number_is_said(pendulum):
     mapping, model = read_mapping(pendulum)
+    assert mapping.observations == (("pivot", "pivot"),) and mapping.sensor("pivot").unit == "rad"
     assert other_values(mapping, model) == ()
     (said,) = other_values(mapping.with_values({"rod_mass": 3.0}), model)
     assert says(said.what, "rod_mass", "3", "2")
@@ -100,8 +96,9 @@ def test_a_mapping_of_recorded_forces_goes_to_its_file_and_back(tmp_path):
     pytest.importorskip("opensim", reason="OpenSim is not installed: gaitdisc[opensim]")
     forces = DATA / "CMC/results_no_spring/walk_subject_Actuation_force.sto"
     model, reserves = DATA / "CMC/subject01_metabolics.osim", DATA / "gait10dof_Reserve_Actuators.xml"
-    tracked, engine = draft_tracked(model, LOADS, forces, reserves)
-    assert len(engine.coordinates) == 10 and engine.mass_kg == pytest.approx(72.6, abs=0.1)
+    tracked, engine, columns = draft_tracked(model, LOADS, forces, reserves)
+    assert len(engine.coordinates) == 10 and len(columns) == len(engine.actuators)
+    assert engine.mass_kg == pytest.approx(72.6, abs=0.1)
     given = replace(tracked, noise_deg=0.5, start_s=0.7)
     write_tracked_mapping(given, tmp_path / "walk.toml")
     read = read_tracked(tmp_path / "walk.toml")

@@ -42,6 +42,8 @@ def test_muscles_and_residuals_of_computed_muscle_control_explain_the_motion(wal
     arms = engine.arms(few.time, few.q, motion.actuators)
     left = demanded - np.einsum("sa,sac->sc", motion.forces[some], arms)
     assert np.abs(demanded).max() > 50 and np.abs(left).max() < 0.1  # the files have five digits
+    (net,) = engine.arms(few.time[:1], few.q[:1], ("ankle_angle_r_moment", "pelvis_ty_force"))
+    assert [engine.coordinates[k].called for k in np.argmax(net, axis=1)] == ["ankle_angle_r", "pelvis_ty"]
     assert len(engine.base) == 3 and engine.coordinates[engine.vertical].called == "pelvis_ty"
     assert engine.mass_kg == pytest.approx(72.6, abs=0.05) and len(engine.paths) == 18
 

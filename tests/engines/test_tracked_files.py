@@ -13,7 +13,8 @@ JOINTS = (Coordinate("pelvis_ty", "m", "pelvis_ty"), Coordinate("ankle_angle_r",
 ACTUATORS = ("soleus_r", "ankle_angle_r_reserve")
 TIME = np.arange(0, 2, 0.01)
 MODEL = """<OpenSimDocument><Model name="m"><BodySet><objects><Body name="pelvis"/><Body name="calcn_r"/></objects>
-</BodySet><ForceSet><objects><CoordinateLimitForce name="ankle_limit"/></objects></ForceSet>
+</BodySet>
+<Coordinate name="ankle_angle_r"/><ForceSet><objects><CoordinateLimitForce name="ankle_limit"/></objects></ForceSet>
 </Model></OpenSimDocument>"""
 LOADS = """<OpenSimDocument><ExternalLoads><objects><ExternalForce name="right">
 <applied_to_body>{body}</applied_to_body><force_identifier>ground_force_v</force_identifier>
@@ -53,13 +54,20 @@ def motion(walk):
     return read_tracked_motion(tracked, walk / "walk.mot", JOINTS, ACTUATORS)
 
 
-def test_degrees_become_radians_and_rates_follow_the_angles(walk):
+def test_degrees_become_radians_and_rates_follow_the_angles_whose_ends_are_left_out(walk):
     read = motion(walk)
+    assert 1 / 6 < read.time[0] < 0.2 and 1.79 < read.time[-1] < 1.99 - 1 / 6  # one period of 6 Hz
     inner = slice(50, -50)
     assert np.allclose(read.q[inner, 1], np.radians(10) * np.sin(2 * np.pi * read.time[inner]), atol=1e-3)
     assert np.allclose(read.v[inner, 1], np.radians(10) * 2 * np.pi * np.cos(2 * np.pi * read.time[inner]), atol=5e-3)
     assert read.actuators == ACTUATORS and np.allclose(read.forces[:, 0], 100 * read.time)  # the rest is given anyway
     assert read.differentiated
+
+
+def test_net_moments_of_the_joints_stand_for_all_actuators(walk):
+    storage(walk / "forces.sto", {"ankle_angle_r_moment": 9 * TIME, "ankle_limit": TIME})
+    read = motion(walk)
+    assert read.actuators == ("ankle_angle_r_moment",) and np.allclose(read.forces[:, 0], 9 * read.time)
 
 
 def test_a_mapping_without_the_table_is_none_and_a_part_of_the_time_is_kept(walk):
@@ -75,6 +83,7 @@ def test_a_mapping_without_the_table_is_none_and_a_part_of_the_time_is_kept(walk
     ("text", "error", "words"),
     [
         ('[tracked]\nforces = "forces.sto"\n', SchemaError, "leg.toml names no external_loads. Write external_loads"),
+        (MAPPING.replace("xml", "mot"), ReadError, "grf.mot holds the forces themselves. Give the .xml of OpenSim's"),
         (MAPPING + 'force = "a.sto"\n', SchemaError, "leg.toml has 'force'. Did you mean 'forces'"),
         (MAPPING.replace("forces.sto", "gone.sto"), ReadError, "there is no file gone.sto"),
         (MAPPING + "lowpass_hz = '6'\n", SchemaError, "lowpass_hz must be a number"),
@@ -105,6 +114,8 @@ SWING, HEIGHT = np.sin(2 * np.pi * TIME), {"pelvis_ty": 1 + 0 * TIME}
          ChannelError, r"'right'.*'ground_force_px'.*none"),
         ("forces.sto", {"soleus_r": TIME}, 0, "no",
          ChannelError, r"forces.sto.*'ankle_angle_r_reserve'. Export all forces"),
+        ("forces.sto", dict.fromkeys(("ankle_angle_r_moment", "soleus_r"), TIME), 0, "no",
+         ChannelError, r"forces.sto.*'ankle_angle_r_reserve'. Export all forces"),
         ("forces.sto", dict.fromkeys((*ACTUATORS, "FX"), TIME), 0, "no", ChannelError, r"forces.sto.*'FX', which"),
         ("forces.sto", dict.fromkeys(ACTUATORS, TIME), 5, "no", SamplingError, r"forces.sto.*5 s.*1.99 s..*both"),
         ("walk.mot", {"pelvis_ty": TIME, "ankle_r": 10 * np.sin(TIME)}, 0, "yes",
@@ -121,11 +132,6 @@ def test_a_file_that_does_not_go_with_the_others_is_refused(walk, file, columns,
     storage(walk / file, columns, time=TIME + later_s, degrees=degrees)
     with pytest.raises(error, match=words):
         motion(walk)
-
-
-def test_the_ends_of_angles_are_left_out_where_rates_come_from_them(walk):
-    read = motion(walk)
-    assert 1 / 6 < read.time[0] < 0.2 and 1.79 < read.time[-1] < 1.99 - 1 / 6  # one period of 6 Hz
 
 
 def test_a_coordinate_of_a_name_that_nobody_else_uses_is_in_the_unit_of_the_header(walk):
@@ -150,12 +156,6 @@ def test_markers_in_the_place_of_angles_are_refused(walk, name):
     assert tracked is not None
     with pytest.raises(ReadError, match=rf"{name}.*OpenSim's"):
         read_tracked_motion(tracked, walk / name, JOINTS, ACTUATORS)
-
-
-def test_the_forces_themselves_in_the_place_of_external_loads_are_refused(walk):
-    (walk / "leg.toml").write_text('[tracked]\nexternal_loads = "grf.mot"\n')
-    with pytest.raises(ReadError, match=r"grf.mot.*forces themselves. Give.*OpenSim's"):
-        read_tracked(walk / "leg.osim")
 
 
 def test_files_that_do_not_fit_are_refused_before_a_model_is_loaded(tmp_path):

@@ -16,14 +16,18 @@ from gaitdisc.discovery.device_study import (
     DeviceWalks,
     NoMomentsError,
     PersonWalks,
-    beside,
     check_calibrated,
     check_kinetics,
-    lines,
-    over_conditions,
     weigh_foot,
 )
-from gaitdisc.discovery.discover_files import discover_study
+from gaitdisc.discovery.discover_device import (
+    beside,
+    device_findings,
+    discover_study,
+    lines,
+    over_conditions,
+    with_model_error,
+)
 from gaitdisc.discovery.effect_words import estimate_text
 from gaitdisc.discovery.folder import load_discovery, save_discovery
 from gaitdisc.discovery.joint_and_trials import nominal_moment
@@ -42,13 +46,10 @@ def trial(*keys, findings=()):
     return Trial("W01_exo", dict.fromkeys(keys, one), findings=tuple(findings))
 
 
-def test_a_walk_whose_forces_do_not_carry_the_body_is_refused_with_the_balance():
+def test_forces_that_do_not_carry_the_body_and_moments_per_kg_that_say_newton_metres_are_refused():
     balance = Finding("warning", "force balance", "walk.c3d", "mean -29.4 % of weight", "")
     with pytest.raises(SchemaError, match=r"W01_exo.*-29.4 %.*mass_kg"):
         check_kinetics(trial("emg", "moments", findings=[balance]))
-
-
-def test_moments_per_kg_that_say_newton_metres_are_refused():
     per_kg = Finding("warning", "per body mass", "id.sto", "peaks at 1.4 N m", "", "ankle_angle_r_moment")
     with pytest.raises(SchemaError, match=r"ankle_angle_r_moment.*1.4 N m.*m/kg.*\[channels\]"):
         check_kinetics(trial("emg", "moments", findings=[per_kg]))
@@ -119,7 +120,7 @@ def test_conditions_stand_side_by_side_and_one_without_a_walk_costs_no_other(thr
         return manufactured(sentence=word, effects=(spring,), beside={"Nominal": 9.0, "Exo": 5.0}), None
 
     numbers = {word: Estimate(size, size - 9, size + 9, "N m/rad") for word, size in SPRINGS.items()}
-    monkeypatch.setattr("gaitdisc.discovery.discover_files._discover_condition", answered)
+    monkeypatch.setattr("gaitdisc.discovery.discover_device._discover_condition", answered)
     steps = []
     answers = discover_study(tmp_path / "study.toml", "W01", Request(progress=steps.append))
     assert "exo_soft: done" in steps
@@ -171,11 +172,11 @@ def test_the_models_of_chapter_4_stand_beside_in_newton_metres(walks):
 
 
 def test_it_is_said_what_the_moment_model_is_worth_and_that_no_mass_can_be_weighed(walks):
-    said = [finding.what for finding in walks.findings]
+    said = [finding.what for finding in device_findings(walks)]
     assert any("the ankle's moment model is" in one and "ms later" in one for one in said)
     assert any(says(line, "not estimated", "no marker") for line in said)
     heavier = replace(walks, device=replace(walks.device, per_kg=0.5 * np.cos(walks.device.time)))
-    assert any(says(finding.what, "kg", "the foot would") for finding in heavier.findings)
+    assert any(says(finding.what, "kg", "the foot would") for finding in device_findings(heavier))
 
 
 def loaded(seed, kg, per_kg):
@@ -207,9 +208,8 @@ def test_the_size_of_what_is_named_at_a_hip_without_electrodes_on_its_deep_muscl
     found = Discovery("missing_physics", "a spring.", (), (own,), (), size, size, (), (), None)
     at_hip = {"joint": "hip_flexion", "muscles": ("emg_ham_r", "emg_bf_r", "emg_rf_r")}
     hip = DeviceWalks(replace(walks.nominal, **at_hip), replace(walks.device, **at_hip), walks.model)
-    said = hip.with_model_error(found).sentence
-    assert says(said, "size is unreliable")
-    assert "trusted" not in walks.with_model_error(found).sentence
+    assert says(with_model_error(found, hip).sentence, "size is unreliable")
+    assert "trusted" not in with_model_error(found, walks).sentence
 
 
 def test_the_number_of_both_walks_stands_with_the_error_of_the_moment_model(walks):
@@ -220,7 +220,7 @@ def test_the_number_of_both_walks_stands_with_the_error_of_the_moment_model(walk
     size = GapSize(1.0, 0.2, 0.1)
     told = f"a spring, {estimate_text(own.estimates['stiffness'])}."
     found = Discovery("missing_physics", told, (), (own,), (), size, size, (), (), None)
-    mended = walks.with_model_error(found)
+    mended = with_model_error(found, walks)
     new = mended.effects[0].estimates["stiffness"]
     assert new.value == walks.changed.value
     assert new.high - new.low > 2 * 1.96 * walks.changed.spread
@@ -236,7 +236,7 @@ def test_a_walk_that_the_nominal_model_follows_lacks_nothing_whatever_a_search_m
     size = GapSize(1.0, 0.2, 0.1)
     invented = FoundEffect("port", "ankle_moment", "phase_locked_moment", "")
     found = Discovery("missing_physics", "s", (), (invented,), (), size, size, (), (), None)
-    mended = same.with_model_error(found)
+    mended = with_model_error(found, same)
     assert (mended.verdict, mended.effects) == ("no_gap", ())
     assert "as well as held-out Nominal strides" in mended.sentence
 
@@ -257,13 +257,13 @@ def test_a_walk_without_emg_has_one_verdict(monkeypatch, verdict):
     study = SimpleNamespace(
         participant=lambda _: SimpleNamespace(id="W01", trials=()), conditions=one_walk().conditions
     )
-    monkeypatch.setattr("gaitdisc.ingest.study_file.load_study", lambda _: study)
-    monkeypatch.setattr("gaitdisc.ingest.public_words.list_words", lambda *_: PublicWords())
+    monkeypatch.setattr("gaitdisc.discovery.discover_device.load_study", lambda _: study)
+    monkeypatch.setattr("gaitdisc.discovery.discover_device.list_words", lambda *_: PublicWords())
     monkeypatch.setattr(PersonWalks, "calibrated", refused)
-    monkeypatch.setattr("gaitdisc.discovery.device_study.against", lambda study, _: study)
-    monkeypatch.setattr("gaitdisc.discovery.nominal_model.nominal_and_trials", lambda *_: (None, None))
+    monkeypatch.setattr("gaitdisc.discovery.discover_device.against", lambda study, _: study)
+    monkeypatch.setattr("gaitdisc.discovery.discover_device.nominal_and_trials", lambda *_: (None, None))
     compared = manufactured(sentence=verdict)
-    monkeypatch.setattr("gaitdisc.discovery.discover_files.find_missing", lambda *_: (compared, None))
+    monkeypatch.setattr("gaitdisc.discovery.discover_device.find_missing", lambda *_: (compared, None))
     found, _ = discover_study(Path("study.toml"), "W01")["exo"]
     reason, _, said = found.sentence.partition(". ")
     assert reason == (

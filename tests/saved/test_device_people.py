@@ -3,7 +3,7 @@ import pytest
 from manufactured_discovery import manufactured
 from texts import says
 
-from gaitdisc.discovery.device_study import NOTHING, lines, over_people
+from gaitdisc.discovery.discover_device import NOTHING, lines, over_people
 from gaitdisc.discovery.result import Estimate, FoundEffect
 
 
