@@ -60,7 +60,8 @@ def discover(  # noqa: PLR0913, PLR0917 these are the options of a command
             "--participant.",
         )
     whose = participant.partition(":")[0]
-    claim_folder(out, *(("people.csv",) if whose == EVERYONE and measured is None else FILES), mended=(KEPT,))
+    names = ("people.csv",) if whose == EVERYONE and measured is None else FILES
+    anew = claim_folder(out, *names, mended=(KEPT,))
     began = time.perf_counter()
 
     def say(step: str) -> None:
@@ -88,7 +89,7 @@ def discover(  # noqa: PLR0913, PLR0917 these are the options of a command
     def with_model(found: Discovery, augmented: Simulation, folder: Path = out) -> Discovery:
         return write(found, lambda to: [write_simulation(augmented, to / "augmented.toml").name], folder=folder)
 
-    with stoppable():
+    with stoppable(f"the same command{' without --overwrite' * anew}"):
         from gaitdisc.discovery.catalogue import Request
         from gaitdisc.discovery.discover_files import discover_files
         from gaitdisc.discovery.folder import save_discovery
@@ -98,7 +99,7 @@ def discover(  # noqa: PLR0913, PLR0917 these are the options of a command
         from gaitdisc.whole_file import write_together
 
         given = tuple(one.strip() for one in effects.split(",") if one.strip())
-        with kept_work(out, say) as work:
+        with kept_work(out, say, anew) as work:
             request = Request.read(catalogue, given, alpha, work.progress)
             if measured is None:
                 _of_study(simulation, participant, request, out, with_model)
