@@ -133,12 +133,12 @@ def note_inputs(paths: Iterable[Path]) -> None:
         guard.inputs.extend(path.stat() for path in paths if os.path.exists(path))  # noqa: PTH110 never raises
 
 
-def claim_folder(folder: Path, *names: str, command: str = "", mended: tuple[str, ...] = ()) -> None:
+def claim_folder(folder: Path, *names: str, command: str = "", mended: tuple[str, ...] = ()) -> bool:
     """Refuse a folder before any work is done, or hold it until the command ends.
 
     names: what will be written there, as far as it is known now
     command: whose files these are, where it is another than the one at work
-    mended: parts in which the command itself finds and mends what was changed
+    returns: whether the user replaces what lies there
     """
     guard = _GUARD.get()
     if guard is not None:
@@ -148,6 +148,7 @@ def claim_folder(folder: Path, *names: str, command: str = "", mended: tuple[str
         guard.take(Place(root, command, _list_paths(root) | earlier, listed or bool(earlier), mended), names)
         if earlier or mended:  # a run's units, which it finds by themselves, stand on no list
             Place(root, command, set()).add(earlier)
+    return guard is not None and guard.overwrite
 
 
 def claim_file(path: Path) -> None:

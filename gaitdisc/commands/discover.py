@@ -65,7 +65,8 @@ def discover(  # noqa: PLR0913, PLR0917 these are the options of a command
             "--participant.",
         )
     whose = participant.partition(":")[0]
-    claim_folder(out, *(("people.csv",) if whose == EVERYONE and measured is None else FILES), mended=(KEPT,))
+    names = ("people.csv",) if whose == EVERYONE and measured is None else FILES
+    anew = claim_folder(out, *names, mended=(KEPT,))
     began = time.perf_counter()
 
     def say(step: str) -> None:
@@ -93,7 +94,7 @@ def discover(  # noqa: PLR0913, PLR0917 these are the options of a command
     def with_model(found: Discovery, augmented: Simulation, folder: Path = out) -> Discovery:
         return write(found, lambda to: [write_simulation(augmented, to / "augmented.toml").name], folder=folder)
 
-    with stoppable():
+    with stoppable(f"the same command{' without --overwrite' * anew}"):
         from gaitdisc.discovery.catalogue import Request
         from gaitdisc.discovery.discover_files import discover_files
         from gaitdisc.discovery.folder import save_discovery
@@ -104,7 +105,7 @@ def discover(  # noqa: PLR0913, PLR0917 these are the options of a command
         from gaitdisc.whole_file import write_together
 
         given = tuple(one.strip() for one in effects.split(",") if one.strip())
-        with kept_work(out, say) as work:
+        with kept_work(out, say, anew) as work:
             request = Request.read(catalogue, given, alpha, work.progress, twins)
             if twins and (measured is None or names_engine(simulation)):
                 refuse_twins(simulation.name)

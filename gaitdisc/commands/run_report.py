@@ -96,12 +96,12 @@ def work_with_bar(work: Callable[[StudyProgress], Result], people: list[str], qu
 
 
 @contextmanager
-def stoppable() -> Iterator[None]:
+def stoppable(again: str = "the same command") -> Iterator[None]:
     """Whoever stops the work reads that nothing is lost."""
     try:
         yield
     except KeyboardInterrupt as stop:
-        LOG.info(" ".join(["Stopped.", *stop.args, "Finished parts are kept; the same command continues from there."]))
+        LOG.info(" ".join(["Stopped.", *stop.args, f"Finished parts are kept; {again} continues from there."]))
         raise typer.Exit(STOPPED) from None
 
 

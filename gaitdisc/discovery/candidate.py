@@ -280,14 +280,19 @@ def _lag_input(simulation: Simulation, name: str) -> Candidate:
 
 def saturations(simulation: Simulation) -> tuple[Candidate, ...]:
     """List inputs that act up to a limit alone: one above, one below, one of a size to either side, or two."""
-    grids = {"limit": "half widths of x", "lower_limit": "quantiles of x", "upper_limit": "quantiles of x"}
-    above, below = "min({s}, {upper_limit})", "max({s}, {lower_limit})"
-    forms = (above, below, "min(max({s}, -{limit}), {limit})", f"min({below}, {{upper_limit}})")
+    forms = {
+        "min({s}, {upper_limit})": {"upper_limit": "quantiles of x"},
+        "max({s}, {lower_limit})": {"lower_limit": "quantiles of x"},
+        "min(max({s}, -{limit}), {limit})": {"limit": "half widths of x"},
+        "min(max({s}, {lower_limit}), {upper_limit})": {
+            "lower_limit": "low quantiles of x",
+            "upper_limit": "high quantiles of x",
+        },
+    }
     return tuple(
         Candidate("input_error", "input", one.name, "input_saturation", (form,), limits, one.name)
         for one in simulation.inputs
-        for form in forms
-        for limits in ({slot: grid for slot, grid in grids.items() if f"{{{slot}}}" in form},)
+        for form, limits in forms.items()
     )
 
 

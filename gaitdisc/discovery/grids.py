@@ -9,7 +9,7 @@ import numpy as np
 
 from gaitdisc.recording.arrays import Values
 
-QUANTILES = np.linspace(0.04, 0.96, 15)
+QUANTILES = {"": np.linspace(0.04, 0.96, 15), "low ": np.linspace(0.04, 0.44, 5), "high ": np.linspace(0.56, 0.96, 5)}
 HALF_WIDTHS = np.linspace(0.08, 0.92, 9)
 DELAYS_PER_PERIOD = np.linspace(0.02, 0.55, 20)
 PHASES = np.linspace(0.025, 0.975, 20)
@@ -62,11 +62,12 @@ def find_rhythm(observed: Values, rate: float) -> Rhythm:
 def grid(kind: str, along: Values, rhythm: Rhythm) -> Values:
     """Return where the search for one constant begins.
 
-    kind: as in the catalogue: `quantiles of x`, `half widths of x`, `delays`, `frequencies`, `phases`, `phase widths`
+    kind: as in the catalogue: `quantiles of x` (`low` and `high`: of either half), `half widths of x`, `delays`,
+        `frequencies`, `phases`, `phase widths`
     along (sample,): x along the run
     """
-    if kind == "quantiles of x":
-        return np.quantile(along, QUANTILES)
+    if kind.endswith("quantiles of x"):
+        return np.quantile(along, QUANTILES[kind.removesuffix("quantiles of x")])
     if kind == "half widths of x":
         return np.quantile(np.abs(along), HALF_WIDTHS)
     if kind == "delays":

@@ -75,13 +75,16 @@ _WORK: ContextVar[Work | None] = ContextVar("work", default=None)
 
 
 @contextmanager
-def kept_work(folder: Path, say: Callable[[str], None]) -> Iterator[Work]:
-    """Keep in a folder what is fitted within, until it ends well or in a refusal, and use what is kept there.
+def kept_work(folder: Path, say: Callable[[str], None], anew: bool = False) -> Iterator[Work]:
+    """Keep in a folder what is fitted within, until it ends well or in a refusal; use what is kept there, unless anew.
 
     say: gets a line about each step
     """
     key = hash_content((), repr(list_versions()))
-    work = Work(folder, say, key, read_part(folder, NAME, key) or {})
+    work = Work(folder, say, key, {})
+    if anew:
+        work.drop()
+    work.known = read_part(folder, NAME, key) or {}
     token = _WORK.set(work)
     try:
         yield work

@@ -8,6 +8,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from gaitdisc.engines.ball_joints import STEEPEST
 from gaitdisc.engines.engine import Engine
 from gaitdisc.engines.motion import Coordinate, Values
 from gaitdisc.errors import SchemaError
@@ -54,6 +55,14 @@ def refuse_other_units(mapping: Simulation, engine: Engine, measured: Measured, 
     for k, one in enumerate(engine.coordinates):
         if one.unit == "rad" and largest[k] > _limit(one):
             degrees[k] = np.pi / 180
+    steep = [k + 1 for k in getattr(engine, "balls", ()) if largest[k + 1] > STEEPEST]
+    if steep:
+        one = engine.coordinates[steep[0]]
+        raise SchemaError(
+            f"the angle {one.called!r} must stay within {STEEPEST:g} rad: at a right angle the other two are one",
+            f"column {_column(mapping, one)!r} makes it {largest[steep[0]]:.4g} rad",
+            "If these are degrees, say so in the mapping; else turn the axes of the model, so that x points ahead.",
+        )
     misfit = _Misfit(mapping, engine, measured, states)
     for k in np.flatnonzero(degrees < 1.0):
         one = engine.coordinates[k]

@@ -29,6 +29,7 @@ SLOWEST, FASTEST = 10.0, 300.0  # [1/s] at which a fibre settles at least, and a
 JUMP = 5  # points
 SLOPES_HZ = 50.0  # at which slopes of a model with muscles are computed: they change as slowly as the motion
 INEXACT = 0.02  # of a channel's spread, as white noise: a half percent in which some 20 samples err together
+MOST_MIXED = 2000  # columns of what a parameter changes with a coordinate
 STILL = 1e-9  # of a column's size, below which it is one number
 
 
@@ -90,18 +91,22 @@ class _Columns:
         self.engine = engine
         self.values: dict[str, Values] = {}
         self.slowed: Values | None = None  # (point, coordinate, coordinate)
-        self._terms: dict[str, list[str]] = {one.speed: [] for one in engine.coordinates}
+        self._terms: dict[str, dict[str, list[str]]] = {one.speed: {} for one in engine.coordinates}
 
     @property
     def equations(self) -> dict[str, str]:
         """Time derivative of each state."""
-        rates = {speed: " + ".join(terms) or "0" for speed, terms in self._terms.items()}
-        return {one.name: one.speed for one in self.engine.coordinates} | rates
+        rates = {one.name: one.speed for one in self.engine.coordinates}
+        for speed, sums in self._terms.items():
+            parts = (f"({' + '.join(terms)}){away}" for away, terms in sums.items())
+            rates[speed] = " + ".join(parts) or "0"
+        return rates
 
-    def add(self, name: str, column: Values, factor: str = "") -> None:
+    def add(self, name: str, column: Values, factor: str = "", away: str = "") -> None:
         """Add a column (point, coordinate) times a factor to every acceleration; one that rests is a number.
 
         name: what follows the speed's name in that of the column
+        away: by how much a parameter differs: a factor of the sum of all columns that have it
         """
         if self.slowed is not None:
             column = np.einsum("pij,pj->pi", self.slowed, column)
@@ -116,7 +121,7 @@ class _Columns:
                 word = repr(float(own.mean()))
             else:
                 continue
-            self._terms[one.speed].append(f"{word}*{factor}" if factor else word)
+            self._terms[one.speed].setdefault(away, []).append(f"{word}*{factor}" if factor else word)
 
 
 @dataclass(frozen=True)
@@ -232,18 +237,19 @@ def _expand_parameters(
     """
     engine, at = columns.engine, along.few
     names = [name for name in simulation.values() if engine.as_force(name) is None]
-    beside = list(_nudge(engine, at, "q")) if names and at.z is None else []
+    mixed = at.z is None and 0 < len(names) * len(engine.coordinates) ** 2 <= MOST_MIXED
+    beside = list(_nudge(engine, at, "q")) if mixed else []
     own = [engine.accelerations(ahead, values) for _, _, ahead, _, _ in beside]
     for name in names:
         size = NUDGE * max(abs(values[name]), 1e-2)
         far = {**values, name: values[name] + size}
         slope = along.without_jumps((engine.accelerations(at, far) - here) / size)
-        away, rest = f"({name} - {values[name]!r})", slope
+        away, rest = f"*({name} - {values[name]!r})", slope
         for (other, value, ahead, _, step), before in zip(beside, own, strict=True):
-            mixed = ((engine.accelerations(ahead, far) - before) / size - slope) / step
-            columns.add(f"by_{name}_and_{other}", along.spread(mixed), f"{other}*{away}")
-            rest = rest - mixed * value[:, None]
-        columns.add(f"by_{name}", along.spread(rest), away)
+            both = ((engine.accelerations(ahead, far) - before) / size - slope) / step
+            columns.add(f"by_{name}_and_{other}", along.spread(both), other, away)
+            rest = rest - both * value[:, None]
+        columns.add(f"by_{name}", along.spread(rest), "", away)
 
 
 def _nudge(engine: Engine, at: Motion, fields: str) -> Iterator[tuple[str, Values, Motion, Motion, float]]:

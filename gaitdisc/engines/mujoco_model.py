@@ -3,13 +3,16 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
+from copy import copy
 from dataclasses import replace
 from functools import wraps
+from operator import attrgetter
 from pathlib import Path
 from typing import Any, NamedTuple
 
 import numpy as np
 
+from gaitdisc.engines.ball_joints import to_accelerations, to_coordinates, to_forces, to_positions
 from gaitdisc.engines.motion import ByHand, Coordinate, Motion, Pushes, Values, new_name, refuse_absent
 from gaitdisc.engines.mujoco_text import with_effect, with_range, with_value
 from gaitdisc.errors import ReadError, SchemaError
@@ -22,15 +25,19 @@ PASSIVE = {  # numbers of a joint or tendon: their units where it turns and wher
 }
 
 
-def _size(value: Any) -> float:
-    """Length of a vector; a single number as it is, with its sign."""
-    return float(np.linalg.norm(value) if np.ndim(value) else value)
+ABOUT = tuple(("rad", f" about {axis}") for axis in "yxz")
+WAYS = (
+    (*(("m", f" along {axis}") for axis in "xyz"), *ABOUT),
+    ABOUT,
+    (("m", ""),),
+    (("rad", ""),),
+)  # free, ball, slide, hinge
 
 
 class _Place(NamedTuple):
     """Where a number of the model stands."""
 
-    array: Any  # of the engine
+    array: str  # of the engine
     index: Any  # in it
     unit: str
     part: tuple[str, int]  # kind and number of the part that has it
@@ -52,7 +59,7 @@ def _heard(method: Callable[..., Any]) -> Callable[..., Any]:
 
 
 class MujocoModel:
-    """A model of MuJoCo whose joints are hinges and slides."""
+    """A model of MuJoCo; a ball or free joint turns by three angles."""
 
     called = "MuJoCo"
     fibres = False
@@ -72,15 +79,7 @@ class MujocoModel:
         bit = self._mujoco.mjtDisableBit
         self._model.opt.disableflags |= int(bit.mjDSBL_AUTORESET) | int(bit.mjDSBL_CLAMPCTRL)
         self._data: Any = self._mujoco.MjData(self._model)
-        model, joint = self._model, self._mujoco.mjtJoint
-        known = int(joint.mjJNT_HINGE), int(joint.mjJNT_SLIDE)
-        others = [repr(self._called("joint", k) or k + 1) for k in range(model.njnt) if model.jnt_type[k] not in known]
-        if others:
-            raise SchemaError(
-                "each joint is a hinge or a slide, which has one coordinate and one speed",
-                f"{self.path.name}: joint {', '.join(others)} is a ball or free joint and cannot be examined",
-                "Write it as hinges and slides one after the other, or weld the body to the world.",
-            )
+        model = self._model
         bound = np.flatnonzero(model.eq_active0)
         if bound.size:
             name = self._called("equality", int(bound[0])) or int(bound[0]) + 1
@@ -91,23 +90,26 @@ class MujocoModel:
             )
         if not model.njnt:
             raise SchemaError("a model must have a joint", f"{self.path.name} has none", "Give a body a joint.")
-        ranges = np.where(model.jnt_limited[:, None], model.jnt_range, (-np.inf, np.inf)).tolist()
-        turns = model.jnt_type == known[0]
+        names, kinds, taken = self._names("joint", model.njnt, set()), model.jnt_type, set[str]()
+        self.balls = (model.jnt_dofadr + 3 * (kinds == 0))[kinds < 2].tolist()  # first of the three angles of each
+        limited = (model.jnt_limited & (kinds > 1))[:, None]  # a ball's limit is a cone
+        ranges = np.where(limited, model.jnt_range, (-np.inf, np.inf)).tolist()
         self.coordinates = tuple(
-            Coordinate(name, "rad" if turns[k] else "m", self._called("joint", k), *ranges[k])
-            for k, name in enumerate(self._names("joint", model.njnt, set()))
+            Coordinate(new_name(f"{name}{way}", "joint", taken), unit, f"{self._called('joint', k)}{way}", *ranges[k])
+            for k, name in enumerate(names)
+            for unit, way in WAYS[kinds[k]]
         )
         places = self._places_of_parts()
         taken = {"gravity", *places} | {each for one in self.coordinates for each in (one.name, one.speed, one.port)}
         self.controls = tuple(Input(name, "1", "actuator") for name in self._names("control", model.nu, taken))
         self._places = places | self._places_of_controls()
-        self.parameters = tuple(
-            Parameter(name, _size(array[index]), unit) for name, (array, index, unit, _) in self._places.items()
-        )
+        self.parameters = tuple(Parameter(name, self._value(name), one.unit) for name, one in self._places.items())
+        at_zero = {("joint", k) for k in np.flatnonzero(kinds < 2)}
         self.offered = tuple(
             one.name
-            for one, place in zip(self.parameters, self._places.values(), strict=True)
-            if (one.value and "gear" not in one.name) or (place.part[0] == "tendon" and "loss" not in one.name)
+            for one, (*_, part) in zip(self.parameters, self._places.values(), strict=True)
+            if (one.value and "gear" not in one.name)
+            or ("loss" not in one.name and (part[0] == "tendon" or part in at_zero))
         )
         limited = model.actuator_ctrllimited[:, None]
         self.control_ranges = np.where(limited, model.actuator_ctrlrange, (-np.inf, np.inf))  # (control, low and high)
@@ -117,14 +119,15 @@ class MujocoModel:
     @_heard
     def accelerations(self, at: Motion, values: Mapping[str, float], forces: Values | None = None) -> Values:
         """Accelerations (point, coordinate), with other values of some parameters and forces besides."""
-        model, data, forward = self._model, self._data, self._mujoco.mj_forward
-        kept = self._change_values(values)
+        model, data, forward = self.with_values(values)._model, self._data, self._mujoco.mj_forward
         found = np.empty_like(at.q)
         own = self._stateful
         acts = model.actuator_actadr[own]
+        qpos, qvel = to_positions(self.balls, at.q, at.v)
+        forces = None if forces is None else to_forces(self.balls, at.q, forces)
         for point in range(len(at.q)):
-            data.qpos[:] = at.q[point]
-            data.qvel[:] = at.v[point]
+            data.qpos[:] = qpos[point]
+            data.qvel[:] = qvel[point]
             data.ctrl[~own] = at.u[point, ~own]
             data.act[acts] = at.u[point, own]
             data.qfrc_applied[:] = 0.0 if forces is None else forces[point]
@@ -133,11 +136,7 @@ class MujocoModel:
             found[point] = data.qacc
             self.contacts = max(self.contacts, data.ncon)
         data.qfrc_applied[:] = 0.0
-        for array, index, before in reversed(kept):
-            array[index] = before
-        if kept:
-            self._mujoco.mj_setConst(model, data)
-        return found
+        return to_accelerations(self.balls, at.q, at.v, found)
 
     def as_force(self, parameter: str) -> tuple[int, str] | None:
         """Springs, dampers and friction of joints are forces on their coordinates."""
@@ -145,8 +144,8 @@ class MujocoModel:
         number = next((k for k, one in enumerate(self.coordinates) if one.name == part), -1)
         if number < 0 or word not in PASSIVE:
             return None
-        one, rest = self.coordinates[number], float(self._model.qpos_spring[number])
-        return number, PASSIVE[word][2].format(rest=rest, name=one.name, speed=one.speed)
+        one, rest = self.coordinates[number], self._model.qpos_spring[number + sum(k < number for k in self.balls)]
+        return number, PASSIVE[word][2].format(rest=float(rest), name=one.name, speed=one.speed)
 
     rates = accelerations  # no fibre has a state of its own
 
@@ -159,12 +158,13 @@ class MujocoModel:
             return Motion(q, v, found)
         model, data, steps = self._model, self._data, self._steps(rate)
         h, acts = 1.0 / (rate * steps), model.actuator_actadr[self._stateful]
+        qpos, _ = to_positions(self.balls, q, v)
         data.qvel[:] = 0.0
         data.act[acts] = controls[0, self._stateful]
         for sample in range(len(controls)):
             found[sample, self._stateful] = data.act[acts]
             after = controls[min(sample + 1, len(controls) - 1)]
-            data.qpos[:] = q[sample]
+            data.qpos[:] = qpos[sample]
             for step in range(steps):
                 data.ctrl[:] = controls[sample] + (after - controls[sample]) * step / steps
                 self._mujoco.mj_forward(model, data)
@@ -179,49 +179,60 @@ class MujocoModel:
     def run(self, start: Motion, controls: Values, rate: float) -> Values:
         """Coordinates, then speeds (run, sample, state), by MuJoCo's own integrator; controls are linear in between."""
         model, data, steps = self._model, self._data, self._steps(rate)
-        kept, count = model.opt.timestep, model.nq + model.nv
+        kept, balls = model.opt.timestep, self.balls
         model.opt.timestep = 1.0 / (rate * steps)
         change = np.diff(controls, axis=1)[:, :, None] / steps
         driven = np.clip(controls[:, :-1, None] + np.arange(steps)[:, None] * change, *self.control_ranges.T)
         driven = driven.reshape(len(controls), -1, model.nu)
-        found = np.empty((len(controls), driven.shape[1] + 1, count))
-        found[:, 0] = np.hstack([start.q, start.v])
+        found = np.empty((len(controls), driven.shape[1] + 1, model.nq + model.nv))
+        begun = np.hstack(to_positions(balls, start.q, start.v))
+        found[:, 0] = begun
         halted = np.ones(len(controls), bool)
         if self.pushes is None and driven.shape[1]:  # all at once, each halted where MuJoCo warns
-            begun = np.array([self._begun(start, run) for run in range(len(controls))])
-            states, _ = self._mujoco.rollout.rollout(model, data, begun, driven)
-            found[:, 1:] = states[:, :, 1 : 1 + count]
+            whole = np.array([self._begin(*one) for one in zip(begun, start.u, strict=True)])
+            states, _ = self._mujoco.rollout.rollout(model, data, whole, driven)
+            found[:, 1:] = states[:, :, 1 : 1 + begun.shape[1]]
             halted = states[:, -1, 0] < (driven.shape[1] - 0.5) * model.opt.timestep
         for run in np.flatnonzero(halted):
-            self._begun(start, int(run))
+            self._begin(begun[run], start.u[run])
             pushed = None if self.pushes is None else self.pushes.begun(start)[[run]]
             begins = 0.0 if start.t is None else start.t[run]
             for step, control in enumerate(driven[run]):
                 data.ctrl[:] = control
                 if self.pushes is not None and pushed is not None:
-                    pushed[0, : 2 * model.nv] = *data.qpos, *data.qvel
+                    q = pushed[:, : model.nv]
+                    pushed[:, : 2 * model.nv] = to_coordinates(balls, data.qpos[None, None], data.qvel[None, None], q)[
+                        0
+                    ]
                     now = np.array([begins + data.time])
-                    data.qfrc_applied[:], rates = self.pushes.at(now, pushed, data.ctrl[None])
+                    forces, rates = self.pushes.at(now, pushed, data.ctrl[None])
+                    data.qfrc_applied[:] = to_forces(balls, q, forces)[0]
                     pushed[:, 2 * model.nv :] += model.opt.timestep * rates
                 self._mujoco.mj_step(model, data)
                 found[run, step + 1] = *data.qpos, *data.qvel
         model.opt.timestep = kept
-        return found[:, ::steps]
+        return to_coordinates(balls, *np.split(found[:, ::steps], [model.nq], axis=2), start.q)
 
-    def _begun(self, start: Motion, run: int) -> Values:
-        """Put the model where a run begins, and give its whole state there."""
+    def _begin(self, state: Values, acting: Values) -> Values:
+        """Put the model into positions and velocities with what acts through each control, and give its whole state."""
         model, data, whole = self._model, self._data, self._mujoco.mjtState.mjSTATE_FULLPHYSICS
         self._mujoco.mj_resetData(model, data)
-        data.qpos[:], data.qvel[:] = start.q[run], start.v[run]
-        data.act[model.actuator_actadr[self._stateful]] = start.u[run, self._stateful]
-        state = np.empty(self._mujoco.mj_stateSize(model, whole))
-        self._mujoco.mj_getState(model, data, state, whole)
-        return state
+        data.qpos[:], data.qvel[:] = np.split(state, [model.nq])
+        data.act[model.actuator_actadr[self._stateful]] = acting[self._stateful]
+        given = np.empty(self._mujoco.mj_stateSize(model, whole))
+        self._mujoco.mj_getState(model, data, given, whole)
+        return given
 
     def text_with_value(self, text: str, name: str, value: float) -> str | None:
         """Text of the model with another value of a parameter."""
         kind, number = self._places[name].part
-        return with_value(text, name, value, kind, self._called(kind, number))
+        model, share = self._model, value / (self._value(name) or 1.0)
+        inertial = ""
+        if kind == "body" and name != "gravity":  # as MuJoCo has computed it from the body's shapes
+            numbers = {"pos": model.body_ipos, "quat": model.body_iquat, "diaginertia": share * model.body_inertia}
+            own = (f'{word}="{" ".join(map(repr, each[number].tolist()))}"' for word, each in numbers.items())
+            inertial = f'<inertial mass="{value!r}" {" ".join(own)}/>'
+        return with_value(text, name, value, kind, self._called(kind, number), inertial)
 
     def text_with_range(self, text: str, control: int, low: float, high: float) -> str | None:
         """Text of the model with a narrower range of a control."""
@@ -232,7 +243,8 @@ class MujocoModel:
         """Text of the model with an effect on a joint."""
         one = self.coordinates[effect.coordinate]
         values = {each.name: each.value for each in self.parameters}
-        return with_effect(text, effect, one.called, {word: values[f"{one.name}_{word}"] for word in PASSIVE})
+        own = {word: values.get(f"{one.name}_{word}", 0.0) for word in PASSIVE}
+        return with_effect(text, effect, one.called, own)
 
     @_heard
     def _read(self) -> Any:
@@ -267,20 +279,20 @@ class MujocoModel:
         model = self._model
         places: dict[str, _Place] = {}
         if np.any(model.opt.gravity):
-            places["gravity"] = _Place(model.opt.gravity, slice(None), "m/s^2", ("body", 0))
+            places["gravity"] = _Place("opt.gravity", slice(None), "m/s^2", ("body", 0))
         for body, name in enumerate(self._names("body", model.nbody, set())):
             if model.body_dofnum[model.body_rootid[body]] or model.body_weldid[body]:
-                places[f"{name}_mass"] = _Place(model.body_mass, body, "kg", ("body", body))
-        joints = {one.name: one.unit for one in self.coordinates}
+                places[f"{name}_mass"] = _Place("body_mass", body, "kg", ("body", body))
+        joints = [WAYS[kind][0][0] for kind in model.jnt_type]
         along = zip(model.wrap_type[model.tendon_adr], model.wrap_objid[model.tendon_adr], strict=True)
-        units = [[*joints.values()][k] if way == int(self._mujoco.mjtWrap.mjWRAP_JOINT) else "m" for way, k in along]
-        tendons = dict(zip(self._names("tendon", model.ntendon, set(joints)), units, strict=True))
-        of_joints = (model.jnt_stiffness, model.dof_damping, model.dof_frictionloss)
-        of_tendons = (model.tendon_stiffness, model.tendon_damping, model.tendon_frictionloss)
-        for kind, parts, arrays in (("joint", joints, of_joints), ("tendon", tendons, of_tendons)):
-            for number, (name, unit) in enumerate(parts.items()):
-                for (word, of), array in zip(PASSIVE.items(), arrays, strict=True):
-                    places[f"{name}_{word}"] = _Place(array, number, of[unit == "m"], (kind, number))
+        tendons = [joints[k] if way == int(self._mujoco.mjtWrap.mjWRAP_JOINT) else "m" for way, k in along]
+        axes, taken = np.split(np.arange(model.nv), model.jnt_dofadr[1:]), set[str]()
+        for kind, units, prefix in (("joint", joints, "jnt"), ("tendon", tendons, "tendon")):
+            for number, (name, unit) in enumerate(zip(self._names(kind, len(units), taken), units, strict=True)):
+                for word, of in PASSIVE.items():
+                    whole = kind == "joint" and word != "stiffness"  # of each of its axes
+                    array, index = (f"dof_{word}", axes[number]) if whole else (f"{prefix}_{word}", number)
+                    places[f"{name}_{word}"] = _Place(array, index, of[unit == "m"], (kind, number))
         return places
 
     def _places_of_controls(self) -> dict[str, _Place]:
@@ -289,26 +301,31 @@ class MujocoModel:
         for number, one in enumerate(self.controls):
             if model.actuator_gaintype[number] == int(self._mujoco.mjtGain.mjGAIN_MUSCLE):
                 if model.actuator_gainprm[number, 2] > 0:
-                    places[f"{one.name}_force"] = _Place(model.actuator_gainprm, (number, 2), "N", ("actuator", number))
+                    places[f"{one.name}_force"] = _Place("actuator_gainprm", (number, 2), "N", ("actuator", number))
             else:
-                places[f"{one.name}_gear"] = _Place(model.actuator_gear, (number, 0), "1", ("actuator", number))
+                places[f"{one.name}_gear"] = _Place("actuator_gear", (number, 0), "1", ("actuator", number))
         return places
 
-    def _change_values(self, values: Mapping[str, float]) -> list[tuple[Any, Any, Any]]:
-        """Put other values in, and give what stood there before."""
-        model, changes = self._model, []
-        for name, value in values.items():
+    def _value(self, name: str) -> float:
+        """Length of gravity; of several equal numbers the first."""
+        own = attrgetter(self._places[name].array)(self._model)[self._places[name].index]
+        return float(np.linalg.norm(own) if name == "gravity" else np.ravel(own)[0])
+
+    def with_values(self, values: Mapping[str, float]) -> MujocoModel:
+        """Model with other values of some parameters; itself where none differs."""
+        own = {name: self._value(name) for name in values}
+        shares = {name: values[name] / (size or 1.0) for name, size in own.items() if size != values[name]}
+        if not shares:
+            return self
+        other = copy(self)
+        other._model = model = copy(self._model)
+        for name, share in shares.items():
             array, index, *_ = self._places[name]
-            before, size = array[index], _size(array[index])
-            if size != value:
-                changes.append((array, index, before * (value / size) if np.ndim(before) else value))
-                if name.endswith("_mass"):  # a body of the same shape: its inertia goes with its mass
-                    changes.append((model.body_inertia, index, model.body_inertia[index] * (value / size)))
-                if name.endswith("_force"):
-                    changes.append((model.actuator_biasprm, index, value))
-        kept = [(array, index, np.array(array[index])) for array, index, _ in changes]
-        for array, index, after in changes:
-            array[index] = after
-        if kept:
-            self._mujoco.mj_setConst(model, self._data)
-        return kept
+            numbers = attrgetter(array)(model)
+            numbers[index] = numbers[index] * share if name == "gravity" else values[name]
+            if name.endswith("_mass"):  # a body of the same shape: its inertia goes with its mass
+                model.body_inertia[index] *= share
+            if name.endswith("_force"):
+                model.actuator_biasprm[index] = values[name]
+        self._mujoco.mj_setConst(model, self._data)
+        return other

@@ -10,6 +10,8 @@ import numpy as np
 
 from gaitdisc.engines.motion import ByHand
 
+# a free joint with numbers, none of which a default class gives
+AS_FREE = '<joint type="free" armature="0" stiffness="0" damping="0" frictionloss="0"'
 MORE_OF = {"viscous_damping": "damping", "coulomb_friction": "frictionloss"}  # effect: attribute of a joint
 
 
@@ -23,11 +25,12 @@ def with_range(text: str, called: str, low: float, high: float) -> str | None:
     return text
 
 
-def with_value(text: str, name: str, value: float, kind: str, called: str) -> str | None:
+def with_value(text: str, name: str, value: float, kind: str, called: str, inertial: str = "") -> str | None:
     """Text with a number of a joint, body or option changed; None where the file does not say it.
 
     name: `<part>_mass`, `_stiffness`, `_damping`, `_frictionloss` (of a joint or tendon), `_gear`, `_force`, or gravity
     kind, called: tag and name of the element in the file
+    inertial: element of a body whose shapes have no mass of their own
     """
     if name == "gravity":
         tags = [one for one in _tags(text) if one[0] == "option"]
@@ -41,7 +44,10 @@ def with_value(text: str, name: str, value: float, kind: str, called: str) -> st
     if len(tags) != 1:
         return None
     if word == "mass":
-        return _with_mass(text, tags[0], value)
+        return _with_mass(text, tags[0], value, inertial)
+    if tags[0][0] == "freejoint" and text[tags[0][2] - 2] == "/":
+        text = text[: tags[0][1]] + AS_FREE + text[tags[0][1] + len("<freejoint") :]
+        tags = [one for one in _tags(text) if one[1] == tags[0][1]]
     if word == "gear":
         rest = (_attribute(text, tags[0], "gear") or "1").split()[1:]
         return _with_attribute(text, tags[0], "gear", " ".join([repr(value), *rest]))
@@ -81,12 +87,12 @@ def with_effect(text: str, effect: ByHand, joint: str, own: Mapping[str, float])
     return _before_end(text, f"  <tendon>\n{inside}  </tendon>\n")
 
 
-def _with_mass(text: str, body: _Tag, value: float) -> str | None:
-    """Another mass of a body's own inertia, or of its one shape with a mass."""
+def _with_mass(text: str, body: _Tag, value: float, inertial: str) -> str | None:
+    """Another mass of a body's own inertia, or of its one shape with a mass; else an inertia of its own."""
     inner = [one for one in _tags(text) if one[3] == body[1] and one[0] in ("inertial", "geom")]
     own = [one for one in inner if one[0] == "inertial"] or inner
     if len(own) != 1 or _attribute(text, own[0], "mass") is None:
-        return None
+        return f"{text[: body[2]]}{inertial}{text[body[2] :]}" if inertial and len(own) == len(inner) else None
     tag = own[0]
     for name in ("diaginertia", "fullinertia") if tag[0] == "inertial" else ():
         given = _attribute(text, tag, name)
@@ -140,7 +146,7 @@ def _tags(text: str) -> list[_Tag]:
 def _is(text: str, tag: _Tag, kind: str, called: str) -> bool:
     """Whether a tag is that of an element; those of actuators and tendons have many names."""
     group = kind in ("actuator", "tendon")
-    fits = text[tag[3] :].startswith(f"<{kind}") if group else tag[0] == kind
+    fits = text[tag[3] :].startswith(f"<{kind}") if group else tag[0] in (kind, f"free{kind}")
     return fits and _attribute(text, tag, "name") == called
 
 

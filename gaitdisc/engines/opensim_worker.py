@@ -6,6 +6,7 @@ import os
 import pickle
 import sys
 from collections.abc import Callable
+from functools import partial
 from typing import Any, BinaryIO
 
 import numpy as np
@@ -30,8 +31,9 @@ class Ready:
         for k in range(controllers.getSize()):  # the controls of the question, and no others, drive it
             controllers.get(k).setEnabled(False)
         self.actuators = [one.getName() for one in self.model.getActuators()]
+        self.numbers = _list_numbers(model, osim)
         for name, value in values.items():
-            _set(self.model, osim, name, value)
+            self.numbers[name][2](float(value))
         every = self.model.getCoordinateSet()
         names = [every.get(k).getName() for k in range(every.getSize())]
         self.locked = [name for name in names if every.get(name).getDefaultLocked()]
@@ -141,28 +143,35 @@ def couplers(model: Any, osim: Any) -> dict[str, tuple[list[str], Any, float]]:
     return found
 
 
-def _set(model: Any, osim: Any, name: str, value: float) -> None:
-    """Put a number into a model."""
-    if name == "gravity":
-        now = model.getGravity()
-        size = np.linalg.norm([now.get(k) for k in range(3)])
-        model.setGravity(osim.Vec3(*(float(now.get(k) * value / size) for k in range(3))))
-        return
-    part, _, word = name.rpartition("_")
-    if word == "mass":
-        body = model.getBodySet().get(part)
-        share, inertia = value / body.getMass(), body.getInertia()
-        moments, products = inertia.getMoments(), inertia.getProducts()
-        body.setMass(float(value))
-        scaled = [float(each.get(k) * share) for each in (moments, products) for k in range(3)]
-        body.setInertia(osim.Inertia(*scaled))
-        return
-    if name.endswith("_max_isometric_force"):
-        part = name.removesuffix("_max_isometric_force")
-        osim.Muscle.safeDownCast(model.getForceSet().get(part)).setMaxIsometricForce(float(value))
-        return
-    part = name.removesuffix("_optimal_force")
-    osim.CoordinateActuator.safeDownCast(model.getForceSet().get(part)).setOptimalForce(float(value))
+def _list_numbers(model: Any, osim: Any) -> dict[str, tuple[float, str, Callable[[float], None]]]:
+    """Every number of a model that may be changed by name: its value, its unit, and what puts another in."""
+    vector = model.getGravity()
+    gravity = np.array([vector.get(k) for k in range(3)])
+    size = float(np.linalg.norm(gravity))
+    found = (
+        {"gravity": (size, "m/s^2", lambda value: model.setGravity(osim.Vec3(*(gravity * value / size))))}
+        if size
+        else {}
+    )
+    for body in model.getBodySet():
+        if body.getMass():
+            found[f"{body.getName()}_mass"] = body.getMass(), "kg", partial(_set_mass, osim, body)
+    for actuator in model.getActuators():
+        name = actuator.getName()
+        own, muscle = osim.CoordinateActuator.safeDownCast(actuator), osim.Muscle.safeDownCast(actuator)
+        if own is not None:
+            found[f"{name}_optimal_force"] = own.getOptimalForce(), "N m", own.setOptimalForce
+        if muscle is not None:
+            found[f"{name}_max_isometric_force"] = muscle.getMaxIsometricForce(), "N", muscle.setMaxIsometricForce
+    return found
+
+
+def _set_mass(osim: Any, body: Any, value: float) -> None:
+    """Give a body of the same shape another mass: its inertia is scaled with it."""
+    share, inertia = value / body.getMass(), body.getInertia()
+    body.setMass(value)
+    moments = (inertia.getMoments(), inertia.getProducts())
+    body.setInertia(osim.Inertia(*(float(each.get(k) * share) for each in moments for k in range(3))))
 
 
 class _Answers:
@@ -184,29 +193,17 @@ class _Answers:
 
     def described(self) -> dict[str, Any]:
         one = self.with_values({})
-        model = one.model
-        gravity = float(np.linalg.norm([model.getGravity().get(k) for k in range(3)]))
-        parameters = [("gravity", gravity, "m/s^2")] if gravity else []
-        parameters += [
-            (f"{body.getName()}_mass", body.getMass(), "kg") for body in model.getBodySet() if body.getMass()
-        ]
-        controls = []
-        for name in one.actuators:
-            actuator = model.getActuators().get(name)
-            controls.append((name, actuator.getConcreteClassName()))
-            if actuator.getConcreteClassName() == "CoordinateActuator":
-                own = self.osim.CoordinateActuator.safeDownCast(actuator)
-                parameters.append((f"{name}_optimal_force", own.getOptimalForce(), "N m"))
-            muscle = self.osim.Muscle.safeDownCast(actuator)
-            if muscle is not None:
-                parameters.append((f"{name}_max_isometric_force", muscle.getMaxIsometricForce(), "N"))
+        actuators = one.model.getActuators()
+        controls = [(name, actuators.get(name).getConcreteClassName()) for name in one.actuators]
         free = ((each, (each.getRangeMin(), each.getRangeMax())) for each in one.free)
         coordinates = [  # a range that is a default binds nothing
             (each.getName(), each.getMotionType() == ROTATIONAL, *(own if each.getDefaultClamped() else UNBOUND))
             for each, own in free
         ]
         described = {"coordinates": coordinates, "controls": controls, "muscles": bool(one.activations or one.fibres)}
-        described["parameters"] = [(*each, self._moves(each[0], each[1])) for each in parameters]
+        described["parameters"] = [
+            (name, value, unit, self._moves(name, value)) for name, (value, unit, _) in one.numbers.items()
+        ]
         return described | {"others": one.others, "dependent": one.dependent, "locked": one.locked}
 
     def _moves(self, name: str, value: float) -> bool:

@@ -49,7 +49,7 @@ def write_model(engine: Engine, augmented: Simulation, native: bool = True) -> W
     text, notes, current = engine.path.read_text(encoding="utf-8"), [], engine
     absent: list[str] = []
     forces, by_hand = (), ()
-    values: dict[str, float] = {}
+    values, held = dict[str, float](), dict[str, float]()
     before = {one.name: one.value for one in engine.parameters}
     own = {state.name for state in augmented.states[2 * len(engine.coordinates) :]}
     changes: list[tuple[str, Callable[[str], str | None], tuple[Term, ...], dict[str, float]]] = [
@@ -74,6 +74,8 @@ def write_model(engine: Engine, augmented: Simulation, native: bool = True) -> W
             at_once = [one for one in more_forces if one.kind == "port" and "delay(" not in one.term]
             if at_once and not engine.fibres:
                 by_hand = (*by_hand, *more_forces)
+            elif more_values and hasattr(engine, "with_values"):
+                held |= more_values
             else:  # a force at each step of a run does not know what was before
                 absent.append(what)
             continue
@@ -91,6 +93,7 @@ def write_model(engine: Engine, augmented: Simulation, native: bool = True) -> W
         notes.append(f"{name.removeprefix(REPLACED)}, as {expression}, {said}")
     if text == engine.path.read_text(encoding="utf-8"):
         notes.append(f"the written model is the same as {engine.path.name}")
+    current = getattr(current, "with_values", lambda _: current)(held)
     if by_hand:
         n, current = len(engine.coordinates), copy(engine) if current is engine else current
         acting = [

@@ -140,6 +140,9 @@ def test_a_search_that_is_stopped_continues_with_the_same_command(lab, whole, tm
     assert says(
         called(*words, "--no-report", ends=STOPPED).stderr, "Stopped. Finished parts are kept; the same command"
     )
+    stopping_at(3)
+    anew = called(*words, "--no-report", "--overwrite", ends=STOPPED).stderr
+    assert "continuing" not in anew and "the same command without --overwrite continues from there." in anew
     stopping_at(40)
     assert "Stopped. So far: Coulomb friction in the equation of v; " in called(*words, ends=STOPPED).stderr
     stopping_at(np.inf)

@@ -1,5 +1,7 @@
 """Numbers fitted by the engine's own runs: those of the truth, wherever the expansion's lay."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from saved_folders import PENDULUM
@@ -8,7 +10,10 @@ from gaitdisc.discovery.candidate import Candidate
 from gaitdisc.discovery.candidate_model import Part
 from gaitdisc.discovery.discover_engine import _NOTHING
 from gaitdisc.discovery.fit_by_engine import NO_FILTER, EngineFit, base_runs
+from gaitdisc.discovery.kept_work import kept_work
 from gaitdisc.discovery.record_filter import RecordFilter
+from gaitdisc.discovery.result import FoundEffect
+from gaitdisc.engines.own_runs import residual_by
 from gaitdisc.simulation.compiled_simulation import Drive
 from gaitdisc.simulation.measured import Measured
 
@@ -18,6 +23,33 @@ SPRING = Candidate(
 DAMPED = Candidate("wrong_parameter", "parameter", "pivot_damping", "wrong_parameter", value=0.3)
 WEAK = Candidate("input_error", "input", "drive", "input_gain")
 CLIPPED = Candidate("input_error", "input", "drive", "input_saturation", ("min({s}, {limit})",), {"limit": ""})
+
+
+def driven(folder, change, low_pass):
+    """Return a model, what three driven trials of one with a change show, and their states."""
+    pytest.importorskip("mujoco", reason="MuJoCo is not installed: gaitdisc[mujoco]")
+    from gaitdisc.engines.engine import read_model
+    from gaitdisc.engines.motion import Motion
+
+    (folder / "plain.xml").write_text(PENDULUM)
+    (folder / "truth.xml").write_text(PENDULUM.replace(*change))
+    plain, t, rng = read_model(folder / "plain.xml"), np.arange(300) / 100, np.random.default_rng(2)
+    controls = [0.5 * np.sin(2 * np.pi * f * t)[:, None] + 0.2 * np.cos(5 * f * t)[:, None] for f in (0.6, 1.0, 1.3)]
+    start = Motion(np.full((3, 1), 0.2), np.zeros((3, 1)), np.zeros((3, 1)))
+    whole = read_model(folder / "truth.xml").run(start, np.stack(controls), 100.0)
+    seen = whole[:, :, :1] + 0.003 * rng.normal(size=(3, 300, 1))
+    seen = low_pass.filtered(seen, 1)
+    measured = Measured(Drive.of(controls, 100.0), seen, tuple("123"), ("pivot",))
+    return plain, measured, whole
+
+
+def fitted(plain, measured, states, part, low_pass):
+    """Return what was found with numbers of the engine's own runs."""
+    from gaitdisc.engines.mapping import draft
+
+    fit = EngineFit(draft(plain), plain, measured, states, (part,), low_pass)
+    effect = FoundEffect(part.candidate.kind, part.candidate.place, part.candidate.name, "")
+    return fit.fitted(replace(_NOTHING, effects=(effect,)), fit.mapping, base_runs(plain, fit))
 
 
 @pytest.mark.parametrize(
@@ -31,25 +63,28 @@ CLIPPED = Candidate("input_error", "input", "drive", "input_saturation", ("min({
 )
 def test_the_engines_own_runs_bring_a_number_to_the_truth(tmp_path, change, part, number, truth, low_pass):
     """A low-pass takes a little of each swing, as a damper would: the runs go through it as well."""
-    pytest.importorskip("mujoco", reason="MuJoCo is not installed: gaitdisc[mujoco]")
-    from dataclasses import replace
-
-    from gaitdisc.discovery.result import FoundEffect
-    from gaitdisc.engines.engine import read_model
-    from gaitdisc.engines.mapping import draft
-    from gaitdisc.engines.motion import Motion
-
-    (tmp_path / "plain.xml").write_text(PENDULUM)
-    (tmp_path / "truth.xml").write_text(PENDULUM.replace(*change))
-    plain, t, rng = read_model(tmp_path / "plain.xml"), np.arange(300) / 100, np.random.default_rng(2)
-    controls = [0.5 * np.sin(2 * np.pi * f * t)[:, None] + 0.2 * np.cos(5 * f * t)[:, None] for f in (0.6, 1.0, 1.3)]
-    start = Motion(np.full((3, 1), 0.2), np.zeros((3, 1)), np.zeros((3, 1)))
-    whole = read_model(tmp_path / "truth.xml").run(start, np.stack(controls), 100.0)
-    seen = whole[:, :, :1] + 0.003 * rng.normal(size=(3, 300, 1))
-    seen = low_pass.filtered(seen, 1)
-    measured = Measured(Drive.of(controls, 100.0), seen, tuple("123"), ("pivot",))
-    fit = EngineFit(draft(plain), plain, measured, whole, (part,), low_pass)
-    effect = FoundEffect(part.candidate.kind, part.candidate.place, part.candidate.name, "")
-    found = fit.fitted(replace(_NOTHING, effects=(effect,)), fit.mapping, base_runs(plain, fit))
-    one = found.effects[0].estimates[number]
+    one = fitted(*driven(tmp_path, change, low_pass), part, low_pass).effects[0].estimates[number]
     assert one.low < truth < one.high and one.high - one.low < 0.05 * truth
+
+
+def test_a_fit_that_was_stopped_goes_on_to_the_same_numbers(tmp_path, monkeypatch):
+    """Two of its runs are kept, with the starts that they found, though a low-pass leaves samples without a value."""
+    low_pass = RecordFilter((4.0,), 100.0)
+    record = driven(tmp_path, ('damping="0.3"', 'damping="0.6"'), low_pass)
+    part, made, stop_at = Part(DAMPED, {"value": 0.5}), [], 0
+
+    def counted(*given):
+        made.append(given)
+        if len(made) == stop_at:
+            raise KeyboardInterrupt
+        return residual_by(*given)
+
+    monkeypatch.setattr("gaitdisc.discovery.fit_by_engine.residual_by", counted)
+    at_once = fitted(*record, part, low_pass)
+    every, stop_at = len(made), len(made) + 4
+    with pytest.raises(KeyboardInterrupt), kept_work(tmp_path, lambda _: None):
+        fitted(*record, part, low_pass)
+    made.clear()
+    with kept_work(tmp_path, lambda _: None):
+        again = fitted(*record, part, low_pass)
+    assert again.effects == at_once.effects and len(made) == every - 2  # the base is run again, two are kept
