@@ -23,6 +23,7 @@ if TYPE_CHECKING:
 
 EVERYONE, ANKLE = "all", "ankle_angle"
 FILES = ("discovery.json", "held_out.csv", "augmented.toml", "report.html")
+PLANNED = 10  # records of each of nine sizes
 KEPT = "kept"  # folder of what is fitted, until the answer stands
 
 
@@ -53,6 +54,9 @@ def discover(  # noqa: PLR0913, PLR0917 these are the options of a command
         int,
         typer.Option(help="Simulate so many records with the effect and without it, and search them as well.", min=0),
     ] = 0,
+    plan: Annotated[
+        bool, typer.Option("--plan", help="Before a measurement: how large the given effects must be to be found.")
+    ] = False,
     draw: Annotated[bool, typer.Option("--report/--no-report", help="Write report.html as well.")] = True,
     quiet: Quiet = False,
 ) -> None:
@@ -65,7 +69,7 @@ def discover(  # noqa: PLR0913, PLR0917 these are the options of a command
             "--participant.",
         )
     whose = participant.partition(":")[0]
-    names = ("people.csv",) if whose == EVERYONE and measured is None else FILES
+    names = ("people.csv",) if whose == EVERYONE and measured is None else ("plan.csv",) if plan else FILES
     anew = claim_folder(out, *names, mended=(KEPT,))
     began = time.perf_counter()
 
@@ -107,14 +111,29 @@ def discover(  # noqa: PLR0913, PLR0917 these are the options of a command
         given = tuple(one.strip() for one in effects.split(",") if one.strip())
         with kept_work(out, say, anew) as work:
             request = Request.read(catalogue, given, alpha, work.progress, twins)
-            if twins and (measured is None or names_engine(simulation)):
+            if (twins or plan) and (measured is None or names_engine(simulation)):
                 refuse_twins(simulation.name)
             if measured is None:
                 _of_study(simulation, participant, request, out, with_model)
             elif names_engine(simulation):
                 _of_engine(simulation, measured, request, write)
+            elif plan:
+                _plan(simulation, measured, replace(request, twins=twins or PLANNED), out)
             else:
                 with_model(*discover_files(simulation, measured, replace(request, answered=with_model)))
+
+
+def _plan(simulation: Path, measured: Path, request: Request, out: Path) -> None:
+    """Say from which size on each given effect is found, and write in how many records of each size it was."""
+    from gaitdisc.discovery.power import find_power, tabulate_power
+    from gaitdisc.simulation.measured_table import read_measured
+    from gaitdisc.simulation.simulation_file import read_simulation
+    from gaitdisc.spreadsheet import write_csv
+
+    model = read_simulation(simulation)
+    found = find_power(model, read_measured(measured, model), request)
+    write_csv(tabulate_power(found), out / "plan.csv", "%.6g")
+    typer.echo("\n".join([*(one.sentence for one in found), f"plan: {out / 'plan.csv'}"]))
 
 
 def _of_engine(model: Path, measured: Path, request: Request, write: Callable[..., Discovery]) -> None:

@@ -16,7 +16,7 @@ from gaitdisc.discovery.catalogue import ALL, Request
 from gaitdisc.discovery.discover import explain, refuse_blow_up
 from gaitdisc.discovery.kept_work import recall
 from gaitdisc.discovery.result import SIMULATION, Discovery, GapSize
-from gaitdisc.discovery.twins import TwinSource, search_twins
+from gaitdisc.discovery.twins import search_twins
 from gaitdisc.errors import SamplingError
 from gaitdisc.ingest.public_words import PublicWords
 from gaitdisc.processing.kept_parts import hash_content
@@ -55,8 +55,8 @@ def find_missing(
         data = replace(data, findings=tuple(one for one in data.findings if one.spoils != MILLISECONDS))
     try:
         with np.errstate(over="ignore", invalid="ignore"):  # an explanation that runs away explains nothing
-            case, as_read, verdict = explain(model, data, request)
-            found, augmented = answer(case, as_read, verdict, request.refitted)
+            explained = explain(model, data, request)
+            found, augmented = answer(*explained, request.refitted)
     except np.linalg.LinAlgError as error:
         raise SamplingError(
             "each sample of a simulation must be predictable from the previous one",
@@ -68,7 +68,7 @@ def find_missing(
     found = seal(replace(found, findings=(*listed, *found.findings)), augmented, data, files)
     if request.twins:
         request.answered(found, augmented)
-        found = search_twins(found, TwinSource(case, as_read, verdict), model, request)
+        found = search_twins(found, explained, model, request)
     return found, augmented
 
 

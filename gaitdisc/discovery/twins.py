@@ -6,13 +6,12 @@ Source: Efron and Tibshirani 1993, An Introduction to the Bootstrap, section 6.5
 
 from __future__ import annotations
 
-import math
 import os
 import time
 from collections import Counter
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
-from itertools import product, starmap
+from itertools import starmap
 from typing import Any, NoReturn
 
 import numpy as np
@@ -46,21 +45,20 @@ RANDOM = ("process_noise", "wrong_initial_condition")  # answers that no term or
 
 @dataclass(frozen=True)
 class TwinSource:
-    """What twins are drawn from: a case, the simulation as read in it, and the verdict."""
+    """What records like the user's are drawn from: the case that was decided, and noise."""
 
     case: Case
-    as_read: ScoredModel
-    verdict: Verdict
+    noise: Noise
 
-    def draw(self, with_effects: bool, seed: int) -> Measured | None:
-        """Draw a record like the user's: its inputs, trials and gaps, free runs of the simulation, and noise as found.
+    def draw(self, now: ScoredModel, number: int) -> Measured | None:
+        """Draw a record like the user's: its inputs, trials and gaps, free runs of a model, and noise.
 
-        with_effects: whether what was found acts in it
+        number: of the record, which seeds what is drawn
         returns: None where a free run leaves the record
         """
-        now, case = self.verdict.found if with_effects else self.as_read, _join_halves(self.case)
-        measured, machine, rng = case.measured, now.model.machine, np.random.default_rng((seed, with_effects))
-        erring, seen = with_drawn_errors(measured, case.search.base, seed), np.full_like(measured.observed, np.nan)
+        case, machine = _join_halves(self.case), now.model.machine
+        measured, rng = case.measured, np.random.default_rng(number)
+        erring, seen = with_drawn_errors(measured, case.search.base, number), np.full_like(measured.observed, np.nan)
         for trial, samples in enumerate(map(int, measured.samples)):
             with outside_work():
                 begun = begin_by_first_samples(case, now, trial).fit
@@ -70,17 +68,16 @@ class TwinSource:
         low, high = np.nanmin(record, axis=(0, 1)), np.nanmax(record, axis=(0, 1))
         if not np.all((np.maximum(low - seen, seen - high) < FLED * (high - low))[known]):
             return None
-        return replace(
-            measured, observed=np.where(known, seen + self._draw_noise(seen.shape, rng), np.nan), findings=()
-        )
+        observed = np.where(known, seen + self._draw_noise(seen.shape, rng), np.nan)
+        return replace(measured, observed=observed, findings=())
 
     def _draw_noise(self, shape: tuple[int, ...], rng: np.random.Generator) -> Values:
-        """Draw noise (trial, sample, channel) as it was found; where the record was filtered, white noise is too."""
-        noise, passed = self.verdict.found.noise, self.case.record_filter
+        """Draw noise (trial, sample, channel); where the record was filtered, white noise that was filtered alike."""
+        passed = self.case.record_filter
         if not passed.margin:
-            return draw_noise(noise, shape, rng)
+            return draw_noise(self.noise, shape, rng)
         white = rng.normal(size=(shape[0], shape[1] + 2 * passed.margin, shape[2]))
-        return passed.filtered(white, 1)[:, passed.margin : -passed.margin] / passed.gains * noise.size
+        return passed.filtered(white, 1)[:, passed.margin : -passed.margin] / passed.gains * self.noise.size
 
 
 def draw_noise(noise: Noise, shape: tuple[int, ...], rng: np.random.Generator) -> Values:
@@ -122,44 +119,49 @@ def refuse_twins(model: str) -> NoReturn:
     )
 
 
-def search_twins(found: Discovery, source: TwinSource, model: Simulation, request: Request) -> Discovery:
+def search_twins(
+    found: Discovery, explained: tuple[Case, ScoredModel, Verdict], model: Simulation, request: Request
+) -> Discovery:
     """Return an answer with what the same search says of its twins: with what was found in them, and without.
 
+    explained: the case that was decided, the simulation as read in it, and the verdict
     model: the simulation that was searched
     """
-    count, named = request.twins, _name(found)
-    acts = bool(source.verdict.found.model.parts) and found.verdict not in RANDOM
-    kinds = (True, False) if acts else (False,)
-    jobs = [*product(kinds, range(count))]
-    if any(source.draw(with_effects, 0) is None for with_effects in kinds):
+    case, as_read, verdict = explained
+    source, acts = TwinSource(case, verdict.found.noise), verdict.found.model.parts and found.verdict not in RANDOM
+    kinds = [verdict.found, as_read] if acts else [as_read]
+    if any(source.draw(now, 0) is None for now in kinds):
         what = "a free run of the simulation leaves the record, so that records like these cannot be simulated"
-        return replace(
-            found,
-            findings=(
-                *found.findings,
-                Finding("note", "twins", source.case.measured.source, what, "how often this answer is right"),
-            ),
-        )
+        finding = Finding("note", "twins", case.measured.source, what, "how often this answer is right")
+        return replace(found, findings=(*found.findings, finding))
     note_found("")
-    answers, begun = Counter[tuple[bool, str]](), time.perf_counter()
-    same_rule, pending = replace(request, effects=(), twins=0, progress=lambda _: None), None
-    for done, (with_effects, seed) in enumerate(jobs):
-        answer = recall(f"twin {with_effects} {seed}")
+    answers = [*search_records(source, [(now, seed) for now in kinds for seed in range(request.twins)], model, request)]
+    *acting, without = (Counter(answers[k * request.twins : (k + 1) * request.twins]) for k in range(len(kinds)))
+    return replace(found, twins=Twins(request.twins, _name(found), *(acting or [{}]), without))
+
+
+def search_records(
+    source: TwinSource, records: Sequence[tuple[ScoredModel, int]], model: Simulation, request: Request
+) -> Iterator[str]:
+    """Search simulated records side by side by the rule of a request, and give the answers in their order.
+
+    records: for each the model that runs, and its number
+    """
+    rule, pending, begun = replace(request, effects=(), twins=0, progress=lambda _: None), None, time.perf_counter()
+    for done, (now, number) in enumerate(records, 1):
+        answer = recall(f"record {number}", now.model.fit.values.tobytes())
         if answer is None:
-            pending = pending or _answer(source, model, same_rule, jobs[done:])
+            pending = pending or _answer([(model, source, *one, rule) for one in records[done - 1 :]])
             answer = next(pending)
-            left = (time.perf_counter() - begun) / (done + 1) * (len(jobs) - done - 1)
-            request.progress(f"twin {done + 1} of {len(jobs)} searched, about {math.ceil(left / 10) * 10} s left")
+            left = (time.perf_counter() - begun) / done * (len(records) - done)
+            request.progress(f"{done} of {len(records)} simulated records searched, about {left:.0f} s left")
             keep(answer)
-        answers[with_effects, answer] += 1
-    both = ({answer: n for (acted, answer), n in answers.items() if acted is kind} for kind in (True, False))
-    return replace(found, twins=Twins(count, named, *both))
+        yield answer
 
 
-def _answer(source: TwinSource, model: Simulation, request: Request, jobs: list[tuple[bool, int]]) -> Iterator[str]:
-    """Search twins side by side, and give the answers in their order."""
-    processes = min(os.cpu_count() or 1, MOST_PROCESSES, len(jobs))
-    drawn = ((model, source.draw(*job), request) for job in jobs)
+def _answer(work: list[tuple[Simulation, TwinSource, ScoredModel, int, Request]]) -> Iterator[str]:
+    processes = min(os.cpu_count() or 1, MOST_PROCESSES, len(work))
+    drawn = ((model, source.draw(now, number), rule) for model, source, now, number, rule in work)
     if processes == 1:
         yield from starmap(_search, drawn)
         return

@@ -12,6 +12,7 @@ from texts import says
 from gaitdisc.commands.options import REFUSED, STOPPED
 from gaitdisc.discovery.decision import Verdict
 from gaitdisc.discovery.folder import load_discovery
+from gaitdisc.discovery.power import Power
 from gaitdisc.discovery.result import ConditionAnswer, Twins
 from gaitdisc.discovery.shooting import Shooting
 from gaitdisc.errors import GaitdiscError
@@ -177,6 +178,19 @@ def test_the_answer_stands_before_its_twins_are_searched(lab, tmp_path, monkeypa
 def test_twins_are_refused_where_an_engine_runs_the_model(lab, tmp_path, called):
     done = called("discover", lab / "leg.xml", lab / "good.csv", "--twins", "2", "--out", tmp_path, ends=REFUSED)
     assert says(done.stderr, "twins need a simulation file or a Python function", "leg.xml", "Leave out")
+
+
+def test_a_plan_says_from_which_size_on_an_effect_is_found(lab, tmp_path, monkeypatch, called):
+    """Which records are counted is tested in tests/discovery."""
+    power = Power("coulomb_friction@v", "friction", "m/s^2", (0.1, 0.2), (4, 10), 10)
+    planned = lambda model, data, request: [power] if (request.effects, request.twins) == ((power.effect,), 10) else []  # noqa: E731
+    monkeypatch.setattr("gaitdisc.discovery.power.find_power", planned)
+    words = (lab / "good.toml", lab / "good.csv", "--out", tmp_path, "--plan", "--effects", power.effect)
+    said = called("discover", *words, ends=0).stdout.splitlines()
+    assert said == [power.sentence, f"plan: {tmp_path / 'plan.csv'}"]
+    table = pd.read_csv(tmp_path / "plan.csv")
+    assert table["size"].tolist() == [0.1, 0.2] and table["found"].tolist() == [4, 10]
+    assert set(table["effect"]) == {power.effect} and set(table["unit"]) == {"m/s^2"}
 
 
 def test_without_a_report_and_without_progress(lab, tmp_path, monkeypatch, called):

@@ -27,16 +27,17 @@ def with_gaps(measured):
 def source(request):
     """Return what twins of a cubic spring's record are drawn from, and that record."""
     measured = with_gaps(record(with_load("-14*x**3"), 3, Experiment(trials=request.param, seconds=8.0)))
-    return TwinSource(*explain(mass(), measured)), measured
+    case, as_read, verdict = explain(mass(), measured)
+    return TwinSource(case, verdict.found.noise), measured, verdict.found, as_read
 
 
 def test_a_twin_has_the_records_times_gaps_and_noise(source):
-    source, measured = source
-    (twin, other), without = (source.draw(True, seed) for seed in (0, 1)), source.draw(False, 0)
+    source, measured, found, as_read = source
+    (twin, other), without = (source.draw(found, number) for number in (0, 1)), source.draw(as_read, 0)
     assert twin.trials == measured.trials and twin.channels == measured.channels
     assert (np.isnan(twin.observed) == np.isnan(measured.observed)).all()
     assert (twin.drive.time0 == measured.drive.time0).all() and (twin.drive.inputs == measured.drive.inputs).all()
-    noise = source.verdict.found.noise.size
+    noise = source.noise.size
     assert np.nanstd(twin.observed - other.observed, axis=(0, 1)) == pytest.approx(np.sqrt(2) * noise, rel=0.1)
     assert np.nanstd(twin.observed - measured.observed, axis=(0, 1)) == pytest.approx(np.sqrt(2) * noise, rel=0.2)
     assert (np.nanstd(without.observed - measured.observed, axis=(0, 1)) > 2 * noise).all()
@@ -74,7 +75,7 @@ def test_twins_that_were_searched_are_not_searched_again(searched, tmp_path, mon
 
     def stopping(line):
         lines.append(line)
-        if line.startswith("twin 3"):
+        if line.startswith("3 of 4"):
             raise KeyboardInterrupt
 
     def search(progress):
@@ -85,16 +86,14 @@ def test_twins_that_were_searched_are_not_searched_again(searched, tmp_path, mon
         search(stopping)
     lines.clear()
     again = search(lines.append)
-    assert [line.partition(" searched")[0] for line in lines if line.startswith("twin")] == [
-        "twin 3 of 4",
-        "twin 4 of 4",
-    ]
+    searched = [line.partition(" simulated")[0] for line in lines if "simulated records" in line]
+    assert searched == ["3 of 4", "4 of 4"]
     assert again.twins == found.twins
 
 
 def test_a_run_that_leaves_the_record_has_no_twins(source, monkeypatch):
     monkeypatch.setattr("gaitdisc.discovery.twins.FLED", -1.0)
-    assert source[0].draw(True, 0) is None
+    assert source[0].draw(source[2], 0) is None
 
 
 def test_what_an_engine_runs_has_no_twins():

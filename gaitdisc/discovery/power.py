@@ -1,0 +1,139 @@
+"""How large an effect must be to be found: records of a simulation with more and more of it, searched by the rule.
+
+Source: Finney 1947, Probit Analysis (the share of records in which it is found, a normal distribution of log size).
+"""
+
+from __future__ import annotations
+
+import math
+from collections import Counter
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from itertools import product
+
+import numpy as np
+import pandas as pd
+from numpy.typing import NDArray
+from scipy.optimize import minimize
+from scipy.stats import norm
+
+from gaitdisc.discovery.candidate_model import Part
+from gaitdisc.discovery.case import set_up_case
+from gaitdisc.discovery.catalogue import Request
+from gaitdisc.discovery.discover import fit_given, refuse_unknown
+from gaitdisc.discovery.effect_words import amount, spoken, with_unit
+from gaitdisc.discovery.estimates import name_estimates
+from gaitdisc.discovery.spiked_samples import without_spikes
+from gaitdisc.discovery.twins import TwinSource, search_records
+from gaitdisc.errors import SchemaError
+from gaitdisc.simulation.measured import Measured
+from gaitdisc.simulation.simulation import Simulation
+
+SIZES = np.geomspace(1.5, 24.0, 9)  # standard errors of an estimate: 2 are hardly found, 10 nearly always
+POWER = 0.95
+
+
+@dataclass(frozen=True)
+class Power:
+    """In how many simulated records of each size an effect was found."""
+
+    effect: str  # effect@place
+    number: str  # its number that is meant
+    unit: str
+    sizes: tuple[float, ...]  # of that number
+    found: tuple[int, ...]  # records in which exactly this effect was named
+    records: int  # of each size
+    instead: str = ""  # the answer to most records of the largest size, where it is another
+
+    @property
+    def least(self) -> float:
+        """Size that is found in 19 of 20 records; infinite beyond the largest size, NaN below the smallest.
+
+        >>> Power("a@b", "damping", "1/s", (1.0, 2.0, 4.0, 8.0), (0, 5, 10, 10), 10).least < 4.0
+        True
+        """
+        log, share = np.log(self.sizes), np.divide(self.found, self.records)
+        if share[-1] < POWER and share.max() < POWER:
+            return math.inf
+        if share.min() >= POWER:
+            return math.nan
+
+        def misfit(at: NDArray[np.float64]) -> float:
+            chance = np.clip(norm.cdf((log - at[0]) / np.exp(at[1])), 1e-6, 1 - 1e-6)
+            return -float(np.sum(share * np.log(chance) + (1 - share) * np.log(1 - chance)))
+
+        middle = log[np.argmax(share >= 0.5 * share.max())]
+        best = minimize(misfit, [middle, np.log(0.3)], method="Nelder-Mead", options={"maxiter": 2000}).x
+        return float(np.exp(best[0] + norm.ppf(POWER) * np.exp(best[1])))
+
+    @property
+    def sentence(self) -> str:
+        """From which size on the effect is found."""
+        effect, _, place = self.effect.partition("@")
+        number, size = self.number.replace("_", " "), self.least
+        what = f"{spoken(effect)} at {place}".capitalize()
+        if math.isnan(size):
+            least = with_unit(amount(self.sizes[0], self.sizes[0] / 10), self.unit)
+            return f"{what} is found in 19 of 20 records like these even with a {number} of {least}."
+        if math.isinf(size):
+            most = with_unit(amount(self.sizes[-1], self.sizes[-1] / 10), self.unit)
+            instead = f"; most with {most} are answered with {self.instead}" if self.instead else ""
+            return f"{what} is not found in 19 of 20 records like these with a {number} of up to {most}{instead}."
+        said = with_unit(amount(size, size / 10), self.unit)
+        return f"{what} is found in 19 of 20 records like these from a {number} of {said} on."
+
+
+def find_power(model: Simulation, data: Measured, request: Request) -> list[Power]:
+    """Find how large each effect of a request must be to be found in records like these.
+
+    data: trials with their inputs, whose noise, length and gaps the simulated records have
+    """
+    if not request.effects:
+        raise SchemaError(
+            "a plan needs the effects that are to be found",
+            "none is given",
+            'Name them: --effects "viscous_damping@port, input_delay@input".',
+        )
+    records = request.twins
+    case = set_up_case(model, without_spikes(data), request)
+    refuse_unknown(case.search, request.effects)
+    request.progress("fitting the simulation as it was read")
+    as_read, found = case.as_read(), []
+    source = TwinSource(case, as_read.noise)
+    for effect in request.effects:
+        request.progress(f"fitting {effect}")
+        now = fit_given(case, as_read, (effect,)).found
+        (part,), fit = now.model.parts, now.model.fit
+        if not part.candidate.idle:
+            raise SchemaError(
+                "a plan needs an effect with a number that tells its size", f"{effect} has none", "Give another effect."
+            )
+        slot, none = next(iter(part.candidate.idle.items()))
+        place = now.model.machine.parameters.index(now.model.names[0][slot])
+        error = math.sqrt(fit.covariance[(row := fit.free.index(now.model.names[0][slot]), row)])
+        unit_part = Part(part.candidate, part.values | {slot: none + 1.0})
+        nothing = np.zeros((len(part.candidate.slots), len(part.candidate.slots)))
+        number, one = next(iter(name_estimates(unit_part, nothing, case.search.base).items()))
+        sign = 1.0 if one.value >= 0 else -1.0
+        models = []
+        for size in error * SIZES:
+            values = fit.values.copy()
+            values[place] = none + sign * size
+            models.append(replace(now, model=replace(now.model, fit=replace(fit, values=values))))
+        answers = [*search_records(source, [*product(models, range(records))], model, request)]
+        named = np.array([answer == effect for answer in answers]).reshape(len(SIZES), records).sum(axis=1)
+        sizes, counts = tuple((error * SIZES).tolist()), tuple(named.tolist())
+        (most, _), *_ = Counter(answers[-records:]).most_common(1)
+        found.append(Power(effect, number, one.unit, sizes, counts, records, "" if most == effect else most))
+    return found
+
+
+def tabulate_power(found: Sequence[Power]) -> pd.DataFrame:
+    """A row for each effect and size."""
+    columns = ("effect", "number", "size", "unit", "found", "records")
+    rows = (
+        (one.effect, one.number, size, one.unit, count, one.records)
+        for one in found
+        for size, count in zip(one.sizes, one.found, strict=True)
+    )
+    return pd.DataFrame([*rows], columns=pd.Index(columns))
