@@ -55,10 +55,18 @@ def list_code_texts(path: Path) -> Iterator[Text]:
                 yield Text("finding" if name == "Finding" else "refusal", f"{place}:{node.lineno}", "; ".join(spoken))
         elif isinstance(node, ast.Constant | ast.JoinedStr):
             text = write_template(node)
-            spoken = " " in text.strip() and "</" not in text
-            if spoken and len(re.findall(r"[A-Za-z]{2,}", re.sub(r"\{[^}]*\}|\S*_\S*", "", text))) >= FEWEST_WORDS:
+            spoken = " " in text.strip() and "</" not in text and not re.match("<[a-z]", text)
+            if (
+                spoken
+                and len(re.findall(r"[A-Za-z]{2,}", re.sub(r"\S*_\S*", "", re.sub(r"\{[^}]*\}", "", text))))
+                >= FEWEST_WORDS
+            ):
                 yield Text("help" if command else "sentence", f"{place}:{node.lineno}", text)
-        elif not (id(node) in docstrings and isinstance(node, ast.Expr)) and name not in ("compile", "add_argument"):
+        elif not (id(node) in docstrings and isinstance(node, ast.Expr)) and name not in (
+            "compile",
+            "add_argument",
+            "split",
+        ):
             for child in ast.iter_child_nodes(node):
                 yield from walk(child)
 

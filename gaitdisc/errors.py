@@ -110,4 +110,4 @@ class TrainingError(GaitdiscError):
 
 
 class ComparisonError(GaitdiscError):
-    """Numbers cannot be compared by a test: missing ones that nobody explains, pairs that do not match."""
+    """Numbers cannot be compared by a test, because values are missing without a reason or pairs do not match."""

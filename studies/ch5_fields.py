@@ -6,6 +6,7 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 
+import numpy as np
 from chapter5.files import read_navy_winds, read_oisst, read_sst_mat, read_sst_pacific
 from chapter5.reconstruct_field import (
     FieldCell,
@@ -59,7 +60,8 @@ def reconstructed_maps(field: gd.Field, route: Route, task: FieldTask, kind: str
         ready = prepare(field, route, replace(task, rule=rule))
         fitted = fit_reconstructor(kind, ready.what, ready.training, ready.check, task.seed)
         middle, snapshot = middle_of(ready.test)
-        shown[f"measured, {field.time_unit} {snapshot + 1}"] = field.values[snapshot, :, 0]
+        date = np.datetime64(int(field.time[snapshot]), "M") if field.time_unit == "month" else f"week {snapshot + 1}"
+        shown[f"measured, {date}"] = field.values[snapshot, :, 0]
         shown[f"reconstructed by {kind}, {rule}"] = ready.targets.fields(fitted(middle), middle)[0, :, 0]
     return shown
 

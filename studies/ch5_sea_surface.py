@@ -62,7 +62,7 @@ def run(quick: bool = False, folder: Path = Path("ch5_sea_surface"), kinds: Sequ
             for rule in SPLITS:
                 cells += reconstruct_field(field, route, replace(task, rule=rule), kinds, True, targets[rule])
                 print(f"{task.name}: {route.name}, {rule}: {cells[-1].model} R2 {cells[-1].r2:.3f}", flush=True)
-        paths = {route.name: route.places(field)[: task.season, 0] for route in routes[1:5]}
+        paths = {route.name: route.places(field)[: task.season + 1, 0] for route in routes[1:5]}
         shown = [cell for cell in cells if (cell.quantity, cell.model) == (field.quantities[0], kinds[-1])]
         maps = reconstructed_maps(field, routes[0], task, kinds[-1], SPLITS)
         drawn = [

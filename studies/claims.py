@@ -34,8 +34,7 @@ def read_section(place: str) -> str:
 
 def find_cell(text: str, row: str, column: str) -> str:
     """The one cell of the tables in a text with this row and column."""
-    head: list[str] = []
-    found = set()
+    head, found = [], set()
     for line in text.splitlines():
         cells = [part.strip() for part in line.strip("|").split("|")] if line.startswith("|") else []
         head = head if head and cells else cells
@@ -73,7 +72,7 @@ def write_table(subject: str) -> str:
         rows.append([words.get(name, f"`{claim[name]}`") for name in columns] + [files])
     if len({row[-1] for row in rows}) > 1:
         return markdown_table(" | ".join([*columns, "file"]), rows)
-    return markdown_table(" | ".join(columns), [row[:-1] for row in rows]) + f"\n\nTables: `studies/results/{files}`."
+    return markdown_table(" | ".join(columns), [row[:-1] for row in rows]) + f"\n\nTables: `{rows[0][-1]}`."
 
 
 if __name__ == "__main__":

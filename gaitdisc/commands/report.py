@@ -70,7 +70,7 @@ def _people(
 
     run = load_run(run_folder)
     if named and not run.cycles:
-        raise SchemaError("pages of people need a run with pooled cycles", f"{run_folder} has none", "Run one.")
+        raise SchemaError("pages of people need a run with pooled cycles", f"{run_folder} has none", "Name such a run.")
     keep_reference(reference, run_folder)
     if (before or after) and not (person and before and after):
         raise SchemaError(

@@ -286,7 +286,7 @@ def exact_inputs(case: Case, now: ScoredModel) -> tuple[Finding, ...]:
                 f"an error of {' or '.join(like)} in step with the {spoken(candidate.name)}, {size} (rms), would "
                 "explain it as well, because inputs were assumed to be exact"
             )
-            found.append(Finding("note", "exact inputs", case.measured.source, what, "the name, if an input errs so"))
+            found.append(Finding("note", "exact inputs", case.measured.source, what, "the name, if the error is real"))
     return tuple(found)
 
 

@@ -70,7 +70,7 @@ def discover_tracked(tracked: Tracked, kinematics: Path, request: Request = ALL)
     walk = compute_pass(tracked, kinematics, progress)
     findings, engine, motion = balance(walk), walk.engine, walk.motion
     refuse_other_motion(walk)
-    progress("computing what noise of the angles makes of them")
+    progress("computing the noise of the moments from that of the angles")
     angle_noise = moments_of_angle_noise(walk, tracked.noise_deg)
     base, joints = search_joints(walk, angle_noise, request)
     found = make_discovery(base, joints)

@@ -288,7 +288,7 @@ class Discovery(Saved, file="discovery.json"):
 
     @property
     def public(self) -> Discovery:
-        """The same as it is written: without a name of a person."""
+        """The discovery as it is written: without names of persons."""
         return self.hide(self) if self.hide else self
 
     def to_frame(self) -> pd.DataFrame:

@@ -118,8 +118,8 @@ def check_mapping(mapping: Simulation, engine: Engine) -> None:
         if whole and given != has:
             raise SchemaError(
                 f"a mapping must list every {kind.partition(' or ')[0]} of the model, in its order",
-                f"it has {', '.join(given) or 'none'}; {file} has {', '.join(has) or 'none'}",
-                f"Write it anew: gaitdisc new {engine.path.with_suffix('.toml').name} --from {file}.",
+                f"the mapping lists {', '.join(given) or 'none'}; {file} has {', '.join(has) or 'none'}",
+                f"Write it again: gaitdisc new {engine.path.with_suffix('.toml').name} --from {file}.",
             )
 
 

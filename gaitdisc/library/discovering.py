@@ -72,9 +72,8 @@ def discover(
     Raises
     ------
     GaitdiscError
-        If a file cannot be read, a column is missing, trials are too short or uneven, the model as given leaves all
-        bounds, an effect or place of `effects` does not exist: the nearest are said, or `alpha` does
-        not lie between 0 and 1.
+        If a file cannot be read, a column is missing, trials are too short or uneven, the initial model diverges,
+        `effects` names an unknown effect or place, or `alpha` does not lie between 0 and 1.
 
     References
     ----------

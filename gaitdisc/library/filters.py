@@ -17,6 +17,7 @@ from gaitdisc.signals.butterworth import KINEMATICS_HZ, high_pass, low_pass
 from gaitdisc.signals.derivatives import differentiate_recording
 from gaitdisc.signals.emg import ENVELOPE_HZ, HIGHPASS_HZ, envelopes
 from gaitdisc.signals.gaps import MAX_SPLINE_S
+from gaitdisc.units import rate_unit
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -186,8 +187,8 @@ def differentiate(signal: Signal, order: int = 1, rate_hz: float | None = None) 
     Returns
     -------
     Recording, DataFrame, Series or ndarray
-        As `signal`, per second; the unit of a Recording is adapted (`deg/s`). NaN at two samples of each end and within
-        two samples of a missing one.
+        As `signal`, per second; units of a Recording, and of a table's `attrs` and labels, are adapted (`deg/s`). NaN
+        at two samples of each end and within two samples of a missing one.
 
     Raises
     ------
@@ -205,27 +206,36 @@ def differentiate(signal: Signal, order: int = 1, rate_hz: float | None = None) 
     >>> bool(np.nanmax(np.abs(gd.differentiate(np.sin(t), rate_hz=100.0) - np.cos(t))) < 1e-6)
     True
     """
-    return _in_its_form(signal, rate_hz, lambda recording: differentiate_recording(recording, order))
+    made = _in_its_form(signal, rate_hz, lambda recording: differentiate_recording(recording, order))
+    if units := getattr(made, "attrs", {}).get("units"):
+        rates = {name: unit if name == "time" else rate_unit(unit, order) for name, unit in units.items()}
+        names = {name: str(name).replace(f"[{units[name]}]", f"[{rate}]") for name, rate in rates.items()}
+        made.attrs["units"] = {names[name]: rate for name, rate in rates.items()}
+        made = made.rename(columns=names) if hasattr(made, "columns") else made.rename(names.get(made.name, made.name))
+    return made
 
 
 def _in_its_form(
     signal: Any, rate_hz: float | None, done: Callable[[Recording], Recording], kind: Kind | None = None
 ) -> Any:
-    if isinstance(signal, Recording | Trial):
-        recording = make_recording(signal)  # of a trial it says which stream to give
-        _check_rate(rate_hz, recording)
-        return done(recording)
     if hasattr(signal, "to_frame"):  # a column of a DataFrame
         return _in_its_form(signal.to_frame("signal"), rate_hz, done, kind)["signal"].rename(signal.name)
-    if hasattr(signal, "columns"):
-        timed = has_times(signal)
-        time = None if timed else _times(len(signal), rate_hz)
-        recording = make_recording(signal if timed else signal.set_axis(time).rename_axis("time"), kind)
-        _check_rate(rate_hz, recording)
-        made, filtered = done(recording), signal.copy()
-        labels = [label for label in signal.columns if str(label) in made.names]  # not that of the times
-        for label, values in zip(labels, made.values.T, strict=True):
-            filtered[label] = values
+    whole = issubclass(type(signal), Recording | Trial)
+    if whole or hasattr(signal, "columns"):
+        timed = whole or has_times(signal)
+        timed = signal if timed else signal.set_axis(_times(len(signal), rate_hz)).rename_axis("time")
+        recording = make_recording(timed, kind)  # of a trial it says which stream to give
+        if rate_hz is not None and not abs(_times(2, rate_hz)[1] * recording.rate_hz - 1) < 1e-3:
+            raise SamplingError(
+                "a signal with times takes its rate from them",
+                f"its times give {recording.rate_hz:g} samples per second, but rate_hz is {rate_hz:g}",
+                "Omit rate_hz, or correct the times (they are in seconds).",
+            )
+        made = done(recording)
+        if whole:
+            return made
+        filtered = signal.copy()
+        filtered[[label for label in signal.columns if str(label) in made.names]] = made.values  # without the times
         return filtered
     try:
         values = np.asarray(signal) if np.iscomplexobj(signal) else np.asarray(signal, float)
@@ -262,12 +272,3 @@ def _times(count: int, rate_hz: float | None) -> NDArray[np.float64]:
             "a rate must be a number of samples per second above zero", f"rate_hz is {rate_hz!r}", "Write rate_hz=100."
         )
     return np.arange(count) / rate_hz
-
-
-def _check_rate(rate_hz: float | None, recording: Recording) -> None:
-    if rate_hz is not None and not abs(_times(2, rate_hz)[1] * recording.rate_hz - 1) < 1e-3:
-        raise SamplingError(
-            "a signal with times takes its rate from them",
-            f"its times give {recording.rate_hz:g} samples per second, but rate_hz is {rate_hz:g}",
-            "Omit rate_hz, or correct the times (they are in seconds).",
-        )

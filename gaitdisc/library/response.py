@@ -91,8 +91,8 @@ def fit_response(
     files = {name: sha256 for walk in summaries for name, sha256 in walk.files.items()}
     made = {**study.public_settings(), "fits": asdict(settings)}
     origin = provenance_now(made, seed, files, "chapter 4: response to a device")
-    fits = (replace(response, participant=person),)
-    return ResponseRun(f"Response of {person}", WITHOUT, WITH, (), origin, {WALK.file: summaries, RESPONSE.file: fits})
+    units = {WALK.file: summaries, RESPONSE.file: (replace(response, participant=person),)}
+    return ResponseRun(f"Response of {person}", WITHOUT, WITH, (), origin, units)
 
 
 def _angles(trials: Mapping[str, Trial], outputs: Sequence[str], given: Sequence[str] | None) -> tuple[str, ...]:

@@ -121,7 +121,7 @@ def _in_radians(angles: Recording) -> Contradictions:
     most = max((reach[name] for name in legs), default=0.0)
     whole = set(legs) <= set(found) and most >= WALKS_RAD
     if found and (whole or most >= WALKS_DEG):
-        what = f"{found[0]} varies by {reach[found[0]]:.2g} deg in a walk, less than the skin: it looks like radians"
+        what = f"{found[0]} varies by {reach[found[0]]:.2g} deg in a walk, less than skin moves: it looks like radians"
         yield names if whole else found, what
 
 

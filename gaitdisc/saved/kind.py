@@ -137,10 +137,10 @@ class Saved:
 
 def find_kind(folder: Path, drawn: bool = False) -> Kind[Any]:
     """Kind of the result that a folder holds; drawn: whether it must have a page, as all but a fitted model have."""
-    file = next((name for name in KINDS if (folder / name).is_file()), "")
-    if not file:
+    if not (file := next((name for name in KINDS if (folder / name).is_file()), "")):
         held = sorted(path.name for path in folder.iterdir()) if folder.is_dir() else []
-        raise SchemaError(
+        FolderError = SchemaError if folder.exists() else type("SchemaError", (SchemaError, FileNotFoundError), {})
+        raise FolderError(
             f"a saved result must be a folder with one of {', '.join(KINDS)}",
             f"{folder.name} {'holds ' + list_names(held) if folder.is_dir() else 'is no folder'}",
             "Name the folder that the command or .save(folder) wrote.",

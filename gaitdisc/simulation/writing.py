@@ -114,8 +114,8 @@ def _python_text(simulation: PythonSimulation) -> str:
     table = _table(replace(simulation.parts, definitions=replaced), long=bool(simulation.sensors))
     del table["equations"]
     return (
-        "# The right-hand side is a Python object, which no file holds: there are no [equations] here. To give the\n"
-        "# object what stands here: model = gaitdisc.simulation.writing.read_into(model, path)\n"
+        "# The right-hand side is a Python object, so this file has no [equations]. To apply the file to the\n"
+        "# object: model = gaitdisc.simulation.writing.read_into(model, path)\n"
     ) + tomlkit.dumps(table)
 
 

@@ -78,7 +78,7 @@ FEW, MANY = -999.0, 99.5  # accuracies beyond are written as such
 def error_figure(cells: Sequence[DiscrepancyCell], name: str, source: str, channel: int = 0) -> Figure:
     """Truth minus known and truth minus augmented over the record's time, a row a method (Figs. 3.3, 3.4, 3.7, 3.8)."""
     cells = [cell for cell in cells if cell.parts]
-    drawn, grid = panels(len(cells), len(PARTS), 0.95, Room(across=0.4, down=0.5))
+    drawn, grid = panels(len(cells), len(PARTS), 0.95, Room(left=0.95, across=0.65, down=0.35, right=0.15))
     numbers = []
     for row, cell in zip(grid, cells, strict=True):
         for axes, part in zip(row, PARTS, strict=True):
@@ -88,11 +88,12 @@ def error_figure(cells: Sequence[DiscrepancyCell], name: str, source: str, chann
             for model, look in (("known", KNOWN), ("augmented", AUGMENTED)):
                 table[model] = (found.truth - getattr(found, model))[some, channel]
                 axes.plot(table["t_s"], table[model], color=look.colour, linestyle=look.line, linewidth=0.8)
-            when = "" if found.diverged_s is None else f"\ndiverged at t = {found.begins_s + found.diverged_s:.2f} s"
-            axes.set_title(f"{METHOD_WORDS[cell.method]}: {PART_WORDS[part]}{when}")
+            when = "" if found.diverged_s is None else f"diverged at t = {found.begins_s + found.diverged_s:.2f} s"
+            axes.set_title("\n".join(filter(None, (PART_WORDS[part] if row is grid[0] else "", when))))
             axes.set_xlim(found.begins_s, found.begins_s + found.time[-1])
+            axes.yaxis.set_major_formatter(lambda value, _: f"{value:g}".replace("-", "\N{MINUS SIGN}"))
             numbers.append(table)
-        row[0].set_ylabel(f"error of {cell.channels[channel]} [{_unit(cell, channel)}]")
+        row[0].set_ylabel(f"{METHOD_WORDS[cell.method]}\nerror of {cell.channels[channel]} [{_unit(cell, channel)}]")
     for axes in grid[-1]:
         axes.set_xlabel("time in the record [s]")
     legend(drawn, legend_lines({"truth − known": KNOWN, "truth − augmented": AUGMENTED}))
@@ -456,11 +457,9 @@ ARTEFACT = (
 
 def apart_words(cells: Cells) -> str:
     """Say how long the known system stays near the true one, by variant."""
-    said = []
-    for variant, found in cells.items():
-        part = next(c.parts[RECONSTRUCTION] for c in found if c.parts and not c.noise)
-        said.append(f"{variant}: within 0.4 SD for {part.valid_s('known'):.1f} of {part.time[-1]:.0f} s")
-    return "; ".join(said)
+    parts = {v: next(c.parts[RECONSTRUCTION] for c in found if c.parts and not c.noise) for v, found in cells.items()}
+    near = (f"{v}: within 0.4 SD for {part.valid_s('known'):.1f} of {part.time[-1]:.0f} s" for v, part in parts.items())
+    return "; ".join(near)
 
 
 def cost_words(cells: Cells) -> str:

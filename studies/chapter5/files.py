@@ -149,11 +149,11 @@ def read_sst_mat(path: Path) -> Field:
 
 
 def _globe(lat: NDArray[Any], lon: NDArray[Any]) -> tuple[Axis, Axis]:
-    return Axis("lat", lat, "deg"), Axis("lon", lon, "deg")
+    return Axis("latitude", lat, "deg"), Axis("longitude", lon, "deg")
 
 
 def read_sst_pacific(path: Path) -> Field:
-    """Read 399 months of sea-surface temperature anomalies of the tropical Pacific, 2 degrees apart."""
+    """Read 399 months of temperature anomalies of the tropical Pacific, 2 degrees apart; times from January 1970 on."""
     held = _arrays(path, ("sst", "landmask", "lon", "lat"))
     lat, lon = np.unique(held["lat"]), np.unique(held["lon"])
     sea = held["landmask"] == 0
@@ -170,7 +170,7 @@ def read_sst_pacific(path: Path) -> Field:
 
 
 def read_navy_winds(path: Path) -> Field:
-    """Read 132 months of winds of the whole globe, 2.5 degrees apart."""
+    """Read 132 months of winds of the whole globe, 2.5 degrees apart; times are months since January 1970."""
     held = _arrays(path, ("u", "v", "lon", "lat"))
     lat, lon = (np.asarray(held[name], float) for name in ("lat", "lon"))
     if held["u"].shape[1:] != (len(lat), len(lon)) or held["v"].shape != held["u"].shape:
@@ -179,7 +179,7 @@ def read_navy_winds(path: Path) -> Field:
             f"{path.name} has {held['u'].shape} and {held['v'].shape} for {len(lat)} latitudes, {len(lon)} longitudes",
             "Name the file as it was published.",
         )
-    months = np.arange(len(held["u"]), dtype=float)
+    months = 144.0 + np.arange(len(held["u"]))  # the file begins in January 1982
     values = np.stack([held[name].reshape(len(months), -1) for name in ("u", "v")], axis=-1)
     everywhere, source = np.ones((len(lat), len(lon)), bool), Source(path.name, file_sha256(path), "npz")
     return Field(months, values, _globe(lat, lon), everywhere, ("u", "v"), ("m/s", "m/s"), "month", source)

@@ -6,7 +6,7 @@ import tomllib
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 import pandas as pd
@@ -29,9 +29,6 @@ from gaitdisc.report.figure import Figure
 from gaitdisc.report.panels import RECONSTRUCTED, Room, decades, draw_box, in_style, legend, panels
 from gaitdisc.report.table import Table
 from gaitdisc.words import counted, listing, number, unit_text
-
-if TYPE_CHECKING:
-    pass
 
 SENSORS = {
     "3 random": ("pelvis_rotation", "pelvis_tz", "hip_adduction_r"),

@@ -19,7 +19,7 @@ from gaitdisc.words import number
 from .reconstruct_field import FieldCell, field_cells_table
 
 if TYPE_CHECKING:
-    pass
+    from matplotlib.axes import Axes
 
 ROUTE_LOOKS = (
     Look("#111111", "-", "o"),
@@ -195,7 +195,9 @@ def maps_figure(field: Field, snapshots: Mapping[str, NDArray[np.floating]], nam
         planes[title] = field.on_grid(values)
         while planes[title].ndim > 2:  # of a field in space the middle plane
             planes[title] = planes[title][len(planes[title]) // 2]
-    middle, reach = _span(np.concatenate([plane.ravel() for plane in planes.values()]))
+    low, high = np.nanquantile(np.concatenate([plane.ravel() for plane in planes.values()]), [0.005, 0.995])
+    middle = 0.0 if low < 0 < high else (low + high) / 2  # colours are about zero where values lie on both sides of it
+    reach = max(high - middle, middle - low) or 1.0
     columns, (vertical, across) = 2, field.axes[-2:]
     rows, width = -(-len(planes) // columns), (8.0 - 1.6 - 0.5) / columns
     height = float(np.clip(width * np.ptp(vertical.coordinates) / np.ptp(across.coordinates), 0.9, 2.6))
@@ -207,6 +209,7 @@ def maps_figure(field: Field, snapshots: Mapping[str, NDArray[np.floating]], nam
         axes.set(facecolor="#dddddd", title=title)
         mesh = {"vmin": middle - reach, "vmax": middle + reach, "cmap": "RdBu_r", "rasterized": True}
         meshes.append(axes.pcolormesh(across.coordinates, vertical.coordinates, plane, **mesh))
+        _draw_coast(axes, field)
     for row in grid:
         row[0].set_ylabel(f"{vertical.name} [{vertical.unit}]")
     for axes in grid[-1]:
@@ -229,7 +232,8 @@ def routes_figure(field: Field, routes: Mapping[str, NDArray[np.floating]], name
     height = float(np.clip(7.0 * np.ptp(vertical.coordinates) / np.ptp(across.coordinates), 1.2, 3.8))
     drawn, ((axes,),) = panels(1, 1, height, Room(top=0.5))
     grey = {"vmin": 0, "vmax": 1, "cmap": "Greys", "rasterized": True}
-    axes.pcolormesh(across.coordinates, vertical.coordinates, np.where(field.mask, 0.25, np.nan), **grey)
+    axes.pcolormesh(across.coordinates, vertical.coordinates, np.where(field.mask, 0.15, np.nan), **grey)
+    _draw_coast(axes, field)
     rows = []
     for k, (title, places) in enumerate(routes.items()):
         colour = ROUTE_COLOURS[k % len(ROUTE_COLOURS)]
@@ -239,15 +243,14 @@ def routes_figure(field: Field, routes: Mapping[str, NDArray[np.floating]], name
         rows.append(pd.DataFrame({"route": title, vertical.name: places[:, 0], across.name: places[:, 1]}))
     axes.set(xlabel=f"{across.name} [{across.unit}]", ylabel=f"{vertical.name} [{vertical.unit}]")
     axes.legend(loc="lower center", bbox_to_anchor=(0.5, 1.0), ncols=len(routes), borderaxespad=0.2)
-    return Figure(name, f"{source}. Grey: points of the field.", "Routes of sensors on a map", pd.concat(rows), drawn)
+    coast = "The file has no land mask, so no coast is drawn" if field.mask.all() else "Grey: points of the field"
+    return Figure(name, f"{source}. {coast}.", "Routes of sensors on a map", pd.concat(rows), drawn)
 
 
-def _span(values: NDArray[np.float64]) -> tuple[float, float]:
-    """Middle and reach of the colours: about zero where values lie on both sides of it."""
-    low, high = np.nanquantile(values, [0.005, 0.995])
-    if low < 0 < high:
-        return 0.0, float(max(-low, high))
-    return float((low + high) / 2), float((high - low) / 2) or 1.0
+def _draw_coast(axes: Axes, field: Field) -> None:
+    if field.mask.ndim == 2 and not field.mask.all():
+        at = [axis.coordinates for axis in reversed(field.axes)]
+        axes.contour(*at, field.mask, [0.5], colors="#333333", linewidths=0.7).set_clim(axes.collections[0].get_clim())
 
 
 @in_style

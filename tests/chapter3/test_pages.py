@@ -74,14 +74,14 @@ def begun(at_s, units=("m", "1")):
 def test_errors_have_a_quantity_and_a_unit_and_a_forecast_begins_where_the_record_has_got_to():
     figure = error_figure([begun(30.0)], "a", "Fig. 3.3")
     first, oracle, forecast = figure.drawn.axes
-    assert first.get_ylabel() == "error of x [m]"
-    assert error_figure([begun(30.0)], "a", "Fig. 3.3", channel=1).drawn.axes[0].get_ylabel() == "error of y [1]"
+    assert first.get_ylabel() == "Gaussian process\nerror of x [m]"
+    assert error_figure([begun(30.0)], "a", "", channel=1).drawn.axes[0].get_ylabel().endswith("\nerror of y [1]")
     assert {axes.get_xlabel() for axes in figure.drawn.axes} == {"time in the record [s]"}
     assert [axes.get_xlim() for axes in (first, oracle, forecast)] == [(0.0, 30.0), (30.0, 60.0), (30.0, 60.0)]
     for axes in (oracle, forecast):
         assert all((line.get_xdata()[0], line.get_xdata()[-1]) == (30.0, 60.0) for line in axes.lines)
     assert [axes.get_title() for axes in (oracle, forecast)] == [
-        "Gaussian process: forecast, oracle start", "Gaussian process: forecast, estimated start",
+        "forecast, oracle start", "forecast, estimated start",
     ]  # fmt: skip
     assert "an oracle" in figure.caption
     assert figure.numbers.groupby("part", sort=False)["t_s"].min().tolist() == [0.0, 30.0, 30.0]

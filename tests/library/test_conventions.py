@@ -17,32 +17,31 @@ OTHERS = {  # checks that fail for another reason
     "check_positive_only_tag_during_fit": "its data are one-dimensional states as well",
     "check_estimators_unfitted": "a TrainingError with its remedy, not a NotFittedError: could be mended",
     "check_do_not_raise_errors_in_init_or_set_params": "the rate is converted at once: could be mended",
-    **dict.fromkeys(
-        ("check_complex_data", "check_estimator_sparse_tag", "check_estimator_sparse_array"),
-        "refused as any array, in this package's words",
-    ),
-    "check_estimator_sparse_matrix": "refused as any array, in this package's words",
+    "check_complex_data": "refused as any array, in this package's words",
+    **{f"check_estimator_sparse_{part}": "refused as any array" for part in ("tag", "array", "matrix")},
 }
 
 
-@pytest.mark.parametrize("name", ["nowhere.mot", "nowhere.c3d", "nowhere.csv"])
-def test_a_missing_file_is_a_file_not_found_error_with_its_code(name):
+@pytest.mark.parametrize("name", ["nowhere.mot", "nowhere.c3d", "nowhere.csv", "nowhere"])
+def test_a_missing_file_or_folder_is_a_file_not_found_error_with_its_code(name):
+    read, code = (gd.read, "gd-read") if "." in name else (gd.load, "gd-schema")
     with pytest.raises(FileNotFoundError, match=name) as refusal:
-        gd.read(name)
-    assert isinstance(refusal.value, gd.GaitdiscError) and refusal.value.code == "gd-read"
+        read(name)
+    assert isinstance(refusal.value, gd.GaitdiscError) and refusal.value.code == code
     assert "C3D" not in refusal.value.found  # what is needed, and not what there is
 
 
 def test_a_table_carries_its_units():
-    table = gd.example_walks(10.0)["nominal"].stream("kinematics").to_pandas()
-    assert table.attrs["units"]["knee_angle_r"] == "deg" and table.attrs["units"]["time"] == "s"
+    table = gd.example_walks(10.0)["nominal"].stream("kinematics").to_pandas(units=True)
+    knee, rate = "knee_angle_r [deg]", gd.differentiate(table, 2)
+    assert table.attrs["units"][knee] == "deg" and table.attrs["units"]["time"] == rate.attrs["units"]["time"] == "s"
+    assert rate.attrs["units"]["knee_angle_r [deg/s2]"] == "deg/s2" and set(rate) < set(rate.attrs["units"])
+    assert gd.differentiate(table[knee]).name == "knee_angle_r [deg/s]"
 
 
 def test_progress_goes_to_the_logger_at_each_tenth(caplog):
     with caplog.at_level(logging.INFO, "gaitdisc"):
-        progress = _log_tenths()
-        for share in (0.0, 0.05, 0.11, 1.0):
-            progress(share)
+        _ = [*map(_log_tenths(), (0.0, 0.05, 0.11, 1.0))]
     assert [record.args for record in caplog.records] == [(0,), (10,), (100,)]
 
 

@@ -162,7 +162,7 @@ def test_no_gap_is_a_page_too(tmp_path):
     empty = manufactured(verdict="no_gap", where=(), effects=(), rivals=(), findings=(), provenance=None)
     text = write_discovery_report(empty, tmp_path).read_text(encoding="utf-8")
     assert says(text, "no", "nothing", "to the simulation")
-    assert "What else it could be" not in text
+    assert "Other explanations" not in text
 
 
 @pytest.mark.usefixtures("unpainted")
