@@ -116,7 +116,8 @@ TIERS = {
     2: "Beyond what one more healthy person shows (95 % limits of this page)",
     1: "Outside 2 standard deviations of the controls, within those limits",
 }
-TEMPLATES = ("person.html.j2", "people.html.j2")
+TEMPLATES = Path(__file__).parents[1] / "report" / "templates"
+WITH_WORDS = ("person.html.j2", "people.html.j2", "person.typ")
 TABLES = (  # headings and cells of tables, and the words between numbers in a sentence of what stands out
     "value", "left", "right", "reference", "asymmetry", "value of", "side", "limits", "people", "cycles", "stands out",
     "curve", "file", "what", "version", "cycle", "to", "state", "person", "condition", "cycles L, R", "Side affected",
@@ -164,8 +165,7 @@ ENGLISH = PageWords()
 
 def english_words(of_rules: Sequence[str]) -> list[str]:
     """Every word that a table may translate, each once: of the pages, and what rules call a value."""
-    folder = Path(__file__).parents[1] / "report" / "templates"
-    texts = [(folder / name).read_text(encoding="utf-8") for name in TEMPLATES]
+    texts = [(TEMPLATES / name).read_text(encoding="utf-8") for name in WITH_WORDS]
     found = [word for text in texts for word in re.findall(r'say\("([^"]+)"\)', text)]
     found += [word for one in VARIABLES for word in (one.words, one.up, one.down)]
     found += [words for words, _, _ in VALUES.values()]

@@ -37,6 +37,7 @@ FEWEST_PEOPLE = 30  # twice the features; below it directions are those of singl
 FEWEST = 2  # people without whom the reference has no spread of its own
 ALPHA = 0.05 / len(FEET)  # both legs are tested
 MATTERS = {"deg": 5.0, "N m/kg": 0.1, "W/kg": 0.5}  # degrees: McGinley et al. 2009
+FEWEST_CYCLES = 6  # of each of two that are compared: with fewer no result can be significant
 PLAN = PermutationPlan(alpha=ALPHA)
 
 
@@ -270,7 +271,11 @@ def contrast(first: ClinicalReading, second: ClinicalReading) -> Contrast:
     tested: dict[str, int] = {}
     for side in FEET:
         if side not in first.legs or side not in second.legs:
-            untested[side] = "one of the two has no cycle of this leg"
+            untested[side] = "one of the two has no cycle of this leg."
+            continue
+        counts = [one.legs[side].count for one in (first, second)]
+        if min(counts) < FEWEST_CYCLES:
+            untested[side] = f"a test needs {FEWEST_CYCLES} cycles of each; there are {counts[0]} and {counts[1]}."
             continue
         try:
             found, tested[side] = _spans(first.legs[side], second.legs[side])

@@ -6,7 +6,7 @@ from dataclasses import asdict, replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from gaitdisc.errors import GaitdiscError, SchemaError, WriteError
+from gaitdisc.errors import LOG, GaitdiscError, SchemaError, WriteError
 from gaitdisc.own_files import file_sha256
 from gaitdisc.whole_file import remove_file, write_whole
 
@@ -143,7 +143,7 @@ def write_people(
     names, house = file_names(list(people)), say.laboratory
     shared = repr(replace(say, laboratory=replace(house, affected={}, comments={})))
     files = sorted(path for path in (run_folder / REFERENCE).glob("*") if path.is_file())
-    rests_on = (" ".join(map(file_sha256, files)), shared, run.nominal, str(pdf))
+    rests_on = (" ".join(map(file_sha256, files)), shared, run.nominal, str(pages.pdf))
     rows: list[dict[str, str]] = []
     failed: list[Refusal] = []
     for title, own in people.items():
@@ -201,19 +201,22 @@ class _Pages:
     """What all pages of a run's people are written with, and where."""
 
     def __init__(self, run: StudyRun, run_folder: Path, pdf: bool) -> None:
-        self.report, self._provenance, self._pdf = run_folder / "report", run.provenance, pdf
+        from gaitdisc.clinic.person_pdf import NO_PDF, can_write_pdf
+
+        self.report, self._provenance = run_folder / "report", run.provenance
         self.reference, self.say = load_kept_reference(run_folder), load_kept_words(run_folder)
+        self.pdf = pdf or self.say.laboratory.pdf
+        if self.pdf and not can_write_pdf():
+            if pdf:
+                raise SchemaError(*NO_PDF)
+            LOG.warning(f"Pages are written without PDF: {NO_PDF[0]}. {NO_PDF[2]}")
+            self.pdf = False
 
     def write(self, person: PersonSession, name: str) -> list[Path]:
         """Write the page of a person and session as HTML and where wanted as PDF."""
         from gaitdisc.clinic.person_page import write_person_page
 
-        page = write_person_page(person, name, self.reference, self._provenance, self.report, self.say)
-        if not (self._pdf or self.say.laboratory.pdf):
-            return [page]
-        from gaitdisc.clinic.person_pdf import write_person_pdf
-
-        return [page, write_person_pdf(person, self._provenance, page.with_suffix(".pdf"), self.say)]
+        return write_person_page(person, name, self.reference, self._provenance, self.report, self.say, self.pdf)
 
 
 def _with_failed(run: StudyRun, failed: list[Refusal], run_folder: Path) -> StudyRun:

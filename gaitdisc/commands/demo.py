@@ -65,8 +65,10 @@ def _clinic(folder: Path, jobs: int) -> None:
     from gaitdisc.run.workers import Workers
     from gaitdisc.saved.study_run import claim_run
 
-    claim_folder(folder, "planted.json", "reference", "controls", "controls/study.toml", "week", "week/study.toml")
-    for part in ("controls", "week"):
+    parts = ("controls", "week")
+    files = [f"{part}/study.toml" for part in parts]
+    claim_folder(folder, "planted.json", "reference", *parts, *files, "week/clinic.toml")
+    for part in parts:
         claim_run(folder / part / "run")
     typer.echo("20 controls and 8 patients, one of them a child, walk 16 s each (simulated).")
     controls, week, planted = write_week(folder, progress=lambda who: LOG.info(f"  {who}"))

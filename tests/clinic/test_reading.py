@@ -169,4 +169,4 @@ def test_where_the_knee_bends_more_after_is_found_and_nothing_on_the_other_side(
 def test_few_cycles_are_not_tested_and_the_reason_is_said():
     found = contrast(_reading("before", each=2), _reading("after", each=2))
     assert found.spans == () and found.tested == {}
-    assert says(found.untested["l"], "6 units", "2")
+    assert says(found.untested["l"], "6 cycles", "2 and 2")

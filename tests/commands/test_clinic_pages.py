@@ -122,8 +122,7 @@ KILLS = 12
 SERVER = """
 import os, sys
 from pathlib import Path
-import gaitdisc.clinic.person_pdf, gaitdisc.clinic.person_page, gaitdisc.clinic.reading
-import matplotlib.backends.backend_pdf
+import gaitdisc.clinic.person_page, gaitdisc.clinic.reading
 from gaitdisc.commands.clinic_pages import write_people
 from gaitdisc.response.participant_response import load_run
 for line in sys.stdin:
@@ -230,3 +229,15 @@ def test_pages_drawn_by_killed_and_by_eight_processes_are_whole(saved, server, t
     assert kills == KILLS
     codes, _ = server(tmp_path / "killed", 8)
     assert codes == [0] * 8 and pages(tmp_path / "killed") == whole
+
+
+def test_without_typst_pages_stand_and_one_sentence_names_the_extra(called, run_folder, monkeypatch, caplog):
+    monkeypatch.setitem(sys.modules, "typst", None)
+    refused = called("report", run_folder, "--pdf", ends=1)
+    assert says(refused.stderr, "PDF requires", "typst", "not installed", "pip install 'gaitdisc[pdf]'")
+    (run_folder / "clinic.toml").write_text("pdf = true\n", encoding="utf-8")
+    write_people(load_run(run_folder), run_folder)
+    assert [text for text in caplog.messages if "gaitdisc[pdf]" in text] == [
+        "Pages are written without PDF: PDF requires the package typst. Install it: pip install 'gaitdisc[pdf]'."
+    ]
+    assert {path.suffix for path in (run_folder / "report" / "people").glob("P1*")} == {"", ".html"}
