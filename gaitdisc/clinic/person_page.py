@@ -202,7 +202,7 @@ def _method(person: PersonSession) -> list[str]:
     found = []
     for reading in person.readings:
         pooled = reading.pooled
-        by = ", ".join(f"{name} ({count} trials)" for name, count in pooled.detectors.items())
+        by = ", ".join(f"{name} ({counted(count, 'trial')})" for name, count in pooled.detectors.items())
         moved = pooled.contact_offset_s
         words = f", moved by {1000 * moved:+.0f} ms after {pooled.offset_steps} steps that a plate saw" if moved else ""
         found.append(f"{pooled.where}: contacts by {by or 'nothing'}{words}.")

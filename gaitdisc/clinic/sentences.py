@@ -163,7 +163,7 @@ def contrast_sentences(contrast: Contrast) -> list[str]:
     if contrast.tested and not spans:
         sides = " and ".join(SIDE_WORDS[side] for side in contrast.tested)
         found.append(
-            f"{sides.capitalize()}: no part of the cycle differs by 5 deg or more between {first} and {second}."
+            f"{sides.capitalize()}: no part of the cycle differs by 5 deg or more between ‘{first}’ and ‘{second}’."
         )
     if small:
         found.append(f"{counted(small, 'stretch').replace('stretchs', 'stretches')} differ by less than 5 deg.")
@@ -177,6 +177,6 @@ def _span(one: DifferingSpan, contrast: Contrast) -> str:
     amount = f"{number(abs(one.difference), 0)} {variable.unit} {more} ({variable.up})"
     return (
         f"{variable.words.capitalize()}, {SIDE_WORDS[one.side]}: {amount} in"
-        f" {contrast.second.pooled.where} than in {contrast.first.pooled.where}, at {one.first} to "
+        f" ‘{contrast.second.pooled.where}’ than in ‘{contrast.first.pooled.where}’, at {one.first} to "
         f"{one.last} % of the cycle; {p_words(one.p)}, {counts[0]} and {counts[1]} cycles."
     )

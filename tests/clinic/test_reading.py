@@ -50,7 +50,8 @@ def test_the_light_says_why():
     few = read_beside(made_person(each=2, findings=found, refusals=gone), None)
     assert few.light == "amber" and len(few.reasons) == 5
     assert says(few.reasons[0], "few cycles", "2 left, 2 right", "1 trial is left out", "3")
-    assert says(few.reasons[1], "EMG", "emg_ta_l", "electrodes") and says(few.reasons[2], "knee_angle_l left out")
+    assert says(few.reasons[1], "EMG", "tibialis anterior, left", "electrodes")
+    assert says(few.reasons[2], "left out, knee angle, left")
     assert few.reasons[3:] == ("gap: look at the curves before you use angles", "body weight: weigh again")
     enough = read_beside(made_person(each=3, findings=dead, refusals=gone), None)  # never plugged in, one trial bad
     assert (enough.light, enough.reasons) == ("green", ())
