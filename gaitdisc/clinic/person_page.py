@@ -12,7 +12,7 @@ from markupsafe import Markup
 
 from gaitdisc._version import __version__
 from gaitdisc.clinic.clinical_reference import ClinicalReading, ClinicalReference, Contrast, PersonSession
-from gaitdisc.clinic.laboratory import ENGLISH, TEMPLATES, TIERS, PageWords
+from gaitdisc.clinic.page_words import ENGLISH, TEMPLATES, TIERS, PageWords
 from gaitdisc.clinic.panels import (
     MOST_SINGLE,
     Panel,

@@ -9,8 +9,9 @@ from importlib.util import find_spec
 from pathlib import Path
 from typing import Any
 
-from gaitdisc.clinic.laboratory import TEMPLATES, PageWords
+from gaitdisc.clinic.page_words import TEMPLATES, PageWords
 from gaitdisc.clinic.panels import Panel
+from gaitdisc.errors import SchemaError
 from gaitdisc.report.table import Table
 from gaitdisc.whole_file import write_whole
 
@@ -33,13 +34,11 @@ def write_person_pdf(shown: Mapping[str, Any], path: Path) -> Path:
     style = (TEMPLATES / "curves.css").read_text(encoding="utf-8") + "svg text { font-family: 'DejaVu Sans'; }"
     picture = list(base64.b64decode(shown["logo"].partition(",")[2]))
     page = json.dumps({**shown, "style": style, "picture": picture}, default=_as_json)
-    sheets = typst.compile(
-        TEMPLATES / "person.typ",
-        root=TEMPLATES,
-        font_paths=[Path(mpl.get_data_path(), "fonts", "ttf")],
-        sys_inputs={"page": page},
-        timestamp=0,
-    )
+    template, fonts = TEMPLATES / "person.typ", [Path(mpl.get_data_path(), "fonts", "ttf")]
+    try:
+        sheets = typst.compile(template, root=TEMPLATES, font_paths=fonts, sys_inputs={"page": page}, timestamp=0)
+    except typst.TypstError as error:
+        raise SchemaError("typst must set a PDF without error", f"it says: {error}", "Save the logo again.") from error
     return write_whole(path, sheets)
 
 

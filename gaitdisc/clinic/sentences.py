@@ -16,7 +16,7 @@ from gaitdisc.clinic.clinical_reference import (
     PersonSession,
     Score,
 )
-from gaitdisc.clinic.laboratory import ENGLISH, TIERS, PageWords
+from gaitdisc.clinic.page_words import ENGLISH, TIERS, PageWords
 from gaitdisc.clinic.values import MARKS
 from gaitdisc.processing.leg_curves import BY_NAME, FEET
 from gaitdisc.words import SIDE_WORDS, counted, number, p_words, unit_text

@@ -59,7 +59,7 @@ def _clinic(folder: Path, jobs: int) -> None:
     from gaitdisc.clinic.clinical_reference import save_reference
     from gaitdisc.clinic.demonstration import write_week
     from gaitdisc.clinic.reference import make_reference
-    from gaitdisc.commands.clinic_pages import keep_reference, write_people
+    from gaitdisc.clinic.run_pages import keep_reference, write_people
     from gaitdisc.own_files import claim_folder
     from gaitdisc.run.run_study import run_study
     from gaitdisc.run.workers import Workers

@@ -16,7 +16,8 @@ from made_clinic import SOURCE, made_controls, made_person, made_run, published_
 from texts import says
 
 from gaitdisc.clinic.clinical_reference import load_reference, save_reference
-from gaitdisc.commands.clinic_pages import keep_reference, load_kept_reference, say_new_recordings, write_people
+from gaitdisc.clinic.run_pages import keep_reference, load_kept_reference, write_people
+from gaitdisc.commands.clinic_pages import say_new_recordings
 from gaitdisc.errors import WriteError
 from gaitdisc.ingest.study import Conditions, Participant, PlannedTrial, Study
 from gaitdisc.response.participant_response import load_run
@@ -25,9 +26,9 @@ from gaitdisc.whole_file import PART
 
 
 def test_a_person_whose_page_fails_costs_nobody_else(tmp_path):
-    from gaitdisc.clinic import person_page
+    from gaitdisc.clinic import run_pages
 
-    real = person_page.write_person_page
+    real = run_pages.write_person_page
 
     def failing(person, *others):
         if person.title == "P02":
@@ -35,7 +36,7 @@ def test_a_person_whose_page_fails_costs_nobody_else(tmp_path):
         return real(person, *others)
 
     run = made_run(made_person("P01"), made_person("P02"), refusals=(Refusal("P03", "", "unread"),))
-    with patch.object(person_page, "write_person_page", failing):
+    with patch.object(run_pages, "write_person_page", failing):
         index = write_people(run, tmp_path)
     text = index.read_text(encoding="utf-8")
     assert index == tmp_path / "report" / "index.html"
@@ -123,7 +124,7 @@ SERVER = """
 import os, sys
 from pathlib import Path
 import gaitdisc.clinic.person_page, gaitdisc.clinic.reading
-from gaitdisc.commands.clinic_pages import write_people
+from gaitdisc.clinic.run_pages import write_people
 from gaitdisc.response.participant_response import load_run
 for line in sys.stdin:
     count, folder = line.split(maxsplit=1)

@@ -7,7 +7,7 @@ from made_clinic import made_controls, made_person
 from texts import says
 
 from gaitdisc.clinic.clinical_reference import Band
-from gaitdisc.clinic.laboratory import PageWords
+from gaitdisc.clinic.page_words import PageWords
 from gaitdisc.clinic.panels import (
     BOTTOM,
     LEFT,

@@ -10,7 +10,8 @@ from made_clinic import PROVENANCE, made_controls, made_person, made_run
 from texts import says
 
 from gaitdisc.clinic.clinical_reference import PersonSession
-from gaitdisc.clinic.laboratory import ENGLISH, Laboratory, PageWords
+from gaitdisc.clinic.laboratory import Laboratory
+from gaitdisc.clinic.page_words import ENGLISH, PageWords
 from gaitdisc.clinic.person_page import index_rows, write_index, write_person_page
 from gaitdisc.clinic.reading import contrast, read_beside
 from gaitdisc.recording import PERCENT

@@ -7,7 +7,7 @@ from made_clinic import PROVENANCE, made_controls, made_person, made_run
 from texts import says
 
 from gaitdisc.clinic.clinical_reference import Limits, Noted, PersonSession
-from gaitdisc.clinic.laboratory import PageWords, english_words, read_words, write_words
+from gaitdisc.clinic.page_words import PageWords, english_words, read_words, write_words
 from gaitdisc.clinic.person_page import index_rows, write_index, write_person_page
 from gaitdisc.clinic.reading import contrast, read_beside
 from gaitdisc.clinic.rules import rule_words
