@@ -29,6 +29,7 @@ SOLE_HOME = {
     "ezc3d": {"ingest"},
     "mujoco": {"engines"},
     "opensim": {"engines"},
+    "typst": {"clinic"},
 }
 
 

@@ -55,6 +55,12 @@ WEEK = (
     Visit("P07", 6),
     Visit("P08", 8, what="child"),
 )
+LABORATORY = """laboratory = "Gait laboratory (simulated)"
+pdf = true
+
+[people.P02]
+affected = "left"
+"""
 CHILD = {"age_years": 8.0, "height_m": 1.26, "mass_kg": 26.0}
 NO_GAIT = ("bad file", "child")  # planted, but not into the way of walking
 
@@ -120,6 +126,7 @@ def write_week(
         truth[f"{one.name} {one.session}".strip()] = one.what if one.what in ("", *NO_GAIT) else f"{one.what} {side}"
     said = "; ".join(f"{who} {what}" for who, what in truth.items() if what)
     week = _write(folder / "week", WEEK, f"A week, made (simulated, no people). Planted: {said}", WEEK_SEED, progress)
+    write_whole(folder / "week" / "clinic.toml", LABORATORY)
     write_whole(folder / "planted.json", json.dumps(truth, indent=1))
     return own, week, truth
 

@@ -49,7 +49,7 @@ def like_controls(legs: Legs, own: Sequence[LegCurves], leg_m: float | None, age
     which = f", the group nearest in {' and '.join(by)}" if by else f", all of the reference ({why})"
     said = [f"Compared with {described(of_both)}{which}."]
     if of_both != of_age:
-        said.append("Times and distances: with those of any speed.")
+        said.append("Times and distances are compared with controls of any speed.")
     ages = [leg.age_years for leg in of_age if leg.age_years is not None]
     if age_years is not None and ages and not min(ages) <= age_years <= max(ages):
         whose = "adults" if min(ages) >= ADULT > age_years else "of another age"
@@ -58,7 +58,9 @@ def like_controls(legs: Legs, own: Sequence[LegCurves], leg_m: float | None, age
     if leg_m is None or unknown:
         said.append(f"Not scaled: the leg length of {unknown} is unknown. Speeds and lengths depend on body size.")
         return LikeControls(of_both, of_age, tuple(said))
-    said.append("Their times, distances, moments and powers are taken to this person's leg length (Hof 1996).")
+    said.append(
+        "Times, distances, moments and powers of the controls are scaled to this person's leg length (Hof 1996)."
+    )
     curves, values = (tuple(at_leg_length(leg, leg_m) for leg in one) for one in (of_both, of_age))
     return LikeControls(curves, values, tuple(said))
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from html import escape
+from typing import Any
 
 import numpy as np
 import pandas as pd
@@ -17,10 +18,12 @@ from gaitdisc.recording import PERCENT
 from gaitdisc.report.panels import SIDES
 from gaitdisc.words import SIDE_WORDS, label, number, sideless
 
-WIDTH, HEIGHT, GAP = 300, 172, 12  # of a third of a sheet, and between two
-LEFT, MARGIN, TOP, BOTTOM = 34, 4, 15, 150  # of the axes
+WIDTH, HEIGHT, GAP = 300, 160, 12  # of a third of a sheet, and between two
+LEFT, MARGIN, TOP, BOTTOM = 34, 4, 15, 138  # of the axes
 DASHES = {"l": "", "r": "5 1.6", "": ""}  # so that left and right differ in grey print too
 BAR = 5  # height of a bar below the curves
+STRIP = 30  # height of a raw trace below a panel, of one leg
+BINS = 500  # of a raw trace, each drawn from its smallest to its largest sample
 AMPLIFIED_V = 0.005  # surface EMG is below 5 mV on the skin
 SPANS = 6  # parts of a row: a panel takes two or three
 SHORT = {"l": "L", "r": "R"}
@@ -51,11 +54,13 @@ class Panel:
     foot_off: tuple[tuple[str, float], ...] = ()  # tuple of (str, float), side and [% of the cycle]
     # tuple of (int, int), when a muscle is active in normal walking [% of the cycle]
     normal: tuple[tuple[int, int], ...] = ()
-    # tuple of (int, int, bool), where two sets of cycles differ, and whether that is as large as what matters
-    differs: tuple[tuple[int, int, bool], ...] = ()
+    # tuple of (str, int, int, bool), side, where two sets of its cycles differ, and whether by as much as matters
+    differs: tuple[tuple[str, int, int, bool], ...] = ()
     axis: tuple[float, float] | None = None  # its ends, wherever no curve goes beyond; fitted where there is none
     span: int = 2  # parts of the row
     about: str = ""  # what else stands above the curves
+    raw: tuple[Line, ...] = ()  # raw traces of one cycle of each leg, below the curves, each (sample,)
+    raw_unit: str = ""
 
     @property
     def signs(self) -> str:
@@ -70,12 +75,6 @@ class Panel:
             return []
         mean, sd = self.band.mean, self.band.sd
         return [(kind, mean - many * sd, mean + many * sd) for kind, many in (("band2", 2), ("band", 1))]
-
-    @property
-    def bars(self) -> list[tuple[str, int, int]]:
-        """Bars below the curves, where a muscle is active, and above them, where sets of cycles differ: kind, ends."""
-        bars = [("normal", first, last) for first, last in self.normal]
-        return bars + [("matters" if matters else "small", first, last) for first, last, matters in self.differs]
 
     @property
     def alt(self) -> str:
@@ -131,8 +130,9 @@ def svg(panel: Panel) -> str:
     def y(value: float | NDArray[np.float64]) -> NDArray[np.float64]:
         return BOTTOM - (np.asarray(value) - low) / (high - low) * (BOTTOM - TOP)
 
+    height = HEIGHT + STRIP * len(panel.raw)
     parts = [
-        f'<svg viewBox="0 0 {panel.width} {HEIGHT}" role="img" aria-label="{escape(panel.alt, quote=True)}" '
+        f'<svg viewBox="0 0 {panel.width} {height}" role="img" aria-label="{escape(panel.alt, quote=True)}" '
         f'data-low="{low:.5g}" data-high="{high:.5g}">'
     ]
     for kind, below, above in panel.shades:
@@ -142,20 +142,46 @@ def svg(panel: Panel) -> str:
     if panel.band is not None:
         parts.append(f'<path class="middle" d="M{_points(panel, y(panel.band.mean))}"/>')
     parts += _axes(panel, low, high, y)
-    for kind, first, last in panel.bars:
-        x, end, at = _x(panel, first), _x(panel, last), BOTTOM - BAR if kind == "normal" else TOP
-        parts.append(f'<rect class="{kind}" x="{x:.1f}" y="{at}" width="{end - x:.1f}" height="{BAR}"/>')
+    for first, last in panel.normal:
+        parts.append(f'<rect class="normal" {_bar(panel, first, last, BOTTOM - BAR)}/>')
+    for side, first, last, matters in panel.differs:
+        kind, at = "matters" if matters else "small", TOP + (BAR + 1) * (side == "r")
+        parts.append(f'<rect class="{kind}" fill="{SIDES[side].colour}" {_bar(panel, first, last, at)}/>')
     for side, percent in panel.foot_off:
         at, colour = _x(panel, percent), SIDES[side].colour
         parts.append(
             f'<path class="off" stroke="{colour}" d="M{at:.1f} {BOTTOM}V{BOTTOM - 14}M{at:.1f} {TOP + 14}V{TOP}"/>'
         )
     parts += [_path(panel, line, y) for line in sorted(panel.lines, key=lambda one: one.look != "single")]
+    parts += _raw(panel)
     parts.append(f'<path class="cursor" d="M0 {TOP}V{BOTTOM}"/></svg>')
     return "".join(parts)
 
 
-def _x(panel: Panel, percent: float) -> float:
+def _bar(panel: Panel, first: float, last: float, top: float) -> str:
+    x = _x(panel, first)
+    return f'x="{x:.1f}" y="{top}" width="{_x(panel, last) - x:.1f}" height="{BAR}"'
+
+
+def _raw(panel: Panel) -> list[str]:
+    """Raw traces below one another, each to its largest value, which stands beside it."""
+    parts = []
+    for place, line in enumerate(panel.raw):
+        middle, half = HEIGHT + STRIP * (place + 0.5), STRIP / 2 - 1
+        most = max(float(np.abs(line.values).max()), 1e-9)
+        starts = np.linspace(0, len(line.values), min(BINS, len(line.values)), endpoint=False).astype(int)
+        ends = np.stack([one.reduceat(line.values, starts) for one in (np.minimum, np.maximum)], axis=1)
+        y = middle - half * ends.ravel() / most
+        x = _x(panel, 100 * np.repeat(starts, 2) / len(line.values))
+        points = " ".join(f"{across:.1f} {down:.1f}" for across, down in zip(x, y, strict=True))
+        parts.append(f'<path class="zero" d="M{LEFT} {middle:.1f}H{panel.width - MARGIN}"/>')
+        parts.append(f'<path class="raw" stroke="{SIDES[line.side].colour}" d="M{points}"/>')
+        for down, words in ((-1, SHORT[line.side]), (8, f"±{number(most, 0)}")):
+            parts.append(f'<text class="sign" x="{LEFT - 3}" y="{middle + down}" text-anchor="end">{words}</text>')
+    return parts
+
+
+def _x(panel: Panel, percent: Any) -> Any:
     return LEFT + percent / 100 * (panel.width - MARGIN - LEFT)
 
 
@@ -224,28 +250,38 @@ def in_rows(panels: Sequence[Panel]) -> list[Panel]:
     return [replace(one, span=2 if k < len(panels) - pairs else 3) for k, one in enumerate(panels)]
 
 
-def contrast_sheet(contrast: Contrast, side: str) -> list[Panel]:
-    """Both sets of cycles of one leg over each other, with bars where they differ."""
+def contrast_sheet(contrast: Contrast) -> list[Panel]:
+    """Both sets of cycles of both legs over each other, with bars where those of a leg differ."""
     found = []
     for variable in _present(contrast.second, KINEMATICS):
-        pair = [reading.legs.get(side) for reading in (contrast.first, contrast.second)]
-        if any(leg is None or variable.name not in leg.cycles for leg in pair):
-            continue
-        first, second = (leg.mean(variable.name) for leg in pair if leg is not None)
-        spans = [one for one in contrast.spans if (one.side, one.variable) == (side, variable.name)]
-        lines = (Line(side, first, "before"), Line(side, second))
-        panel = _panel(contrast.second, variable, lines, "")
-        differs = tuple((one.first, one.last, one.matters) for one in spans)
-        found.append(replace(panel, differs=differs, foot_off=tuple(o for o in panel.foot_off if o[0] == side)))
+        lines, sides = [], []
+        for side, leg in contrast.second.legs.items():
+            before = contrast.first.legs.get(side)
+            if before is not None and variable.name in before.cycles and variable.name in leg.cycles:
+                sides.append(side)
+                lines += [Line(side, before.mean(variable.name), "before"), Line(side, leg.mean(variable.name))]
+        if lines:
+            panel = _panel(contrast.second, variable, tuple(lines), "")
+            spans = [one for one in contrast.spans if one.variable == variable.name]
+            differs = tuple((one.side, one.first, one.last, one.matters) for one in spans)
+            found.append(replace(panel, differs=differs, foot_off=tuple(o for o in panel.foot_off if o[0] in sides)))
     return in_rows(found)
 
 
 def emg_sheet(pooled: PooledCycles) -> list[Panel]:
     """Envelopes in percent of the leg's own peak, a panel for each muscle, over the bar of normal walking.
 
-    Beside the title the number of cycles, above the curves the peak of the mean, of channels in volts.
+    Beside the title the number of cycles, above the curves the peak of the mean, of channels in volts; below the curves
+    the raw EMG of one cycle of each leg, less its mean.
     """
-    feet, curves = pooled.kept["side"].to_numpy(), pooled.curves
+    feet, curves, stored = pooled.kept["side"].to_numpy(), pooled.curves, pooled.raw_emg
+    raw: dict[str, list[Line]] = {}
+    for side in FEET:
+        names = [sideless(one.name) for one in pooled.channels if (one.quantity, one.side) == ("emg", side)]
+        traces = stored[side].T if side in stored else ()
+        for name, trace in zip(names, traces, strict=False):
+            if np.isfinite(trace).all():
+                raw.setdefault(name, []).append(Line(side, trace - trace.mean()))
     muscles: dict[str, list[tuple[Line, int, float]]] = {}  # curve in percent, its cycles, its peak [V]
     for column, channel in enumerate(pooled.channels):
         if channel.quantity != "emg" or not channel.side:
@@ -261,6 +297,12 @@ def emg_sheet(pooled: PooledCycles) -> list[Panel]:
     offs = tuple((side, mean) for side, mean in means.items() if np.isfinite(mean))
     found = []
     for muscle, own in muscles.items():
+        volts = {line.side: peak for line, _, peak in own if np.isfinite(peak)}
+        factor, unit = (1e6, "µV") if max(volts.values(), default=0.0) < AMPLIFIED_V else (1e3, "mV, amplified")
+        peaks = ", ".join(f"{SHORT[side]} {number(factor * volts[side], 0)}" for side in FEET if side in volts)
+        traces = tuple(replace(one, values=factor * one.values) for one in raw.get(muscle, ()) if volts)
+        raw_unit = unit.partition(",")[0]
+        below = f"; below: raw [{raw_unit}]" if traces else ""
         found.append(
             Panel(
                 name=muscle,
@@ -273,23 +315,12 @@ def emg_sheet(pooled: PooledCycles) -> list[Panel]:
                 foot_off=offs,
                 normal=NORMAL.get(muscle.removeprefix("emg_"), ()),
                 axis=(-5.0, 105.0),
-                about=_peak_words({line.side: volts for line, _, volts in own}),
+                about=f"peak {peaks} {unit}{below}" if volts else "",
+                raw=traces,
+                raw_unit=raw_unit,
             )
         )
     return in_rows(found)
-
-
-def _peak_words(volts: dict[str, float]) -> str:
-    """Largest of the mean envelope; what was amplified before it was recorded has no microvolts.
-
-    >>> _peak_words({"r": 0.000085, "l": 0.000102}), _peak_words({"r": 0.085})
-    ('peak L 102, R 85 µV', 'peak R 85 mV, amplified')
-    """
-    known = {side: volts[side] for side in FEET if np.isfinite(volts.get(side, np.nan))}
-    if not known:
-        return ""
-    factor, unit = (1e6, "µV") if max(known.values()) < AMPLIFIED_V else (1e3, "mV, amplified")
-    return f"peak {', '.join(f'{SHORT[side]} {number(factor * one, 0)}' for side, one in known.items())} {unit}"
 
 
 def panel_numbers(panels: list[Panel]) -> pd.DataFrame:
@@ -302,6 +333,16 @@ def panel_numbers(panels: list[Panel]) -> pd.DataFrame:
         if panel.band is not None:
             columns[f"{panel.name}_reference_mean [{panel.unit}]"] = panel.band.mean
             columns[f"{panel.name}_reference_sd [{panel.unit}]"] = panel.band.sd
+    return pd.DataFrame(columns)
+
+
+def raw_numbers(panels: Sequence[Panel]) -> pd.DataFrame:
+    """Raw traces of panels: a column for each, and for each leg one of the percent of its cycle."""
+    columns = {}
+    for panel in panels:
+        for line in panel.raw:
+            columns.setdefault(f"percent_{line.side}", pd.Series(np.linspace(0, 100, len(line.values))))
+            columns[f"{panel.name}_{line.side} [{panel.raw_unit}]"] = pd.Series(line.values)
     return pd.DataFrame(columns)
 
 

@@ -10,17 +10,20 @@ from typing import Any, NamedTuple
 
 from markupsafe import Markup
 
+from gaitdisc._version import __version__
 from gaitdisc.clinic.clinical_reference import ClinicalReading, ClinicalReference, Contrast, PersonSession
-from gaitdisc.clinic.laboratory import ENGLISH, TIERS, PageWords
+from gaitdisc.clinic.page_words import ENGLISH, TEMPLATES, TIERS, PageWords
 from gaitdisc.clinic.panels import (
     MOST_SINGLE,
     Panel,
     contrast_sheet,
     emg_sheet,
     panel_numbers,
+    raw_numbers,
     sheet,
     svg,
 )
+from gaitdisc.clinic.person_pdf import write_person_pdf
 from gaitdisc.clinic.sentences import (
     contrast_sentences,
     laboratory_sentences,
@@ -44,9 +47,8 @@ from gaitdisc.report.table import Table, save_table, save_tables, words_table
 from gaitdisc.saved.provenance import Provenance
 from gaitdisc.saved.study_run import StudyRun
 from gaitdisc.whole_file import write_whole
-from gaitdisc.words import NONE, SIDE_WORDS, counted, number
+from gaitdisc.words import NONE, counted, number
 
-SCRIPT = Path(__file__).parents[1] / "report" / "templates" / "cursor.js"
 MOMENT_SIGNS = (
     "Moments are internal, of the muscles, named after the movement they produce, per kg of body mass; powers are "
     "positive where generated; forces are of the ground on the foot. Only cycles whose whole stance lay on one plate, "
@@ -56,14 +58,16 @@ EMG = (
     "Envelopes in percent of the largest of the leg's own mean. Dark bars: when the muscle is active in the walking of "
     "healthy adults, about (Perry and Burnfield 2010); a muscle without a bar has none there."
 )
+RAW = " Below the envelopes: raw EMG of one cycle of each leg, the one whose envelopes lie nearest to their means."
 CYCLES = (
     f"Means thick, single cycles thin (the first {MOST_SINGLE}). CMC: coefficient of multiple correlation of a leg's "
     f"cycles, L, R (Kadaba 1989), 1 where all are alike; – where there is one cycle or it is not defined."
 )
 CONTRAST = (
-    "Dotted: {}; unbroken or dashed: {}. Bars above: where they differ by a permutation test of the cycles, corrected "
-    "for the whole cycle, all curves and both legs; black where by 5 deg or more."
+    "Dotted: {}; unbroken or dashed: {}. Bars above, in the colour of the leg: where they differ by a permutation test "
+    "of the cycles, corrected for the whole cycle, all curves and both legs; faint where by less than 5 deg."
 )
+LIGHT_MARKS = {"green": "●", "amber": "▲", "red": "■"}
 RANKS = {"red": 0, "amber": 1, "green": 2}
 COLUMNS = ("light", "person", "condition", "cycles", "score", "noted", "why")
 HEADINGS = ("state", "person", "condition", "cycles L, R", "profile score [deg]", "stands out", "why")
@@ -76,11 +80,12 @@ def write_person_page(
     provenance: Provenance,
     folder: Path,
     say: PageWords = ENGLISH,
-) -> Path:
-    """Write `people/<name>.html` and the folder of its numbers; the same bytes for the same numbers."""
+    pdf: bool = False,
+) -> list[Path]:
+    """Write `people/<name>.html`, where wanted the PDF, and the folder of its numbers; the same bytes for the same."""
     beside = folder / "people" / name
     main, *others = person.readings
-    script = SCRIPT.read_text(encoding="utf-8")
+    script = (TEMPLATES / "cursor.js").read_text(encoding="utf-8")
     files = {file: sha256 for reading in person.readings for file, sha256 in reading.pooled.files.items()}
     shown = {
         "say": say,
@@ -90,7 +95,7 @@ def write_person_page(
         "said": laboratory_sentences(person, say),
         "conditions": "; ".join(dict.fromkeys(one.pooled.condition for one in person.readings)),
         "reference": _reference(reference, main.pooled.condition),
-        "created": provenance.created[:10],
+        "computed": f"Computed {provenance.created[:10]} with gaitdisc {__version__}.",
         "main": _condition(main, beside, "", say),
         "others": [_condition(one, beside, f"{one.pooled.condition}-", say) for one in others],
         "first": [_contrast(person.before_after, beside, say)] if person.before_after else [],
@@ -103,7 +108,8 @@ def write_person_page(
         "script": Markup(script),
         "script_hash": f"sha256-{base64.b64encode(hashlib.sha256(script.encode()).digest()).decode()}",
     }
-    return write_whole(folder / "people" / f"{name}.html", page_text("person", shown))
+    page = write_whole(folder / "people" / f"{name}.html", page_text("person", shown))
+    return [page, write_person_pdf(shown, page.with_suffix(".pdf"))] if pdf else [page]
 
 
 class Sheet(NamedTuple):
@@ -122,11 +128,11 @@ def list_sheets(reading: ClinicalReading) -> list[Sheet]:
     if people:
         count = str(people[0]) if people[0] == people[-1] else f"{people[0]} to {people[-1]}"
         bands = f"Bands: mean ± 1 (dark) and ± 2 (light) standard deviations over the legs of {count} controls."
-    kinetics = sheet(reading, MOMENTS, POWERS, FORCES)
+    kinetics, muscles = sheet(reading, MOMENTS, POWERS, FORCES), emg_sheet(reading.pooled)
     return [
         Sheet("kinematics", "Kinematics", sheet(reading, KINEMATICS), f"{bands} {CYCLES}"),
         Sheet("kinetics", "Moments, powers and forces", kinetics, MOMENT_SIGNS),
-        Sheet("emg", "EMG", emg_sheet(reading.pooled), EMG),
+        Sheet("emg", "EMG", muscles, EMG + (RAW if any(one.raw for one in muscles) else "")),
     ]
 
 
@@ -135,6 +141,7 @@ def _condition(reading: ClinicalReading, beside: Path, prefix: str, say: PageWor
     words = {
         "where": reading.pooled.where,
         "light": reading.light,
+        "mark": LIGHT_MARKS[reading.light],
         "red": not reading.legs,
         "reasons": reading.reasons,
         "quality": quality_sentence(reading),
@@ -146,6 +153,9 @@ def _condition(reading: ClinicalReading, beside: Path, prefix: str, say: PageWor
         return words
     profile, sheets = profile_table(reading), list_sheets(reading)
     save_table(panel_numbers(sheets[0].panels), beside / f"{stem}cycles.csv")
+    raw = raw_numbers(sheets[-1].panels)
+    if len(raw):
+        save_table(raw, beside / f"{stem}emg_raw.csv")
     return {
         **words,
         **{one.name: _sheet(one.panels, one.caption, beside, f"{stem}{one.name}", say) for one in sheets},
@@ -172,15 +182,10 @@ def _save(table: Table, beside: Path, stem: str, say: PageWords) -> Table:
 def _contrast(contrast: Contrast, beside: Path, say: PageWords) -> dict[str, Any]:
     first, second = contrast.first.pooled.where, contrast.second.pooled.where
     stem = next(iter(file_names([f"{first}-{second}"]).values()))
-    sheets = []
-    for side in contrast.second.legs:
-        panels = contrast_sheet(contrast, side)
-        if panels:
-            one = _sheet(panels, CONTRAST.format(first, second), beside, f"{stem}-{SIDE_WORDS[side]}", say)
-            sheets.append({**one, "heading": say(SIDE_WORDS[side]).capitalize()})
+    curves = _sheet(contrast_sheet(contrast), CONTRAST.format(first, second), beside, f"{stem}-curves", say)
     changes = _save(change_table(contrast), beside, f"{stem}-", say)
     words = {"heading": f"{first} and {second}", "sentences": contrast_sentences(contrast)}
-    return {**words, "sheets": sheets, "changes": changes}
+    return {**words, "curves": curves, "changes": changes}
 
 
 def _reference(reference: ClinicalReference | None, condition: str) -> str:
@@ -197,7 +202,7 @@ def _method(person: PersonSession) -> list[str]:
     found = []
     for reading in person.readings:
         pooled = reading.pooled
-        by = ", ".join(f"{name} ({count} trials)" for name, count in pooled.detectors.items())
+        by = ", ".join(f"{name} ({counted(count, 'trial')})" for name, count in pooled.detectors.items())
         moved = pooled.contact_offset_s
         words = f", moved by {1000 * moved:+.0f} ms after {pooled.offset_steps} steps that a plate saw" if moved else ""
         found.append(f"{pooled.where}: contacts by {by or 'nothing'}{words}.")

@@ -27,7 +27,7 @@ from gaitdisc.processing.leg_curves import BY_NAME, FEET, KINEMATICS, PELVIS, PR
 from gaitdisc.processing.pooled_cycles import PooledCycles
 from gaitdisc.recording import Finding
 from gaitdisc.statistics.cluster_test import PermutationPlan, two_sample_test
-from gaitdisc.words import SIDE_WORDS
+from gaitdisc.words import SIDE_WORDS, label
 
 NO_REFERENCE = "there is no reference: gaitdisc reference makes one of the laboratory's own controls"
 NO_CYCLE = "no cycle is kept"
@@ -37,6 +37,7 @@ FEWEST_PEOPLE = 30  # twice the features; below it directions are those of singl
 FEWEST = 2  # people without whom the reference has no spread of its own
 ALPHA = 0.05 / len(FEET)  # both legs are tested
 MATTERS = {"deg": 5.0, "N m/kg": 0.1, "W/kg": 0.5}  # degrees: McGinley et al. 2009
+FEWEST_CYCLES = 6  # of each of two that are compared: with fewer no result can be significant
 PLAN = PermutationPlan(alpha=ALPHA)
 
 
@@ -125,8 +126,10 @@ def choose_light(pooled: PooledCycles, legs: dict[str, LegCurves]) -> tuple[str,
     # lost in every trial: never plugged in, which is no fault
     partly = [name for name, own in lost.items() if len({one.file for one in own}) < pooled.trials]
     if loose := [name for name in partly if name.startswith("emg_")]:
-        reasons.append(f"EMG lost in some trials, {', '.join(loose)}: fasten the electrodes")
-    reasons += [f"{name} left out: {_remedy(own[0])}" for name, own in lost.items() if not name.startswith("emg_")]
+        muscles = "; ".join(label(name).removeprefix("EMG ") for name in loose)
+        reasons.append(f"EMG lost in some trials, {muscles}: fasten the electrodes")
+    others = [(name, own[0]) for name, own in lost.items() if not name.startswith("emg_")]
+    reasons += [f"left out, {label(name)}: {_remedy(first)}" for name, first in others]
     kinds = {one.kind: one for one in reversed(pooled.findings) if one.severity == "warning"}
     reasons += [f"{kind}: {_remedy(one)}" for kind, one in reversed(kinds.items())]
     return ("amber" if reasons else "green"), tuple(reasons)
@@ -135,7 +138,7 @@ def choose_light(pooled: PooledCycles, legs: dict[str, LegCurves]) -> tuple[str,
 def _remedy(one: Finding) -> str:
     """What to do: what a finding ends with, or where to look."""
     _, there, remedy = one.spoils.rpartition("; ")
-    where = f" of {one.channel}" if one.channel else ""
+    where = f" of {label(one.channel)}" if one.channel else ""
     return remedy if there else f"look at the curves{where} before you use {one.spoils or 'them'}"
 
 
@@ -270,7 +273,11 @@ def contrast(first: ClinicalReading, second: ClinicalReading) -> Contrast:
     tested: dict[str, int] = {}
     for side in FEET:
         if side not in first.legs or side not in second.legs:
-            untested[side] = "one of the two has no cycle of this leg"
+            untested[side] = "one of the two has no cycle of this leg."
+            continue
+        counts = [one.legs[side].count for one in (first, second)]
+        if min(counts) < FEWEST_CYCLES:
+            untested[side] = f"a test needs {FEWEST_CYCLES} cycles of each; there are {counts[0]} and {counts[1]}."
             continue
         try:
             found, tested[side] = _spans(first.legs[side], second.legs[side])

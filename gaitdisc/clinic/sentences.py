@@ -16,7 +16,7 @@ from gaitdisc.clinic.clinical_reference import (
     PersonSession,
     Score,
 )
-from gaitdisc.clinic.laboratory import ENGLISH, TIERS, PageWords
+from gaitdisc.clinic.page_words import ENGLISH, TIERS, PageWords
 from gaitdisc.clinic.values import MARKS
 from gaitdisc.processing.leg_curves import BY_NAME, FEET
 from gaitdisc.words import SIDE_WORDS, counted, number, p_words, unit_text
@@ -69,10 +69,9 @@ def outstanding_sentences(reading: ClinicalReading, say: Callable[[str], str] = 
     tiers = {f"{MARKS[tier]} {say(words)}": write_noted(reading.noted, tier, say) for tier, words in TIERS.items()}
     found = {words: sentences for words, sentences in tiers.items() if sentences}
     rest = []
-    if not found:
-        rest.append(
-            say("None of {} values lies outside 2 standard deviations of the reference.").format(len(reading.numbers))
-        )
+    enough = sum(one.cycles >= FEW for one in reading.numbers)
+    if enough and not found:
+        rest.append(say("None of {} values lies outside 2 standard deviations of the reference.").format(enough))
     few = [f"{leg.count} {say(SIDE_WORDS[side])}" for side, leg in reading.legs.items() if leg.count < FEW]
     if few:
         rest.append(say("A sentence needs {} cycles of a leg; there are {}.").format(FEW, ", ".join(few)))
@@ -99,8 +98,8 @@ def quality_sentence(reading: ClinicalReading) -> str:
     gone = len({refusal.condition for refusal in pooled.refusals})
     out += f", {counted(gone, 'trial')} left out" if gone else ""
     ground = "over ground" if pooled.over_ground else "on a treadmill"
-    why = f": {'; '.join(reading.reasons)}" if reading.reasons else ""
-    return f"{counts} cycles of {counted(pooled.trials, 'trial')} {ground}{plates}{out}. {reading.light}{why}."
+    why = f" Why {reading.light}: {'; '.join(reading.reasons)}." if reading.reasons and reading.legs else ""
+    return f"{counts} cycles of {counted(pooled.trials, 'trial')} {ground}{plates}{out}.{why}"
 
 
 def score_words(score: Score) -> str:
@@ -157,14 +156,14 @@ def contrast_sentences(contrast: Contrast) -> list[str]:
     first, second = contrast.first.pooled.where, contrast.second.pooled.where
     found = []
     for side, why in contrast.untested.items():
-        found.append(f"{SIDE_WORDS[side].capitalize()}: not tested. {why}")
+        found.append(f"{SIDE_WORDS[side].capitalize()}: not tested; {why}")
     spans = sorted((one for one in contrast.spans if one.matters), key=lambda one: -abs(one.difference))
     found += [_span(one, contrast) for one in spans[:MOST_SPANS]]
     small = len(contrast.spans) - len(spans)
     if contrast.tested and not spans:
         sides = " and ".join(SIDE_WORDS[side] for side in contrast.tested)
         found.append(
-            f"{sides.capitalize()}: no part of the cycle differs by 5 deg or more between {first} and {second}."
+            f"{sides.capitalize()}: no part of the cycle differs by 5 deg or more between ‘{first}’ and ‘{second}’."
         )
     if small:
         found.append(f"{counted(small, 'stretch').replace('stretchs', 'stretches')} differ by less than 5 deg.")
@@ -178,6 +177,6 @@ def _span(one: DifferingSpan, contrast: Contrast) -> str:
     amount = f"{number(abs(one.difference), 0)} {variable.unit} {more} ({variable.up})"
     return (
         f"{variable.words.capitalize()}, {SIDE_WORDS[one.side]}: {amount} in"
-        f" {contrast.second.pooled.where} than in {contrast.first.pooled.where}, at {one.first} to "
+        f" ‘{contrast.second.pooled.where}’ than in ‘{contrast.first.pooled.where}’, at {one.first} to "
         f"{one.last} % of the cycle; {p_words(one.p)}, {counts[0]} and {counts[1]} cycles."
     )

@@ -64,10 +64,10 @@ def numbers_table(reading: ClinicalReading) -> Table:
     for one in reading.numbers:
         unit, limits = unit_text(one.unit), one.limits
         rows.append((
-            one.rule, SIDE_WORDS[one.side], f"{number(one.value, one.digits)} {unit}",
+            one.rule, SIDE_WORDS[one.side], f"{number(one.value, one.digits)} {unit} ({one.cycles})",
             f"{number(limits.low, one.digits)} to {number(limits.high, one.digits)}",
-            f"{number(limits.mean, one.digits)} ± {number(limits.sd, max(one.digits, 1))}", str(limits.people),
-            str(one.cycles), f"{MARKS[one.tier]} {one.words}".strip(),
+            f"{number(limits.mean, one.digits)} ± {number(limits.sd, max(one.digits, 1))} ({limits.people})",
+            f"{MARKS[one.tier]} {one.words}".strip(),
         ))  # fmt: skip
         records.append({
             "rule": one.rule, "words": one.words, "side": one.side, "value": one.value, "unit": one.unit,
@@ -77,9 +77,9 @@ def numbers_table(reading: ClinicalReading) -> Table:
     caption = (
         f"All values that the rules look at, n = {len(rows)}; {len(reading.noted)} stand out: □ outside 2 standard "
         f"deviations, ■ beyond the limits, within which all values of one more healthy person lie with probability "
-        f"0.95. Reference: at this person's speed where it follows the speed."
+        f"0.95. In brackets: cycles; controls. Reference: at this person's speed where it follows the speed."
     )
-    columns = ("value of", "side", "value", "limits", "reference", "people", "cycles", "stands out")
+    columns = ("value of", "side", "value", "limits", "reference", "stands out")
     return Table("outstanding", caption, columns, tuple(rows), pd.DataFrame(records))
 
 

@@ -59,14 +59,16 @@ def _clinic(folder: Path, jobs: int) -> None:
     from gaitdisc.clinic.clinical_reference import save_reference
     from gaitdisc.clinic.demonstration import write_week
     from gaitdisc.clinic.reference import make_reference
-    from gaitdisc.commands.clinic_pages import keep_reference, write_people
+    from gaitdisc.clinic.run_pages import keep_reference, write_people
     from gaitdisc.own_files import claim_folder
     from gaitdisc.run.run_study import run_study
     from gaitdisc.run.workers import Workers
     from gaitdisc.saved.study_run import claim_run
 
-    claim_folder(folder, "planted.json", "reference", "controls", "controls/study.toml", "week", "week/study.toml")
-    for part in ("controls", "week"):
+    parts = ("controls", "week")
+    files = [f"{part}/study.toml" for part in parts]
+    claim_folder(folder, "planted.json", "reference", *parts, *files, "week/clinic.toml")
+    for part in parts:
         claim_run(folder / part / "run")
     typer.echo("20 controls and 8 patients, one of them a child, walk 16 s each (simulated).")
     controls, week, planted = write_week(folder, progress=lambda who: LOG.info(f"  {who}"))

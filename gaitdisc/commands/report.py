@@ -7,14 +7,6 @@ from typing import Annotated
 
 import typer
 
-from gaitdisc.commands.clinic_pages import (
-    keep_reference,
-    keep_words,
-    page_of_run,
-    write_english,
-    write_people,
-    write_person,
-)
 from gaitdisc.errors import SchemaError
 
 
@@ -35,6 +27,7 @@ def report(
     ] = "",
 ) -> None:
     """Draw the page of a saved result again, without fitting; for a run also those of modalities and sensitivity."""
+    from gaitdisc.clinic.run_pages import keep_words, write_english
     from gaitdisc.own_files import claim_folder
     from gaitdisc.report.saved_page import draw_saved
 
@@ -65,6 +58,7 @@ def _people(
     run_folder: Path, named: bool, person: str, before: str, after: str, reference: Path | None, pdf: bool
 ) -> None:
     """Draw pages of a run's people again: all, those of one person, or two sessions or conditions of one."""
+    from gaitdisc.clinic.run_pages import keep_reference, page_of_run, write_people, write_person
     from gaitdisc.report.saved_page import draw_beside
     from gaitdisc.response.participant_response import RUN, load_run
 

@@ -7,7 +7,6 @@ from typing import Annotated
 
 import typer
 
-from gaitdisc.commands.clinic_pages import keep_reference
 from gaitdisc.commands.options import Cluster, Jobs, Quiet, RunPlace, StudyPlace
 from gaitdisc.commands.run_report import claim_run, report_on
 
@@ -22,6 +21,7 @@ def run(
     quiet: Quiet = False,
 ) -> None:
     """Process, fit, test and report; finished parts of an earlier run are kept."""
+    from gaitdisc.clinic.run_pages import keep_reference
     from gaitdisc.run.run_study import run_study
     from gaitdisc.run.workers import Workers
 

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, TypeVar
 
 import typer
 
-from gaitdisc.commands.clinic_pages import page_of_run, say_new_recordings
+from gaitdisc.commands.clinic_pages import say_new_recordings
 from gaitdisc.commands.options import REFUSED, SOME_REFUSED, STOPPED
 from gaitdisc.errors import LOG
 
@@ -38,6 +38,8 @@ def claim_run(place: Path, out: Path | None) -> tuple[Study, Path]:
 
 def report_on(work: Callable[[StudyProgress], ResponseRun], study: Study, folder: Path, quiet: bool) -> None:
     """Do the work with its progress shown, draw the report, and say who was refused."""
+    from gaitdisc.clinic.run_pages import page_of_run
+
     started = time.perf_counter()
     done = work_with_bar(work, [person.id for person in study.participants], quiet)
     say_renewed(done.renewed)

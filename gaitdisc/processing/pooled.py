@@ -21,6 +21,7 @@ from gaitdisc.kinetics.plate_steps import PlateStep
 from gaitdisc.processing.contact_choice import SEEN_LATE, offset_finding
 from gaitdisc.processing.pooled_cycles import CYCLE_COLUMNS, PooledCycles
 from gaitdisc.processing.process import knees_and_hips, quality_findings
+from gaitdisc.processing.raw_emg import choose_typical, find_raw_emg
 from gaitdisc.processing.side_checks import side_findings
 from gaitdisc.processing.standing import Read, Standing, find_standing
 from gaitdisc.processing.step_events import StepEvents, over_ground, step_events, walking_part
@@ -65,6 +66,7 @@ class _Seen:
     states: tuple[Shelved, ...]
     findings: tuple[Finding, ...]
     files: dict[str, str]
+    raw_emg: Shelved | None
     plate_steps: tuple[PlateStep, ...] | None = None  # where moments were computed from markers
 
 
@@ -157,7 +159,9 @@ def _show_trial(standing: Standing, planned: PlannedTrial, number: int, read: Tr
     plates = plate_loadings(trial, find_rise(weight_n))
     feet = None if any(one.kind == "exchanged heels" for one in steps.findings) else heel_paths(trial, direction)
     kept = tuple(put_away(one, folder) for one in states)
-    return _Seen(planned, number, steps, outside, plates, feet, legs, kept, findings, files, plate_steps)
+    raw = find_raw_emg(trial, states)
+    raw_emg = None if raw is None else put_away(raw, folder)
+    return _Seen(planned, number, steps, outside, plates, feet, legs, kept, findings, files, raw_emg, plate_steps)
 
 
 def _verify(trial: Trial, found: Mapping[str, Strides], outside: bool) -> None:
@@ -196,6 +200,7 @@ def _pool(
     ]
     table = pd.DataFrame(rows, columns=pd.Index(CYCLE_COLUMNS))
     channels, curves = ((), np.empty((0, len(PERCENT), 0))) if too_few else _curves(seen, checked)
+    raw_emg = {} if too_few else _raw_emg(seen, checked, channels, curves)
     late = next((trial.steps.detector for trial in seen if trial.steps.detector in SEEN_LATE), "")
     off_late = next((trial.steps.off_detector for trial in seen), "")
     offset_s, steps = _offset_s(later, "contacts", late), len(later.get(("contacts", late), ()))
@@ -224,6 +229,7 @@ def _pool(
         files={file: sha for trial in seen for file, sha in trial.files.items()},
         leg_m=next((leg_m for trial in seen if (leg_m := standing.leg_m(trial.planned)) is not None), None),
         age_years=participant.age_years,
+        raw_emg=raw_emg,
     )
 
 
@@ -309,6 +315,25 @@ def _curves(seen: Sequence[_Seen], cycles: Sequence[list[Cycle]]) -> tuple[tuple
                 whole[place][:, columns] = values
         row += len(own)
     return tuple(by_name.values()), whole
+
+
+def _raw_emg(
+    seen: Sequence[_Seen], cycles: Sequence[list[Cycle]], channels: Sequence[Channel], curves: Values
+) -> dict[str, Values]:
+    """Raw EMG of each leg's most typical cycle (sample, channel of that leg), from contact to contact."""
+    kept = [(trial, one) for trial, own in zip(seen, cycles, strict=True) for one in own if not one.reason]
+    sides, found = pd.DataFrame({"side": [one.side for _, one in kept]}), {}
+    for side in "lr":
+        row = choose_typical(curves, sides, channels, side)
+        trial, cycle = kept[row] if row is not None else (None, None)
+        if trial is None or cycle is None or trial.raw_emg is None:
+            continue
+        raw = trial.raw_emg.recording()
+        names = [one.name for one in channels if one.quantity == "emg" and one.side == side]
+        if set(names) <= set(raw.names):
+            first, last = np.searchsorted(raw.time, (cycle.start, cycle.end))
+            found[side] = raw.selected(names).values[first : last + 1]
+    return found
 
 
 @dataclass(frozen=True, eq=False)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from operator import itemgetter
 
 import numpy as np
@@ -13,7 +13,7 @@ from gaitdisc.channel import Channel
 from gaitdisc.errors import ShapeError
 from gaitdisc.recording import PERCENT, Finding
 from gaitdisc.recording.arrays import Values, read_only
-from gaitdisc.saved.kind import CSV, Kind, Saved
+from gaitdisc.saved.kind import CSV, Kind, Saved, pick_arrays
 from gaitdisc.saved.provenance import Refusal
 from gaitdisc.saved.unit_folder import lies_on_disk, may_lie_on_disk, unit_name
 
@@ -44,10 +44,11 @@ CYCLE_COLUMNS = (
     "speed_m_per_s",
 )
 SPATIOTEMPORAL = CYCLE_COLUMNS[CYCLE_COLUMNS.index("stride_s") :]
+RAW = "raw_emg_"  # arrays, by side
 STRIDE_COLUMNS = ("side", "start_s", "end_s", "kept", "reason")
 
 
-@may_lie_on_disk("curves")
+@may_lie_on_disk("curves", "raw_emg")
 @dataclass(frozen=True, eq=False)
 class PooledCycles(Saved, file="cycles.json"):
     """Cycles of one person in one session under one condition.
@@ -84,6 +85,9 @@ class PooledCycles(Saved, file="cycles.json"):
         Leg length, measured or estimated from the stature [m]; None if both are unknown.
     age_years : int, optional
         Whole years.
+    raw_emg : mapping of str to ndarray (sample, channel) [channel's unit], optional
+        Side -> raw EMG of the cycle whose envelopes lie nearest to their means, from contact to contact; its channels
+        are the leg's EMG channels of `channels`, in this order. Empty where the files have envelopes.
 
     Raises
     ------
@@ -109,6 +113,7 @@ class PooledCycles(Saved, file="cycles.json"):
     files: Mapping[str, str]
     leg_m: float | None = None
     age_years: int | None = None
+    raw_emg: Mapping[str, Values] = field(default_factory=dict)
 
     def __post_init__(self) -> None:
         """Check shapes once, before they are saved."""
@@ -208,8 +213,8 @@ CYCLES = Kind(
     ("subject", "group", "session", "condition", "trials", "detectors", "contact_offset_s", "foot_off_offset_s",
      "offset_steps", "over_ground", "channels", "findings", "refusals", "files", "leg_m", "age_years"),
     {"cycles": CSV("cycles.csv", CYCLE_COLUMNS)},
-    {"curves": itemgetter("curves")},
-    lambda cycles: {"curves": cycles.curves},
+    {"curves": itemgetter("curves"), "raw_emg": lambda arrays: pick_arrays(arrays, RAW)},
+    lambda cycles: {"curves": cycles.curves, **{f"{RAW}{side}": raw for side, raw in cycles.raw_emg.items()}},
     flags=("kinetic", "kept"),
     blank=("reason", "foot_off_by"),
     unit=lambda cycles: cycles_name(cycles.subject, cycles.session, cycles.condition),

@@ -50,7 +50,8 @@ def test_the_light_says_why():
     few = read_beside(made_person(each=2, findings=found, refusals=gone), None)
     assert few.light == "amber" and len(few.reasons) == 5
     assert says(few.reasons[0], "few cycles", "2 left, 2 right", "1 trial is left out", "3")
-    assert says(few.reasons[1], "EMG", "emg_ta_l", "electrodes") and says(few.reasons[2], "knee_angle_l left out")
+    assert says(few.reasons[1], "EMG", "tibialis anterior, left", "electrodes")
+    assert says(few.reasons[2], "left out, knee angle, left")
     assert few.reasons[3:] == ("gap: look at the curves before you use angles", "body weight: weigh again")
     enough = read_beside(made_person(each=3, findings=dead, refusals=gone), None)  # never plugged in, one trial bad
     assert (enough.light, enough.reasons) == ("green", ())
@@ -169,4 +170,4 @@ def test_where_the_knee_bends_more_after_is_found_and_nothing_on_the_other_side(
 def test_few_cycles_are_not_tested_and_the_reason_is_said():
     found = contrast(_reading("before", each=2), _reading("after", each=2))
     assert found.spans == () and found.tested == {}
-    assert says(found.untested["l"], "6 units", "2")
+    assert says(found.untested["l"], "6 cycles", "2 and 2")

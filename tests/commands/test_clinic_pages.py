@@ -16,7 +16,8 @@ from made_clinic import SOURCE, made_controls, made_person, made_run, published_
 from texts import says
 
 from gaitdisc.clinic.clinical_reference import load_reference, save_reference
-from gaitdisc.commands.clinic_pages import keep_reference, load_kept_reference, say_new_recordings, write_people
+from gaitdisc.clinic.run_pages import keep_reference, load_kept_reference, write_people
+from gaitdisc.commands.clinic_pages import say_new_recordings
 from gaitdisc.errors import WriteError
 from gaitdisc.ingest.study import Conditions, Participant, PlannedTrial, Study
 from gaitdisc.response.participant_response import load_run
@@ -25,9 +26,9 @@ from gaitdisc.whole_file import PART
 
 
 def test_a_person_whose_page_fails_costs_nobody_else(tmp_path):
-    from gaitdisc.clinic import person_page
+    from gaitdisc.clinic import run_pages
 
-    real = person_page.write_person_page
+    real = run_pages.write_person_page
 
     def failing(person, *others):
         if person.title == "P02":
@@ -35,7 +36,7 @@ def test_a_person_whose_page_fails_costs_nobody_else(tmp_path):
         return real(person, *others)
 
     run = made_run(made_person("P01"), made_person("P02"), refusals=(Refusal("P03", "", "unread"),))
-    with patch.object(person_page, "write_person_page", failing):
+    with patch.object(run_pages, "write_person_page", failing):
         index = write_people(run, tmp_path)
     text = index.read_text(encoding="utf-8")
     assert index == tmp_path / "report" / "index.html"
@@ -122,9 +123,8 @@ KILLS = 12
 SERVER = """
 import os, sys
 from pathlib import Path
-import gaitdisc.clinic.person_pdf, gaitdisc.clinic.person_page, gaitdisc.clinic.reading
-import matplotlib.backends.backend_pdf
-from gaitdisc.commands.clinic_pages import write_people
+import gaitdisc.clinic.person_page, gaitdisc.clinic.reading
+from gaitdisc.clinic.run_pages import write_people
 from gaitdisc.response.participant_response import load_run
 for line in sys.stdin:
     count, folder = line.split(maxsplit=1)
@@ -230,3 +230,15 @@ def test_pages_drawn_by_killed_and_by_eight_processes_are_whole(saved, server, t
     assert kills == KILLS
     codes, _ = server(tmp_path / "killed", 8)
     assert codes == [0] * 8 and pages(tmp_path / "killed") == whole
+
+
+def test_without_typst_pages_stand_and_one_sentence_names_the_extra(called, run_folder, monkeypatch, caplog):
+    monkeypatch.setitem(sys.modules, "typst", None)
+    refused = called("report", run_folder, "--pdf", ends=1)
+    assert says(refused.stderr, "PDF requires", "typst", "not installed", "pip install 'gaitdisc[pdf]'")
+    (run_folder / "clinic.toml").write_text("pdf = true\n", encoding="utf-8")
+    write_people(load_run(run_folder), run_folder)
+    assert [text for text in caplog.messages if "gaitdisc[pdf]" in text] == [
+        "Pages are written without PDF: PDF requires the package typst. Install it: pip install 'gaitdisc[pdf]'."
+    ]
+    assert {path.suffix for path in (run_folder / "report" / "people").glob("P1*")} == {"", ".html"}

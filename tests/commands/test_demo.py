@@ -25,3 +25,4 @@ def test_a_made_week_becomes_pages_that_find_what_was_planted(called, tmp_path):
     index = (people.parent / "index.html").read_text(encoding="utf-8")
     assert index.index("P06") < index.index("P01<") and "Planted: P02 stiff knee left" in index
     assert "P08 child" in index
+    assert {path.stem for path in people.glob("*.pdf")} == set(pages)  # clinic.toml of the week says pdf = true

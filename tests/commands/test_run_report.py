@@ -3,7 +3,7 @@ import typer
 from made_clinic import made_controls, made_person, made_run
 
 from gaitdisc.clinic.clinical_reference import save_reference
-from gaitdisc.commands.clinic_pages import keep_reference
+from gaitdisc.clinic.run_pages import keep_reference
 from gaitdisc.commands.options import STOPPED
 from gaitdisc.commands.run_report import report_on
 from gaitdisc.ingest.study_file import load_study

@@ -13,6 +13,7 @@ from gaitdisc.ingest.c3d import C3DReader
 from gaitdisc.ingest.reading import read_planned_trial
 from gaitdisc.ingest.study import Conditions, Participant, PlannedTrial, Quality, StrideRules, Study, Treadmill
 from gaitdisc.processing.pooled import can_pool, pool_cycles, put_away
+from gaitdisc.processing.pooled_cycles import CYCLES
 from gaitdisc.recording import Event, Recording, Source, Trial
 
 
@@ -53,6 +54,21 @@ def test_cycles_of_short_trials_are_those_of_each_trial_and_none_crosses(pieces)
         assert rows["start_s"].min() >= piece.time[0] - 0.01 and rows["end_s"].max() <= piece.time[-1] + 0.01
     assert found.kept["stride_s"].median() == pytest.approx(1.1, abs=0.03)
     assert found.kept["kinetic"].all()
+
+
+def test_raw_emg_of_one_cycle_of_each_leg_is_kept_and_saved(pieces, tmp_path):
+    study, person = _study(_planned(8), **OVERGROUND)
+    (found,) = pool_cycles(study, person, lambda planned: pieces[int(planned.files[0][0])])
+    assert set(found.raw_emg) == {"l", "r"}
+    CYCLES.save(found, tmp_path)
+    for side, raw in CYCLES.load(tmp_path).raw_emg.items():
+        muscles = [one.name for one in found.channels if (one.quantity, one.side) == ("emg", side)]
+        stretches = []
+        for row in found.kept[found.kept["side"] == side].itertuples():
+            recorded = pieces[row.trial - 1].stream("emg").selected(muscles)
+            first, last = np.searchsorted(recorded.time, (row.start_s, row.end_s))
+            stretches.append(recorded.values[first : last + 1])
+        assert muscles and sum(np.array_equal(raw, one) for one in stretches) == 1
 
 
 def test_a_child_s_foot_is_on_the_ground_at_its_own_weight():

@@ -1,6 +1,6 @@
 "use strict";
 // One cursor over all panels: the percent under the pointer, and every curve's value there.
-const LEFT = 34, MARGIN = 4, TOP = 15, BOTTOM = 150;
+const LEFT = 34, MARGIN = 4, TOP = 15, BOTTOM = 138;
 const panels = [...document.querySelectorAll("figure.panel")].map(figure => {
   const svg = figure.querySelector("svg");
   const width = svg.viewBox.baseVal.width, right = width - MARGIN;

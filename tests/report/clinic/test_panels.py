@@ -7,7 +7,7 @@ from made_clinic import made_controls, made_person
 from texts import says
 
 from gaitdisc.clinic.clinical_reference import Band
-from gaitdisc.clinic.laboratory import PageWords
+from gaitdisc.clinic.page_words import PageWords
 from gaitdisc.clinic.panels import (
     BOTTOM,
     LEFT,
@@ -19,6 +19,7 @@ from gaitdisc.clinic.panels import (
     emg_sheet,
     in_rows,
     panel_numbers,
+    raw_numbers,
     sheet,
     svg,
     ticks,
@@ -74,7 +75,7 @@ def test_ticks_are_few_and_inside(low, high):
 
 
 def test_bars_of_a_muscle_and_of_a_difference():
-    root = ET.fromstring(svg(_panel(normal=((0, 12), (56, 100)), differs=((10, 20, True), (40, 50, False)))))
+    root = ET.fromstring(svg(_panel(normal=((0, 12), (56, 100)), differs=(("l", 10, 20, True), ("r", 40, 50, False)))))
     kinds = [one.attrib.get("class") for one in root.iter() if one.tag == "rect"]
     assert kinds == ["normal", "normal", "matters", "small"]
 
@@ -145,6 +146,20 @@ def test_emg_is_in_percent_of_its_own_peak_over_the_normal_bar():
     assert (panel.note, panel.signs) == ("L 4, R 4", "peak L 220, R 220 µV")
 
 
+def test_raw_emg_lies_below_its_envelope_in_microvolts():
+    raw = {side: 1e-4 * np.sin(np.arange(1200.0))[:, None] + 0.003 for side in "lr"}
+    (panel,) = emg_sheet(made_person(raw_emg=raw))
+    assert panel.signs == "peak L 220, R 220 µV; below: raw [µV]"
+    np.testing.assert_allclose(panel.raw[0].values, 1e6 * (raw["l"] - raw["l"].mean())[:, 0])
+    root = ET.fromstring(svg(panel))
+    paths = [one.attrib["d"] for one in root.iter() if one.attrib.get("class") == "raw"]
+    x, y = np.array(re.findall(r"[\d.]+", paths[1]), float).reshape(-1, 2).T
+    assert (x.min(), x.max()) == pytest.approx((LEFT, panel.width - MARGIN), abs=1.0)
+    assert np.ptp(y) == pytest.approx(28.0, abs=0.5) and y.min() > BOTTOM + 20
+    assert "±100" in [one.text for one in root.iter()]
+    assert list(raw_numbers([panel])) == ["percent_l", "emg_ta_l [µV]", "percent_r", "emg_ta_r [µV]"]
+
+
 def test_numbers_drawn_are_a_table_of_101_rows(reading):
     numbers = panel_numbers(sheet(reading, KINEMATICS))
     assert len(numbers) == 101
@@ -154,6 +169,5 @@ def test_numbers_drawn_are_a_table_of_101_rows(reading):
 
 def test_two_sets_of_cycles_lie_over_each_other(reading):
     other = read_beside(made_person(session="after", changed={"knee_angle_l": 9.0}), None)
-    panels = contrast_sheet(contrast(reading, other), "l")
-    assert [line.look for line in panels[0].lines] == ["before", "mean"]
-    assert all(line.side == "l" for panel in panels for line in panel.lines)
+    panels = contrast_sheet(contrast(reading, other))
+    assert [(line.side, line.look) for line in panels[0].lines] == [(s, w) for s in "lr" for w in ("before", "mean")]

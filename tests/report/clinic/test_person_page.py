@@ -4,19 +4,16 @@ import base64
 import hashlib
 import re
 
-import numpy as np
 import pandas as pd
 import pytest
 from made_clinic import PROVENANCE, made_controls, made_person, made_run
 from texts import says
 
 from gaitdisc.clinic.clinical_reference import PersonSession
-from gaitdisc.clinic.laboratory import Laboratory, PageWords
-from gaitdisc.clinic.panels import Panel, sheet
+from gaitdisc.clinic.laboratory import Laboratory
+from gaitdisc.clinic.page_words import ENGLISH, PageWords
 from gaitdisc.clinic.person_page import index_rows, write_index, write_person_page
-from gaitdisc.clinic.person_pdf import draw_panel, write_person_pdf
 from gaitdisc.clinic.reading import contrast, read_beside
-from gaitdisc.processing.leg_curves import KINEMATICS
 from gaitdisc.recording import PERCENT
 from gaitdisc.report.figure import file_names
 from gaitdisc.saved.provenance import Refusal
@@ -26,7 +23,16 @@ REFERENCE = made_controls(6)
 
 def _page(tmp_path, *people, title="P01", contrasts=()):
     session = PersonSession(title, tuple(read_beside(one, REFERENCE) for one in people), contrasts)
-    return write_person_page(session, file_names([title])[title], REFERENCE, PROVENANCE, tmp_path)
+    return write_person_page(session, file_names([title])[title], REFERENCE, PROVENANCE, tmp_path)[0]
+
+
+def _pdf(tmp_path, session, say=ENGLISH):
+    pytest.importorskip("typst")
+    return write_person_page(session, "P01", REFERENCE, PROVENANCE, tmp_path, say, pdf=True)[1].read_bytes()
+
+
+def _count_sheets(content):
+    return len(re.findall(rb"/Type */Page\b", content))
 
 
 @pytest.fixture(scope="module")
@@ -97,31 +103,19 @@ def reading():
     return read_beside(made_person(), made_controls(6))
 
 
-def test_a_person_is_two_pages_of_pdf_with_the_same_bytes_again(reading, tmp_path):
+def test_a_person_is_two_sheets_of_pdf_with_the_same_bytes_again(reading, tmp_path):
     person = PersonSession("P01", (reading,))
-    first = write_person_pdf(person, PROVENANCE, tmp_path / "a.pdf").read_bytes()
-    assert first[:5] == b"%PDF-"
-    assert first.count(b"/Type /Page ") == 2
-    assert write_person_pdf(person, PROVENANCE, tmp_path / "b.pdf").read_bytes() == first
-    assert sorted(path.name for path in tmp_path.iterdir()) == ["a.pdf", "b.pdf"]
-
-
-def test_a_panel_has_the_very_curves(reading):
-    from matplotlib.figure import Figure
-
-    panel: Panel = next(one for one in sheet(reading, KINEMATICS) if one.name == "knee_flexion")
-    axes = Figure().add_axes((0, 0, 1, 1))
-    draw_panel(axes, panel)
-    drawn = [line.get_ydata() for line in axes.lines if len(line.get_ydata()) == 101]
-    np.testing.assert_array_equal(drawn[9], reading.legs["l"].mean("knee_flexion"))
-    assert axes.get_title(loc="left").splitlines() == [f"knee flexion [deg]  {panel.note}", "↑ flexion   ↓ extension"]
+    first = _pdf(tmp_path, person)
+    assert first[:5] == b"%PDF-" and b"FontFile2" in first
+    assert _count_sheets(first) == 2
+    assert _pdf(tmp_path, person) == first
+    assert sorted(path.name for path in (tmp_path / "people").iterdir()) == ["P01", "P01.html", "P01.pdf"]
 
 
 def test_a_person_without_a_kept_cycle_has_a_sheet_with_the_reason(tmp_path):
     person = made_person()
     nothing = made_person(cycles=person.cycles.assign(kept=False), curves=person.curves[:0])
-    path = write_person_pdf(PersonSession("P01", (read_beside(nothing, None),)), PROVENANCE, tmp_path / "a.pdf")
-    assert path.read_bytes().count(b"/Type /Page ") == 1
+    assert _count_sheets(_pdf(tmp_path, PersonSession("P01", (read_beside(nothing, None),)))) == 1
 
 
 def test_refused_first_then_amber_then_green_each_with_why_and_link(tmp_path):
@@ -161,19 +155,18 @@ def test_before_and_after_stand_on_the_first_sheet_of_page_and_pdf(tmp_path):
     ]
     session = PersonSession("P01 before after", (pair[1], pair[0]), (contrast(*pair),))
     assert session.before_after is session.contrasts[0]
-    page = write_person_page(session, "P01", REFERENCE, PROVENANCE, tmp_path).read_text(encoding="utf-8")
+    page = write_person_page(session, "P01", REFERENCE, PROVENANCE, tmp_path)[0].read_text(encoding="utf-8")
     headings = re.findall(r"<h2[^>]*>([^<]*)</h2>", page)
     assert headings[:3] == ["What stands out", "before walk and after walk", "Time and distance"]
     changes = pd.read_csv(tmp_path / "people" / "P01" / "before_walk-after_walk-changes.csv")
     assert list(changes)[1:] == ["left, before walk", "left, after walk", "right, before walk", "right, after walk"]
     assert "gait profile score [deg]" in set(changes["value"])
-    content = write_person_pdf(session, PROVENANCE, tmp_path / "a.pdf").read_bytes()
-    assert content.count(b"/Type /Page ") == 5  # first sheet, then two of each session
+    assert _count_sheets(_pdf(tmp_path, session)) == 5  # first sheet, then two of each session
 
 
 def test_name_comment_and_side_of_the_laboratory_stand_on_the_page(tmp_path):
     house = Laboratory("Gait <lab>", affected={"P01": "left"}, comments={"P01": "after <b> surgery"})
     session, say = PersonSession("P01", (read_beside(made_person(), REFERENCE),)), PageWords(laboratory=house)
-    page = write_person_page(session, "P01", REFERENCE, PROVENANCE, tmp_path, say).read_text(encoding="utf-8")
+    page = write_person_page(session, "P01", REFERENCE, PROVENANCE, tmp_path, say)[0].read_text(encoding="utf-8")
     assert says(page, "Gait &lt;lab&gt;", "Side affected: left.", "after &lt;b&gt; surgery")
-    assert write_person_pdf(session, PROVENANCE, tmp_path / "a.pdf", say).stat().st_size > 10_000
+    assert len(_pdf(tmp_path, session, say)) > len(_pdf(tmp_path, session))

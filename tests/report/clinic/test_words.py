@@ -7,7 +7,7 @@ from made_clinic import PROVENANCE, made_controls, made_person, made_run
 from texts import says
 
 from gaitdisc.clinic.clinical_reference import Limits, Noted, PersonSession
-from gaitdisc.clinic.laboratory import PageWords, english_words, read_words, write_words
+from gaitdisc.clinic.page_words import PageWords, english_words, read_words, write_words
 from gaitdisc.clinic.person_page import index_rows, write_index, write_person_page
 from gaitdisc.clinic.reading import contrast, read_beside
 from gaitdisc.clinic.rules import rule_words
@@ -39,7 +39,7 @@ def pages(tmp_path_factory):
     session = PersonSession("P01", (read_beside(person, reference),))
     found = {}
     for name, say in (("en", PageWords()), ("other", PageWords({word: doubled(word) for word in ENGLISH}))):
-        page = write_person_page(session, "P01", reference, PROVENANCE, folder / name, say)
+        page = write_person_page(session, "P01", reference, PROVENANCE, folder / name, say)[0]
         index = write_index(made_run(person), index_rows(session, "P01", say), reference, folder / name, say)
         found[name] = page.read_text(encoding="utf-8"), index.read_text(encoding="utf-8")
     return folder, found
@@ -152,4 +152,4 @@ def test_a_difference_is_said_with_place_p_and_counts():
     slightly = read_beside(made_person(session="after", each=8, spread=0.0, seed=1, changed=both), None)
     assert says(contrast_sentences(contrast(before, slightly))[-1], "2 stretches", "less than 5 deg")
     few = contrast_sentences(contrast(*(read_beside(made_person(session=w, each=2), None) for w in ("a", "b"))))
-    assert says(few[0], "not tested. a permutation")
+    assert says(few[0], "not tested; a test", "6 cycles", "there")

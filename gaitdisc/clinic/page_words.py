@@ -1,0 +1,119 @@
+"""Words of the pages, in another language where a laboratory has filled in a table of them."""
+
+from __future__ import annotations
+
+import csv
+import io
+import re
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field, replace
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from gaitdisc.clinic.laboratory import Laboratory
+from gaitdisc.errors import SchemaError
+from gaitdisc.processing.leg_curves import VARIABLES
+from gaitdisc.processing.tables import VALUES
+from gaitdisc.report.table import Table
+from gaitdisc.whole_file import write_whole
+
+if TYPE_CHECKING:
+    from gaitdisc.clinic.panels import Panel
+
+TIERS = {
+    2: "Beyond what one more healthy person shows (95 % limits of this page)",
+    1: "Outside 2 standard deviations of the controls, within those limits",
+}
+TEMPLATES = Path(__file__).parents[1] / "report" / "templates"
+WITH_WORDS = ("person.html.j2", "people.html.j2", "person.typ")
+TABLES = (  # headings and cells of tables, and the words between numbers in a sentence of what stands out
+    "value", "left", "right", "reference", "asymmetry", "value of", "side", "limits", "people", "cycles", "stands out",
+    "curve", "file", "what", "version", "cycle", "to", "state", "person", "condition", "cycles L, R", "Side affected",
+    "both", "profile score [deg]", "why",
+    "green", "amber", "red", "gait profile score", "Time and distance",
+    "None of {} values lies outside 2 standard deviations of the reference.", "No comparison with controls: {}.",
+    "A sentence needs {} cycles of a leg; there are {}.",
+    "With {} controls the 95 % limits are wide: smaller differences may be there.",
+    *TIERS.values(),
+)  # fmt: skip
+HEADER = ("English", "other")
+LARGEST_BYTES = 2**20
+
+
+@dataclass(frozen=True)
+class PageWords:
+    """Words of a page, each in the other language where the table has it, and what its laboratory says.
+
+    >>> say = PageWords({"knee flexion": "Knieflexion", "step length": "Schrittlänge"})
+    >>> say("knee flexion"), say("step length [m]"), say("cadence")
+    ('Knieflexion', 'Schrittlänge [m]', 'cadence')
+    """
+
+    other: Mapping[str, str] = field(default_factory=dict)
+    laboratory: Laboratory = field(default_factory=Laboratory)
+
+    def __call__(self, text: str) -> str:
+        """Word in the other language, English where the table lacks it; a unit in brackets stays."""
+        word, bracket, unit = text.partition(" [")
+        return self.other.get(text) or self.other.get(word, word) + bracket + unit
+
+    def panel(self, panel: Panel) -> Panel:
+        """Panel with its title and sign words, on the axis of its curve."""
+        axis = self.laboratory.axes.get(panel.name, panel.axis)
+        return replace(panel, title=self(panel.title), up=self(panel.up), down=self(panel.down), axis=axis)
+
+    def table(self, table: Table) -> Table:
+        """Table with its headings and words; its numbers and its CSV stay."""
+        rows = tuple(tuple(map(self, row)) for row in table.rows)
+        return replace(table, columns=tuple(map(self, table.columns)), rows=rows)
+
+
+ENGLISH = PageWords()
+
+
+def english_words(of_rules: Sequence[str]) -> list[str]:
+    """Every word that a table may translate, each once: of the pages, and what rules call a value."""
+    texts = [(TEMPLATES / name).read_text(encoding="utf-8") for name in WITH_WORDS]
+    found = [word for text in texts for word in re.findall(r'say\("([^"]+)"\)', text)]
+    found += [word for one in VARIABLES for word in (one.words, one.up, one.down)]
+    found += [words for words, _, _ in VALUES.values()]
+    return [word for word in dict.fromkeys((*found, *of_rules, *TABLES)) if word]
+
+
+def write_words(path: Path, english: Sequence[str], words: PageWords = ENGLISH) -> Path:
+    """Write the table that is to be filled in: English, and an empty column beside."""
+    text = io.StringIO()
+    csv.writer(text, lineterminator="\n").writerows([HEADER, *((word, words.other.get(word, "")) for word in english)])
+    return write_whole(path, text.getvalue())
+
+
+def read_words(path: Path, english: Sequence[str]) -> PageWords:
+    """Read a table of words; what is no word of the pages is refused with its line."""
+    form = "words of a language are a CSV with the columns English and other"
+    try:
+        text = path.read_bytes()[: LARGEST_BYTES + 1].decode("utf-8-sig")
+        rows = list(csv.reader(io.StringIO(text), delimiter=";" if text.partition("\n")[0].count(";") else ","))
+    except (OSError, UnicodeDecodeError, csv.Error) as error:
+        raise SchemaError(form, f"{path.name}: {error}", "Save it as CSV in UTF-8.") from error
+    if not rows or len(text) > LARGEST_BYTES or [cell.strip() for cell in rows[0][:2]] != list(HEADER):
+        first = ", ".join(rows[0][:4]) if rows else "nothing"
+        raise SchemaError(
+            form, f"{path.name} begins with {first}", "gaitdisc report CLINIC --language NEW.csv writes one."
+        )
+    known, other = set(english), {}
+    for line, row in enumerate(rows[1:], 2):
+        word, said = (*(cell.strip() for cell in row[:2]), "", "")[:2]
+        if word and word not in known:
+            raise SchemaError(
+                "each text must be one of the pages' texts",
+                f"{path.name}, line {line}: {word[:60]!r} is not",
+                "Delete the line.",
+            )
+        if said and word.count("{}") != said.count("{}"):
+            raise SchemaError(
+                "a sentence must keep its place for a number, {}",
+                f"{path.name}, line {line}: {said[:60]!r}",
+                f"Write {{}} as often as in {word!r}.",
+            )
+        other |= {word: said} if said else {}
+    return PageWords(other)

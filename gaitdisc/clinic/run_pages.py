@@ -1,0 +1,187 @@
+"""Pages of everybody in a run, and the index: each person apart, so that one who fails costs nobody else."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import asdict, replace
+from pathlib import Path
+
+from gaitdisc.clinic.clinical_reference import (
+    FILE,
+    PUBLISHED,
+    ClinicalReference,
+    PersonSession,
+    load_reference,
+    save_reference,
+)
+from gaitdisc.clinic.laboratory import Laboratory, load_laboratory
+from gaitdisc.clinic.page_words import ENGLISH, PageWords, english_words, read_words, write_words
+from gaitdisc.clinic.person_page import index_rows, write_index, write_person_page
+from gaitdisc.clinic.person_pdf import NO_PDF, can_write_pdf
+from gaitdisc.clinic.read_people import before_and_after, cycles_of_people, read_session
+from gaitdisc.clinic.rules import rule_words
+from gaitdisc.errors import LOG, GaitdiscError, SchemaError, WriteError
+from gaitdisc.own_files import file_sha256
+from gaitdisc.processing.kept_parts import hash_content, keep_part, read_part
+from gaitdisc.processing.pooled_cycles import CYCLES
+from gaitdisc.report.figure import file_names
+from gaitdisc.report.saved_page import find_page
+from gaitdisc.saved.kind import find_kind
+from gaitdisc.saved.provenance import Refusal
+from gaitdisc.saved.study_run import StudyRun
+from gaitdisc.saved.unit_folder import seal_text
+from gaitdisc.whole_file import remove_file, write_whole
+
+LABORATORY = "laboratory"  # folder of a run: what the pages were drawn with
+REFERENCE = "reference"  # folder of a run, beside its cycles
+WORDS = "words.csv"  # of another language, beside them
+
+
+def keep_reference(place: Path | None, run_folder: Path) -> None:
+    """Copy a reference into a run, so that its pages are drawn again without it."""
+    if place is None:
+        return
+    found, own = load_reference(place), run_folder / REFERENCE
+    if found.published:
+        write_whole(own / PUBLISHED, (place / PUBLISHED if place.is_dir() else place).read_text(encoding="utf-8"))
+        remove_file(own / FILE)
+    else:
+        save_reference(found, own)
+        remove_file(own / PUBLISHED)
+
+
+def load_kept_reference(run_folder: Path) -> ClinicalReference | None:
+    """Reference that was copied into a run; None where none was."""
+    folder = run_folder / REFERENCE
+    there = (folder / FILE).is_file() or (folder / PUBLISHED).is_file()
+    return load_reference(folder) if there else None
+
+
+def keep_words(language: str, run_folder: Path) -> list[str]:
+    """Copy a table of words into a run, or take it away for `en`; gives the words that it lacks."""
+    if language == "en":
+        remove_file(run_folder / WORDS)
+        return []
+    english = _english()
+    words = read_words(Path(language), english)
+    write_words(run_folder / WORDS, english, words)
+    return [word for word in english if not words.other.get(word)]
+
+
+def write_english(path: Path) -> Path:
+    """Write the table of words that is to be filled in."""
+    return write_words(path, _english())
+
+
+def _english() -> list[str]:
+    return english_words(rule_words())
+
+
+def load_kept_words(run_folder: Path) -> PageWords:
+    """Words of the pages of a run, English where no others were kept; and what `clinic.toml` says."""
+    words = read_words(run_folder / WORDS, _english()) if (run_folder / WORDS).is_file() else ENGLISH
+    return replace(words, laboratory=load_laboratory(run_folder))
+
+
+def page_of_run(run: StudyRun, run_folder: Path) -> Path:
+    """Page of a run with pages of its people and their index, drawn where they are not those of this very run."""
+    own, place = load_laboratory(run_folder), run_folder / LABORATORY / "laboratory.json"
+    if own == Laboratory():
+        remove_file(place)
+    else:  # so that pages of another laboratory do not stand
+        write_whole(place, seal_text(asdict(own)))
+
+    def drawn() -> Path:
+        page = find_kind(run_folder).draw(run, run_folder)
+        write_people(run, run_folder)
+        return page
+
+    return find_page(run_folder, drawn)
+
+
+def write_people(
+    run: StudyRun, run_folder: Path, pdf: bool = False, progress: Callable[[Path], None] = lambda _: None
+) -> Path | None:
+    """Write pages of each person and session, and `index.html`; None for a run without cycles."""
+    if not run.of(CYCLES):
+        return None
+    pages, people = _Pages(run, run_folder, pdf), cycles_of_people(run)
+    report, say = pages.report, pages.say
+    names, house = file_names(list(people)), say.laboratory
+    shared = repr(replace(say, laboratory=replace(house, affected={}, comments={})))
+    files = sorted(path for path in (run_folder / REFERENCE).glob("*") if path.is_file())
+    rests_on = (" ".join(map(file_sha256, files)), shared, run.nominal, str(pages.pdf))
+    rows: list[dict[str, str]] = []
+    failed: list[Refusal] = []
+    for title, own in people.items():
+        name = names[title]
+        said = (repr(words.get(own[0].subject)) for words in (house.affected, house.comments))
+        key = hash_content(own, *rests_on, *said)
+        kept = read_part(report, f"people-{name}", key)
+        if kept:
+            rows += kept
+            continue
+        try:
+            person = read_session(title, own, run.nominal, pages.reference)
+        except GaitdiscError as error:
+            failed.append(Refusal(title, "", str(error)))
+            continue
+        try:
+            written = pages.write(person, name)
+            for page in written:
+                progress(page)
+            drawn = index_rows(person, name, say)
+            files = [*written, *(report / "people" / name).glob("*.csv")]
+            keep_part(report, f"people-{name}", key, drawn, files)
+            rows += drawn
+        except WriteError:  # of the disk, not of the person: the page would stand as one that cannot be written
+            raise
+        except (GaitdiscError, ArithmeticError, LookupError, ValueError, TypeError) as error:
+            failed.append(Refusal(title, "", f"the page could not be written: {error}"))
+    return write_index(_with_failed(run, failed, run_folder), rows, pages.reference, report, say)
+
+
+def write_person(
+    run: StudyRun, run_folder: Path, person: str, words: tuple[str, ...] = (), pdf: bool = False
+) -> list[Path]:
+    """Write the pages of one person, a page a session, or one of two sessions or conditions that are named."""
+    pages = _Pages(run, run_folder, pdf)
+    if words:
+        both = before_and_after(run, pages.reference, person, words)
+        return pages.write(both, file_names([both.title])[both.title])
+    people = cycles_of_people(run)
+    own = {title: cycles for title, cycles in people.items() if cycles[0].subject == person}
+    if not own:
+        known = ", ".join(dict.fromkeys(cycles[0].subject for cycles in people.values())) or "nobody"
+        raise SchemaError("a page needs a person of the run", f"{person!r}; there are {known}", "Name one of them.")
+    names = file_names(list(people))
+    found = []
+    for title, cycles in own.items():
+        found += pages.write(read_session(title, cycles, run.nominal, pages.reference), names[title])
+    return found
+
+
+class _Pages:
+    """What all pages of a run's people are written with, and where."""
+
+    def __init__(self, run: StudyRun, run_folder: Path, pdf: bool) -> None:
+        self.report, self._provenance = run_folder / "report", run.provenance
+        self.reference, self.say = load_kept_reference(run_folder), load_kept_words(run_folder)
+        self.pdf = pdf or self.say.laboratory.pdf
+        if self.pdf and not can_write_pdf():
+            if pdf:
+                raise SchemaError(*NO_PDF)
+            LOG.warning(f"Pages are written without PDF: {NO_PDF[0]}. {NO_PDF[2]}")
+            self.pdf = False
+
+    def write(self, person: PersonSession, name: str) -> list[Path]:
+        """Write the page of a person and session as HTML and where wanted as PDF."""
+        return write_person_page(person, name, self.reference, self._provenance, self.report, self.say, self.pdf)
+
+
+def _with_failed(run: StudyRun, failed: list[Refusal], run_folder: Path) -> StudyRun:
+    """Run with those refused whose pages failed; where the folder lies may name somebody, so that is taken out."""
+    places = [str(run_folder.absolute()), *([str(run_folder)] if len(run_folder.parts) > 1 else [])]
+    for place in places:
+        failed = [replace(one, reason=one.reason.replace(place, "run")) for one in failed]
+    return replace(run, refusals=(*run.refusals, *failed))
