@@ -201,9 +201,8 @@ class MujocoModel:
                 data.ctrl[:] = control
                 if self.pushes is not None and pushed is not None:
                     q = pushed[:, : model.nv]
-                    pushed[:, : 2 * model.nv] = to_coordinates(balls, data.qpos[None, None], data.qvel[None, None], q)[
-                        0
-                    ]
+                    x = to_coordinates(balls, data.qpos[None, None], data.qvel[None, None], q)
+                    pushed[:, : 2 * model.nv] = x[0]
                     now = np.array([begins + data.time])
                     forces, rates = self.pushes.at(now, pushed, data.ctrl[None])
                     data.qfrc_applied[:] = to_forces(balls, q, forces)[0]
@@ -211,7 +210,7 @@ class MujocoModel:
                 self._mujoco.mj_step(model, data)
                 found[run, step + 1] = *data.qpos, *data.qvel
         model.opt.timestep = kept
-        return to_coordinates(balls, *np.split(found[:, ::steps], [model.nq], axis=2), start.q)
+        return to_coordinates(balls, found[:, ::steps, : model.nq], found[:, ::steps, model.nq :], start.q)
 
     def _begin(self, state: Values, acting: Values) -> Values:
         """Put the model into positions and velocities with what acts through each control, and give its whole state."""
