@@ -94,10 +94,11 @@ class MujocoModel:
         self.balls = (model.jnt_dofadr + 3 * (kinds == 0))[kinds < 2].tolist()  # first of the three angles of each
         limited = (model.jnt_limited & (kinds > 1))[:, None]  # a ball's limit is a cone
         ranges = np.where(limited, model.jnt_range, (-np.inf, np.inf)).tolist()
+        words = [self._called("joint", k) for k in range(model.njnt)]
         self.coordinates = tuple(
-            Coordinate(new_name(f"{name}{way}", "joint", taken), unit, f"{self._called('joint', k)}{way}", *ranges[k])
-            for k, name in enumerate(names)
-            for unit, way in WAYS[kinds[k]]
+            Coordinate(new_name(name + way, "joint", taken), unit, (called or name) + way if way else called, *own)
+            for name, called, kind, own in zip(names, words, kinds, ranges, strict=True)
+            for unit, way in WAYS[kind]
         )
         places = self._places_of_parts()
         taken = {"gravity", *places} | {each for one in self.coordinates for each in (one.name, one.speed, one.port)}
