@@ -134,11 +134,10 @@ def note_inputs(paths: Iterable[Path]) -> None:
 
 
 def claim_folder(folder: Path, *names: str, command: str = "", mended: tuple[str, ...] = ()) -> bool:
-    """Refuse a folder before any work is done, or hold it until the command ends.
+    """Refuse a folder before any work is done, or hold it until the command ends; return whether all there is replaced.
 
     names: what will be written there, as far as it is known now
     command: whose files these are, where it is another than the one at work
-    returns: whether the user replaces what lies there
     """
     guard = _GUARD.get()
     if guard is not None:

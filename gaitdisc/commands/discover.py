@@ -68,9 +68,8 @@ def discover(  # noqa: PLR0913, PLR0917 these are the options of a command
             "Name the measured table after it: gaitdisc discover SIMULATION.toml MEASURED.csv. For a study, add "
             "--participant.",
         )
-    whose = participant.partition(":")[0]
-    names = ("people.csv",) if whose == EVERYONE and measured is None else ("plan.csv",) if plan else FILES
-    anew = claim_folder(out, *names, mended=(KEPT,))
+    everyone = measured is None and participant.partition(":")[0] == EVERYONE
+    anew = claim_folder(out, *(("people.csv",) if everyone else ("plan.csv",) if plan else FILES), mended=(KEPT,))
     began = time.perf_counter()
 
     def say(step: str) -> None:

@@ -280,14 +280,12 @@ def _lag_input(simulation: Simulation, name: str) -> Candidate:
 
 def saturations(simulation: Simulation) -> tuple[Candidate, ...]:
     """List inputs that act up to a limit alone: one above, one below, one of a size to either side, or two."""
+    two_sizes = {"lower_limit": "low quantiles of x", "upper_limit": "high quantiles of x"}
     forms = {
         "min({s}, {upper_limit})": {"upper_limit": "quantiles of x"},
         "max({s}, {lower_limit})": {"lower_limit": "quantiles of x"},
         "min(max({s}, -{limit}), {limit})": {"limit": "half widths of x"},
-        "min(max({s}, {lower_limit}), {upper_limit})": {
-            "lower_limit": "low quantiles of x",
-            "upper_limit": "high quantiles of x",
-        },
+        "min(max({s}, {lower_limit}), {upper_limit})": two_sizes,
     }
     return tuple(
         Candidate("input_error", "input", one.name, "input_saturation", (form,), limits, one.name)

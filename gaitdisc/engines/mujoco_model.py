@@ -94,10 +94,11 @@ class MujocoModel:
         self.balls = (model.jnt_dofadr + 3 * (kinds == 0))[kinds < 2].tolist()  # first of the three angles of each
         limited = (model.jnt_limited & (kinds > 1))[:, None]  # a ball's limit is a cone
         ranges = np.where(limited, model.jnt_range, (-np.inf, np.inf)).tolist()
+        words = [self._called("joint", k) for k in range(model.njnt)]
         self.coordinates = tuple(
-            Coordinate(new_name(f"{name}{way}", "joint", taken), unit, f"{self._called('joint', k)}{way}", *ranges[k])
-            for k, name in enumerate(names)
-            for unit, way in WAYS[kinds[k]]
+            Coordinate(new_name(name + way, "joint", taken), unit, (called or name) + way if way else called, *own)
+            for name, called, kind, own in zip(names, words, kinds, ranges, strict=True)
+            for unit, way in WAYS[kind]
         )
         places = self._places_of_parts()
         taken = {"gravity", *places} | {each for one in self.coordinates for each in (one.name, one.speed, one.port)}
@@ -201,9 +202,8 @@ class MujocoModel:
                 data.ctrl[:] = control
                 if self.pushes is not None and pushed is not None:
                     q = pushed[:, : model.nv]
-                    pushed[:, : 2 * model.nv] = to_coordinates(balls, data.qpos[None, None], data.qvel[None, None], q)[
-                        0
-                    ]
+                    x = to_coordinates(balls, data.qpos[None, None], data.qvel[None, None], q)
+                    pushed[:, : 2 * model.nv] = x[0]
                     now = np.array([begins + data.time])
                     forces, rates = self.pushes.at(now, pushed, data.ctrl[None])
                     data.qfrc_applied[:] = to_forces(balls, q, forces)[0]
@@ -211,7 +211,7 @@ class MujocoModel:
                 self._mujoco.mj_step(model, data)
                 found[run, step + 1] = *data.qpos, *data.qvel
         model.opt.timestep = kept
-        return to_coordinates(balls, *np.split(found[:, ::steps], [model.nq], axis=2), start.q)
+        return to_coordinates(balls, found[:, ::steps, : model.nq], found[:, ::steps, model.nq :], start.q)
 
     def _begin(self, state: Values, acting: Values) -> Values:
         """Put the model into positions and velocities with what acts through each control, and give its whole state."""

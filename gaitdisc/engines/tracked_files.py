@@ -7,7 +7,7 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
-from gaitdisc.channel import Channel, did_you_mean, nearest_word
+from gaitdisc.channel import Channel, nearest_word
 from gaitdisc.engines.motion import Coordinate, TrackedMotion, Values
 from gaitdisc.engines.opensim_tracked import OpensimTracked
 from gaitdisc.engines.tracked_mapping import Tracked, find_loads, read_xml
@@ -58,10 +58,11 @@ def check_loads(tracked: Tracked) -> None:
     for force in read_xml(loads).iter("ExternalForce"):
         body = (force.findtext("applied_to_body") or "").strip()
         if body.rpartition("/")[2] not in bodies:
+            near = nearest_word(body, tuple(bodies))
             raise SchemaError(
                 "a recorded force must act on a body of the model",
                 f"{loads.name}: force {force.get('name')!r} acts on {body!r}; {tracked.model.name} has no such body",
-                did_you_mean(body, bodies, f"Correct <applied_to_body>: {', '.join(bodies)}."),
+                f"Did you mean {near!r}? " if near else f"Correct <applied_to_body>: {', '.join(bodies)}.",
             )
         for word in ("force_identifier", "point_identifier", "torque_identifier"):
             prefix = (force.findtext(word) or "").strip()

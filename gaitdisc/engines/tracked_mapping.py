@@ -10,7 +10,7 @@ from xml.etree import ElementTree
 
 import numpy as np
 
-from gaitdisc.channel import did_you_mean
+from gaitdisc.channel import nearest_word
 from gaitdisc.errors import ReadError, SchemaError
 from gaitdisc.toml_text import parse_toml, quote
 from gaitdisc.whole_file import write_whole
@@ -63,10 +63,11 @@ def read_tracked(path: Path | str) -> Tracked | None:
     unknown = [name for name in table if name not in ("title", "model", "tracked")]
     unknown += [name for name in given if name not in (*FILES, *NUMBERS)]
     if unknown:
+        near = nearest_word(unknown[0], (*FILES, *NUMBERS))
         raise SchemaError(
             f"a mapping with [tracked] may have only title, model and, in that table, {', '.join((*FILES, *NUMBERS))}",
             f"{file.name} has {unknown[0]!r}",
-            did_you_mean(unknown[0], (*FILES, *NUMBERS), "Take it out."),
+            f"Did you mean {near!r}?" if near else "Take it out.",
         )
     if "external_loads" not in given:
         raise SchemaError(

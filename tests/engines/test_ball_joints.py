@@ -80,6 +80,8 @@ def test_its_numbers_are_written_and_what_has_no_name_is_held(bodies):
     held = write_model(hinges, draft(hinges).with_values({"body_4_mass": 2.0}))
     assert not held.absent and held.text == hinges.path.read_text()
     assert np.allclose(held.engine.accelerations(AT, {}), hinges.accelerations(AT, {"body_4_mass": 2.0}), rtol=1e-12)
+    still = np.repeat(AT.u[:, None], 3, axis=1)
+    assert np.abs(held.engine.run(AT, still, 100.0) - hinges.run(AT, still, 100.0))[:, 2].max() > 1e-3
 
 
 def test_an_angle_in_the_middle_near_a_right_angle_is_refused(bodies):

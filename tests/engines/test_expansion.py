@@ -28,7 +28,7 @@ def recorded(model):
     return controls, Measured(Drive.of([controls], RATE), whole[:, :, :1], ("1",), ("pivot",)), whole
 
 
-def test_runs_near_the_record_are_those_of_the_engine(pendulum):
+def test_runs_near_the_record_are_those_of_the_engine(pendulum, monkeypatch):
     model = read_model(pendulum)
     controls, measured, whole = recorded(model)
     linear, driven = expand(draft(model), model, measured, whole)
@@ -58,6 +58,9 @@ def test_runs_near_the_record_are_those_of_the_engine(pendulum):
     around, other = expand(draft(model), model, measured, whole, {"rod_mass": 2.02})
     again = compile_simulation(replace(around, parameters=around.with_values({"rod_mass": 2.02}).parameters))
     assert np.allclose(again.rates(*point[:2], other.drive.inputs[:, 70])[:, 1:], wanted, rtol=1e-9)
+    monkeypatch.setattr("gaitdisc.engines.expansion.MOST_MIXED", 0)
+    few = expand(draft(model), model, measured, whole)[0]
+    assert any("_and_" in one for one in names) and not any("_and_" in one.name for one in few.inputs)
 
 
 def test_a_run_beside_the_record_is_that_of_the_muscles_whose_fibres_follow(elbow):
