@@ -135,9 +135,9 @@ def _with_number(found: Discovery, changed: Changed) -> Discovery:
     mended = replace(effect, estimates={**effect.estimates, change.number: new})
     sentence = found.sentence.replace(estimate_text(old), estimate_text(new))
     if abs(old.value - new.value) > APART * abs(new.value):
-        sentence += f" The written model has {old.value:.3g} {old.unit}, fitted with the other parameters."
-    effects = tuple(mended if one is effect else one for one in found.effects)
-    return replace(found, effects=effects, sentence=sentence)
+        number = f"{old.value:.3g} {old.unit}".removesuffix(" 1")
+        sentence += f" The written model has {number}, fitted with the other parameters."
+    return replace(found, effects=tuple(mended if one is effect else one for one in found.effects), sentence=sentence)
 
 
 def with_foot_mass(found: Discovery, walks: PersonWalks, condition: str) -> Discovery:

@@ -204,12 +204,13 @@ def search_joints(walk: Pass, angle_noise: Values, request: Request = ALL) -> tu
             "Record longer.",
         )
     base = _simulation(walk)
-    candidates = _candidates(base, walk, request.shapes)
-    joints = []
+    possible, joints = _candidates(base, walk, request.shapes), []
     for number in walk.joints:
-        request.progress(f"analysing the residual at {walk.engine.coordinates[number].called}")
-        joint = _left(walk, base, number, angle_noise)
-        joints.append(joint_finding(joint, candidates[number], len(walk.joints)))
+        one = walk.engine.coordinates[number]
+        request.progress(f"analysing the residual at {one.called}")
+        places = {one.port, *(f"{name}_{word}" for name in walk.groups_at(number) for word in ("strength", "delay"))}
+        candidates = tuple(each for each in possible if each.place in places)
+        joints.append(joint_finding(_left(walk, base, number, angle_noise), candidates, len(walk.joints)))
     return base, joints
 
 
@@ -236,18 +237,13 @@ def _simulation(walk: Pass) -> Simulation:
     )
 
 
-def _candidates(base: Simulation, walk: Pass, more: tuple[Shape, ...]) -> dict[int, tuple[Candidate, ...]]:
-    """What may act at each joint: a device's shapes at its port, its muscles stronger or later, effects of the user."""
-    joints = {k: walk.engine.coordinates[k] for k in walk.joints}
-    places = [Place("port", one.port, ((one.name, one.speed),), (), (), one.unit == "rad") for one in joints.values()]
-    every = list_candidates(base, tuple(places), (*read_shapes(), *more))
+def _candidates(base: Simulation, walk: Pass, more: tuple[Shape, ...]) -> list[Candidate]:
+    """What may act at the joints: a device's shapes at their ports, muscles stronger or later, effects of the user."""
+    joints = [walk.engine.coordinates[k] for k in walk.joints]
+    places = tuple(Place("port", one.port, ((one.name, one.speed),), (), (), one.unit == "rad") for one in joints)
     effects = {*EFFECTS, *(shape.name for shape in more)}
-    possible = [one for one in every if one.kind == "parameter" or (one.name in effects and not one.states)]
-    found = {}
-    for k, one in joints.items():
-        mine = {one.port, *(f"{name}_{word}" for name in walk.groups_at(k) for word in ("strength", "delay"))}
-        found[k] = tuple(each for each in possible if each.place in mine)
-    return found
+    every = list_candidates(base, places, (*read_shapes(), *more))
+    return [one for one in every if one.kind == "parameter" or (one.name in effects and not one.states)]
 
 
 def _left(walk: Pass, base: Simulation, number: int, angle_noise: Values) -> ResidualMoment:

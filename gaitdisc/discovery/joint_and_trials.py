@@ -174,7 +174,7 @@ def cut_walk_trials(record: JointRecord, model: MuscleMoment, simulation: Simula
     if len(trials) < FEWEST_TRIALS:
         raise StrideError(
             f"a device is tested on held-out strides: this needs {FEWEST_TRIALS} times {STRIDES} strides in a row, "
-            "half of them with a known load on the foot",
+            f"with a known load on the foot in {100 * KNOWN:.0f} % of the samples",
             f"{record.subject} {record.condition} has {last + 1} strides, {len(trials)} times {STRIDES} in a row",
             "Record longer, and keep each foot on its own plate.",
         )

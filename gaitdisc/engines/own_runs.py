@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field, replace
 
 import numpy as np
@@ -142,6 +142,8 @@ def residual_by(
     """
     engine, n, lags = model.engine, len(model.engine.coordinates), model.lags
     recorded = compute_motion(engine, replace(measured, drive=replace(measured.drive, inputs=model.controls)), states)
+    plain, expressions = replace(model.mapping, model=""), dict(model.mapping.observations)
+    seen_as = [expressions[name] for name in measured.channels]
     size = np.nanstd(measured.observed, axis=(0, 1))
     found = np.full((len(at.trial), at.length, len(size)), np.nan)
     said = time.monotonic()
@@ -160,7 +162,7 @@ def residual_by(
             begun = replace(known, own=starts[:, 2 * n + len(lags) :], t=np.full(len(starts), t[0]))
             run = engine.run(begun, driven, measured.rate)
             points = [Points(t, x, u, rate=measured.rate) for x, u in zip(run, driven, strict=True)]
-            simulated = np.stack([observed(model.mapping, measured.channels, one) for one in points])
+            simulated = np.stack([evaluate_many(plain, seen_as, one).T for one in points])
             if samples < at.length:
                 return (seen - simulated) / size
             left = (seen - model.recorded(simulated, 1)) / size
@@ -199,10 +201,3 @@ def _find_start(left_from: Callable[[Values], Values], start: Values) -> tuple[V
         if gain < 1e-4 * (left[there] ** 2).sum():
             break
     return start, left
-
-
-def observed(mapping: Simulation, channels: Sequence[str], points: Points) -> Values:
-    """Observed channels (sample, channel) of an engine's run."""
-    expressions = [dict(mapping.observations)[name] for name in channels]
-    found = evaluate_many(replace(mapping, model=""), expressions, points)
-    return np.broadcast_to(found, (len(channels), np.size(points.t))).T

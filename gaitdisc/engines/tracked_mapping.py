@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import os
 import re
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from xml.etree import ElementTree
 
@@ -16,7 +16,7 @@ from gaitdisc.toml_text import parse_toml, quote
 from gaitdisc.whole_file import write_whole
 
 FILES = ("external_loads", "forces", "actuators", "speeds", "accelerations")
-NUMBERS, LOWPASS_HZ = ("lowpass_hz", "noise_deg", "start_s", "end_s"), 6.0
+NUMBERS = ("lowpass_hz", "noise_deg", "start_s", "end_s")
 
 
 @dataclass(frozen=True)
@@ -29,7 +29,7 @@ class Tracked:
     actuators: Path | None = None
     speeds: Path | None = None
     accelerations: Path | None = None
-    lowpass_hz: float = LOWPASS_HZ
+    lowpass_hz: float = 6.0
     noise_deg: float | None = None  # standard deviation of an angle in the record, 1 mm of a translation at 0.3 deg
     start_s: float = -np.inf  # part of the record in which all forces on the ground are known
     end_s: float = np.inf
@@ -81,16 +81,9 @@ def read_tracked(path: Path | str) -> Tracked | None:
         if not isinstance(value, int | float) or isinstance(value, bool) or not 0 <= value < 1e3:
             raise SchemaError(f"{name} must be a number", f"{file.name} has {value!r}", "Correct it.")
     paths = {name: _there(file, name, given[name]) for name in FILES if name in given}
-    loads, noise = paths["external_loads"], given.get("noise_deg")
-    return Tracked(
-        _there(file, "model", table.get("model", f"{file.stem}.osim")),
-        find_loads(loads),
-        *(paths.get(name) for name in FILES[1:]),
-        lowpass_hz=float(given.get("lowpass_hz", LOWPASS_HZ)),
-        noise_deg=None if noise is None else float(noise),
-        start_s=float(given.get("start_s", -np.inf)),
-        end_s=float(given.get("end_s", np.inf)),
-    )
+    model = _there(file, "model", table.get("model", f"{file.stem}.osim"))
+    tracked = Tracked(model, find_loads(paths.pop("external_loads")))
+    return replace(tracked, **paths, **{name: float(given[name]) for name in NUMBERS if name in given})
 
 
 def _there(file: Path, what: str, name: object) -> Path:
@@ -139,7 +132,6 @@ def write_tracked_mapping(tracked: Tracked, file: Path) -> None:
 
     lines = [f"model = {beside(tracked.model)}", "", "[tracked]"]
     lines += [f"{name} = {beside(path)}" for name, path in tracked.named.items()]
-    lines.append(f"lowpass_hz = {tracked.lowpass_hz!r}")
-    numbers = {"noise_deg": tracked.noise_deg, "start_s": tracked.start_s, "end_s": tracked.end_s}
+    numbers = {name: getattr(tracked, name) for name in NUMBERS}
     lines += [f"{name} = {value!r}" for name, value in numbers.items() if value is not None and np.isfinite(value)]
     write_whole(file, "\n".join(lines) + "\n")

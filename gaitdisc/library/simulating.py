@@ -14,7 +14,6 @@ from numpy.typing import ArrayLike, NDArray
 from gaitdisc.channel import Channel, find_side
 from gaitdisc.engines.engine import Engine
 from gaitdisc.engines.mapping import replace_inputs
-from gaitdisc.engines.own_runs import observed
 from gaitdisc.engines.written import whole_model
 from gaitdisc.errors import ShapeError, SimulationError, UnitError
 from gaitdisc.ingest.table import has_times
@@ -22,7 +21,7 @@ from gaitdisc.library.walks import make_recording
 from gaitdisc.recording import Recording, Source
 from gaitdisc.recording.strides import interpolate
 from gaitdisc.simulation.compiled_simulation import Drive, Rows
-from gaitdisc.simulation.evaluating import Points
+from gaitdisc.simulation.evaluating import Points, evaluate_many
 from gaitdisc.simulation.functions import simulation_from_function
 from gaitdisc.simulation.python_simulation import PythonSimulation
 from gaitdisc.simulation.running import compile_simulation, refuse_divergence
@@ -154,9 +153,9 @@ def _run_by(
             f"its numbers are not finite from t = {time[lost[0]]:.6g} s on",
             "Use another initial state, or check the inputs there.",
         )
-    channels = [*dict(simulation.observations)]
-    seen = observed(simulation, channels, Points(time, states, driven, rate=rate))
-    return states, dict(zip(channels, seen.T, strict=True))
+    channels, expressions = zip(*simulation.observations, strict=True)
+    seen = evaluate_many(replace(simulation, model=""), expressions, Points(time, states, driven, rate=rate))
+    return states, dict(zip(channels, seen, strict=True))
 
 
 def _rate(time: NDArray[np.float64]) -> float:
