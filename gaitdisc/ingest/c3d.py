@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
+import itertools
 from collections.abc import Mapping
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
-from itertools import product
 from pathlib import Path
 
 import numpy as np
@@ -16,6 +16,7 @@ from gaitdisc.ingest.c3d_kinetics import body_mass, house_kinetics
 from gaitdisc.ingest.c3d_labels import LabelMap, file_events
 from gaitdisc.ingest.c3d_parameters import BLOCK, C3DHeader, C3DParameters, read_c3d_header, read_c3d_parameters
 from gaitdisc.ingest.c3d_points import Streams, add_part, file_segments, point_names, point_streams
+from gaitdisc.ingest.columns import is_ignored
 from gaitdisc.ingest.force_plates import force_plates, plate_loads, plate_streams
 from gaitdisc.ingest.reader_process import Arrays, ReaderProcess, ReadRequest
 from gaitdisc.recording import Finding, Recording, Source, Surface, Trial
@@ -116,10 +117,13 @@ class C3DReader:
         samples = layout.samples_per_frame
         point_times = np.arange(layout.frames) / rate_hz
         analog_times = np.arange(layout.frames * samples) / (rate_hz * max(samples, 1))
-        recordings = {
-            key: Recording(analog_times if key in ANALOG_STREAMS else point_times, values, columns, source=source)
-            for key, (values, columns) in streams.items()
-        }
+        recordings = {}
+        for key, (values, columns) in streams.items():
+            used = [not is_ignored(channel) for channel in columns]
+            if any(used):
+                times = analog_times if key in ANALOG_STREAMS else point_times
+                own = values if all(used) else values[:, used]
+                recordings[key] = Recording(times, own, tuple(itertools.compress(columns, used)), source=source)
         segments = file_segments(path, header, parameters, source)
         recordings |= {"segments": segments} if segments is not None else {}
         return Trial(path.stem, recordings, events, tuple(findings), surfaces=surfaces)
@@ -257,7 +261,7 @@ def find_layout(header: C3DHeader, parameters: C3DParameters) -> tuple[C3DLayout
     blocks = _distinct(header.data_block, parameters.count("POINT", "DATA_START") or None)
     layouts = [
         C3DLayout(count, used, channels, samples, word_bytes, block)
-        for count, used, (channels, samples), block in product(frames, points, analog, blocks)
+        for count, used, (channels, samples), block in itertools.product(frames, points, analog, blocks)
     ]
     filling = [layout for layout in layouts if layout.fills(header.size)]
     layout = (filling or layouts)[0]
