@@ -14,7 +14,14 @@ from gaitdisc.errors import ReadError, SamplingError
 from gaitdisc.ingest.c3d_analog import analog_labels, analog_streams
 from gaitdisc.ingest.c3d_kinetics import body_mass, house_kinetics
 from gaitdisc.ingest.c3d_labels import LabelMap, file_events
-from gaitdisc.ingest.c3d_parameters import BLOCK, C3DHeader, C3DParameters, read_c3d_header, read_c3d_parameters
+from gaitdisc.ingest.c3d_parameters import (
+    BLOCK,
+    C3DHeader,
+    C3DParameters,
+    decoded,
+    read_c3d_header,
+    read_c3d_parameters,
+)
 from gaitdisc.ingest.c3d_points import Streams, add_part, file_segments, point_names, point_streams
 from gaitdisc.ingest.columns import is_ignored
 from gaitdisc.ingest.force_plates import force_plates, plate_loads, plate_streams
@@ -23,6 +30,7 @@ from gaitdisc.recording import Finding, Recording, Source, Surface, Trial
 from gaitdisc.recording.arrays import Values
 from gaitdisc.regular_file import file_sha256
 
+GLANCES = 30  # frames by which `glance_at_c3d` sees what a file has
 ANALOG_STREAMS = ("emg", "forces", "signals")
 _SATURATED = 65535  # a 16-bit frame number that stands for "more than that"
 _REMEDY = (
@@ -156,6 +164,36 @@ def read_c3d(path: str | Path, channels: Mapping[str, str] | None = None) -> Tri
     """Trial of one C3D file; `C3DReader` is faster for many."""
     with C3DReader() as reader:
         return reader.read(path, channels)
+
+
+def glance_at_c3d(path: Path) -> Trial:
+    """Markers, outputs of the model, EMG and events of a C3D file by some 30 frames of it, read in this process.
+
+    Enough to see what a file has and whether somebody walks in it; the EMG has no values.
+    """
+    header = read_c3d_header(path)
+    parameters = read_c3d_parameters(path, header)
+    check_common_scales(header, parameters)
+    layout, findings = find_layout(header, parameters)
+    rate_hz, _ = _rate(header, parameters, layout)
+    step, size = max(layout.frames // GLANCES, 1), 4 * layout.points * layout.word_bytes
+    with path.open("rb") as file:
+        frames = []
+        for frame in range(0, layout.frames, step):
+            file.seek((layout.data_block - 1) * BLOCK + frame * layout.frame_bytes)
+            frames.append(file.read(size))
+    cells = decoded(b"".join(frames), layout.word_bytes, header.processor).astype(float)
+    cells = cells.reshape(len(frames), layout.points, 4)
+    points = cells[:, :, :3] * (abs(parameters.number("POINT", "SCALE") or 1.0) if layout.word_bytes == 2 else 1.0)
+    points[cells[:, :, 3] < 0] = np.nan
+    labels = LabelMap()
+    streams, _, _ = point_streams(points.reshape(len(frames), 3 * layout.points), parameters, labels)
+    analog, _ = analog_streams(np.full((len(frames), layout.channels), np.nan), parameters, set(), labels)
+    first = parameters.field("ACTUAL_START_FIELD") or max(header.first_frame, 1)
+    events, _ = file_events(parameters, layout.frames, rate_hz, first)
+    times = np.arange(len(frames)) * step / rate_hz
+    recordings = {key: Recording(times, *part, source=Source(header.file)) for key, part in (streams | analog).items()}
+    return Trial(path.stem, recordings, events, tuple(findings))
 
 
 def _streams(
