@@ -104,7 +104,9 @@ def draft_study(
             f"none of its files can be read{unread}",
             "Name the folder that contains them.",
         )
-    groups = {trial.person: {one.group for one in found if one.person == trial.person} - {""} for trial in found}
+    groups: dict[str, set[str]] = {}
+    for trial in found:
+        groups.setdefault(trial.person, set()).update({trial.group} - {""})
     alone = {person: next(iter(own)) for person, own in groups.items() if len(own) == 1}
     found = [replace(trial, group=trial.group or alone.get(trial.person, "")) for trial in found]  # the only one
     conditions, called = name_conditions(found, notes)

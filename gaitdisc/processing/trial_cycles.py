@@ -159,10 +159,11 @@ def without_stated(cycles: list[Cycle], said: Sequence[str], file: str) -> tuple
     found, findings = list(cycles), []
     for words in said:
         parts = LEFT_OUT_CYCLE.fullmatch(words)
-        own = [i for i, one in enumerate(found) if parts and one.side == parts[1]]
-        at = min(own, key=lambda i: abs(found[i].start - float(parts[2])), default=None) if parts else None
-        if parts and at is not None and abs(found[at].start - float(parts[2])) <= SAME_START_S:
-            found[at] = replace(found[at], reason=f"left out by the study: {parts[3] or 'no reason is given'}")
+        side, start, reason = (parts[1], float(parts[2]), parts[3]) if parts else ("", 0.0, "")
+        near = {abs(one.start - start): i for i, one in enumerate(found) if one.side == side}
+        if near and min(near) <= SAME_START_S:
+            at = near[min(near)]
+            found[at] = replace(found[at], reason=f"left out by the study: {reason or 'no reason is given'}")
         else:
             what = f"leave_out_cycles says {words!r}, but no such cycle begins there"
             findings.append(Finding("warning", "cycle not found", file, what, "nothing; correct it by cycles.csv"))
