@@ -7,8 +7,9 @@ program that opens the table. The rule is OWASP's (CSV injection). Numbers stay 
 from __future__ import annotations
 
 import csv
+import itertools
 import re
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -42,21 +43,40 @@ def unquote(text: str) -> str:
     return text[1:] if text.startswith("'") and _FORMULA.match(text[1:]) else text
 
 
-def write_csv(table: pd.DataFrame, path: Path, float_format: str | None = None) -> None:
+def write_csv(
+    table: pd.DataFrame, path: Path, float_format: str | None = None, rest: Iterable[pd.DataFrame] = ()
+) -> None:
     """Write a table as CSV, whole or not at all.
 
     table: its index is not written
     float_format: of every number; by default as many digits as it takes to read the same number again
+    rest: further rows, tables of the same columns, of which one at a time is held
     """
-    safe = table.rename(columns=lambda name: quote(str(name)))
+    with whole_file(path) as part:
+        for number, rows in enumerate(itertools.chain([table], rest)):
+            safe, quoting = _quoted(rows)
+            how = {"index": False, "lineterminator": "\n", "float_format": float_format, "quoting": quoting}
+            safe.to_csv(part, mode="a", header=not number, **how)
+
+
+def _quoted(table: pd.DataFrame) -> tuple[pd.DataFrame, int]:
+    """Table of which no cell is a formula, and how its words are quoted."""
+    import pandas as pd
+
+    safe, words = table.copy(deep=False), {quote(str(name)) for name in table.columns}
     for place in range(len(table.columns)):
         if table.dtypes.iloc[place].kind not in _NUMBERS:
-            cells = table.iloc[:, place].map(lambda cell: quote(cell) if isinstance(cell, str) else cell)
-            safe.isetitem(place, cells.to_numpy(object))
-    words = [*map(str, safe.columns), *(cell for cell in safe.to_numpy(object).flat if isinstance(cell, str))]
-    quoting = csv.QUOTE_NONNUMERIC if any(map(_OTHER_SEPARATORS.search, words)) else csv.QUOTE_MINIMAL
-    with whole_file(path) as part:
-        safe.to_csv(part, index=False, lineterminator="\n", float_format=float_format, quoting=quoting)
+            column = table.iloc[:, place]
+            codes, known = pd.factorize(column)  # a million cells hold some hundred words
+            if all(isinstance(cell, str) for cell in known):
+                cells = [*map(quote, known), None]
+                safe.isetitem(place, pd.array(cells, dtype=object)[codes])
+            else:
+                cells = [quote(cell) if isinstance(cell, str) else cell for cell in column]
+                safe.isetitem(place, pd.array(cells, dtype=object))
+            words.update(cell for cell in cells if isinstance(cell, str))
+    safe.columns = [quote(str(name)) for name in table.columns]
+    return safe, csv.QUOTE_NONNUMERIC if any(map(_OTHER_SEPARATORS.search, words)) else csv.QUOTE_MINIMAL
 
 
 def read_csv(path: Path, words: Sequence[str] = (), skiprows: int = 0) -> pd.DataFrame:

@@ -37,6 +37,16 @@ def test_the_list_names_each_file_with_its_hash_and_command(tmp_path):
     assert {path.name for path in tmp_path.iterdir()} == {LIST, "a b.csv"}
 
 
+def test_a_new_file_with_the_number_of_one_that_was_read_and_replaced_is_no_input(tmp_path, monkeypatch):
+    write(tmp_path / "part.csv")
+    write(tmp_path / "page.html")
+    os.utime(tmp_path / "page.html", ns=(1, 1))
+    monkeypatch.setattr(os.path, "samestat", lambda one, other: True)  # as a disk does that gives numbers again
+    write(tmp_path / "page.html", "y", inputs=[tmp_path / "part.csv"])
+    with pytest.raises(WriteError, match="is an input of gaitdisc export"):
+        write(tmp_path / "part.csv", "y", inputs=[tmp_path / "part.csv"])
+
+
 def test_another_command_replaces_it_no_more_than_another_program(tmp_path):
     write(tmp_path / "a.csv")
     with pytest.raises(WriteError, match=r"a\.csv.*not written by gaitdisc"):

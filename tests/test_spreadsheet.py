@@ -86,3 +86,10 @@ def test_words_that_look_like_numbers_stay_words(tmp_path):
     write_csv(pd.DataFrame({"who": ["007", "8"], "n": [1, 2]}), tmp_path / "a.csv")
     table = read_csv(tmp_path / "a.csv", ("who",))
     assert (table["who"].tolist(), table["n"].tolist()) == (["007", "8"], [1, 2])
+
+
+def test_further_rows_are_written_under_the_first(tmp_path):
+    rows = [pd.DataFrame({"who": ["P1", "=P2"], "n": [1, 2]}), pd.DataFrame({"who": ["P3", None], "n": [3, 4]})]
+    write_csv(rows[0], tmp_path / "parts.csv", rest=iter(rows[1:]))
+    write_csv(pd.concat(rows), tmp_path / "whole.csv")
+    assert (tmp_path / "parts.csv").read_bytes() == (tmp_path / "whole.csv").read_bytes()

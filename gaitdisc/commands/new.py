@@ -37,13 +37,18 @@ def new(
     if is_model(recordings):
         _write_mapping(out, recordings, degrees)
         return
+    from gaitdisc.commands.run_report import progress_bar
     from gaitdisc.ingest.new_study import draft_study
     from gaitdisc.ingest.study_file import write_study
     from gaitdisc.words import counted
 
     file = out / "study.toml"
     claim_file(file)
-    draft, notes = draft_study(recordings, out)
+    with progress_bar(quiet=False) as bar:
+        task = bar.add_task("reading")
+        draft, notes = draft_study(
+            recordings, out, progress=lambda done, count: bar.update(task, completed=done, total=count)
+        )
     write_study(draft, file)
     for note in notes:
         typer.echo(f"  {note}")

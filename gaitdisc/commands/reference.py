@@ -16,18 +16,23 @@ if TYPE_CHECKING:
 
 
 def reference(
-    controls: Annotated[Path, typer.Argument(help="Study of the controls, or the folder of its run.")],
+    controls: Annotated[Path, typer.Argument(help="Study of controls, its run, or normal data (.gcd, .xlsx).")],
     out: Annotated[Path, typer.Option("--out", help="Folder for reference.json.")],
     group: Annotated[str, typer.Option(help="Use only this group of the study, such as control.")] = "",
+    people: Annotated[int, typer.Option(min=0, help="Number of people in normal data.")] = 0,
     jobs: Jobs = 1,
 ) -> None:
     """Process controls like a study, and save the mean cycles of their legs for `--reference`."""
     from gaitdisc.clinic.clinical_reference import FILE, save_reference
     from gaitdisc.clinic.like_controls import described, list_groups
+    from gaitdisc.clinic.normal_data import ENDINGS
     from gaitdisc.clinic.reference import FEWEST, make_reference
     from gaitdisc.own_files import claim_folder
     from gaitdisc.processing.pooled_cycles import CYCLES
 
+    if controls.suffix.lower() in ENDINGS:
+        _keep_normal_data(controls, out, people)
+        return
     claim_folder(out, FILE)
     run = _find_run(controls, jobs)
     cycles = tuple(one for one in run.of(CYCLES) if not group or one.group == group)
@@ -47,6 +52,25 @@ def reference(
         for own in list_groups(found.of(word)):
             typer.echo(f"    group: {described(own)}")
     typer.echo(f"reference: {path}")
+
+
+def _keep_normal_data(file: Path, out: Path, people: int) -> None:
+    """Write normal data as the table of a published reference; no limits follow from it."""
+    from gaitdisc.clinic.clinical_reference import PUBLISHED
+    from gaitdisc.clinic.normal_data import read_normal_data
+    from gaitdisc.own_files import claim_folder
+    from gaitdisc.whole_file import write_whole
+
+    if not people:
+        remedy = f"Add it: gaitdisc reference {file} --out {out} --people 30."
+        raise SchemaError("normal data must come with a number of people", "it is not given", remedy)
+    claim_folder(out, PUBLISHED)
+    table = read_normal_data(file, people)
+    text = table.to_csv(index=False, float_format="%.6g")
+    path = write_whole(out / PUBLISHED, f"# normal data of {people} people, from {file.name}\n{text}")
+    typer.echo(f"  curves: {', '.join(table['variable'].unique()).replace('_', ' ')}")
+    typer.echo("  bands and profile scores are computed; nothing stands out, since limits need single legs")
+    typer.echo(f"reference: {path}. Its first line is printed on each page: write there who these people are.")
 
 
 def _find_run(controls: Path, jobs: int) -> StudyRun:

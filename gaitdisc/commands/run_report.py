@@ -109,6 +109,13 @@ def stoppable(again: str = "the same command") -> Iterator[None]:
 
 @contextmanager
 def stoppable_bar(quiet: bool) -> Iterator[Progress]:
+    """Bar of work whose finished parts are kept."""
+    with stoppable(), progress_bar(quiet) as bar:
+        yield bar
+
+
+@contextmanager
+def progress_bar(quiet: bool) -> Iterator[Progress]:
     """Bar with the time that is left, where somebody looks on."""
     from rich.console import Console
     from rich.progress import BarColumn, Progress, TextColumn, TimeElapsedColumn, TimeRemainingColumn
@@ -122,7 +129,7 @@ def stoppable_bar(quiet: bool) -> Iterator[Progress]:
     )
     screen = Console(stderr=True)
     disable = quiet or not screen.is_terminal
-    with stoppable(), Progress(*columns, console=screen, transient=True, disable=disable) as bar:
+    with Progress(*columns, console=screen, transient=True, disable=disable) as bar:
         yield bar
 
 

@@ -12,9 +12,9 @@ from gaitdisc.errors import SchemaError
 from gaitdisc.ingest.public_words import PublicWords, package_words
 from gaitdisc.ingest.reading import read_trial
 from gaitdisc.ingest.study import Study
-from gaitdisc.ingest.trial_sets import not_compared, why_refused
-from gaitdisc.processing.pooled_cycles import WalkSummary
-from gaitdisc.processing.processed_walks import process_walks
+from gaitdisc.ingest.trial_sets import why_refused
+from gaitdisc.processing.pooled_cycles import WalkSummary, pooled_walk
+from gaitdisc.processing.processed_walks import pool_public, process_walks
 from gaitdisc.processing.walk_pair import COMPARED, walk_pair
 from gaitdisc.recording import Finding
 from gaitdisc.signals.butterworth import KINEMATICS_HZ
@@ -90,13 +90,18 @@ def _pick_walks(study: Study, participant: str) -> tuple[WalkSummary, WalkSummar
     """Nominal and device walk, or why there are none."""
     person = study.participant(participant)
     nominal, device = study.conditions.both
-    lacking = why_refused(study, person) or not_compared(study, person)
-    if lacking:
+    if lacking := why_refused(study, person):
         return lacking
     walks, refusals = process_walks(study, person)
-    if refusals:
-        return "; ".join(f"{refusal.condition}: {refusal.reason}" for refusal in refusals)
-    return walks[nominal].summary(), walks[device].summary()
+    if not refusals:
+        return walks[nominal].summary(), walks[device].summary()
+    pooled, _ = pool_public(study, person)  # walks of a few strides each
+    kept = {(one.session, one.condition): one for one in pooled if len(one.kept)}
+    session = next((word for word, _ in kept if (word, nominal) in kept and (word, device) in kept), None)
+    if session is None:
+        return "; ".join(f"{refusal.condition}: {refusal.reason}".removeprefix(": ") for refusal in refusals)
+    before, after = (pooled_walk(kept[session, word], study.strides.side) for word in (nominal, device))
+    return before, after
 
 
 def _with_settings(mismatch: Mismatch, settings: dict[str, object]) -> Mismatch:

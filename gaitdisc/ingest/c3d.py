@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
+import itertools
 from collections.abc import Mapping
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
-from itertools import product
 from pathlib import Path
 
 import numpy as np
@@ -14,14 +14,23 @@ from gaitdisc.errors import ReadError, SamplingError
 from gaitdisc.ingest.c3d_analog import analog_labels, analog_streams
 from gaitdisc.ingest.c3d_kinetics import body_mass, house_kinetics
 from gaitdisc.ingest.c3d_labels import LabelMap, file_events
-from gaitdisc.ingest.c3d_parameters import BLOCK, C3DHeader, C3DParameters, read_c3d_header, read_c3d_parameters
+from gaitdisc.ingest.c3d_parameters import (
+    BLOCK,
+    C3DHeader,
+    C3DParameters,
+    decoded,
+    read_c3d_header,
+    read_c3d_parameters,
+)
 from gaitdisc.ingest.c3d_points import Streams, add_part, file_segments, point_names, point_streams
+from gaitdisc.ingest.columns import is_ignored
 from gaitdisc.ingest.force_plates import force_plates, plate_loads, plate_streams
 from gaitdisc.ingest.reader_process import Arrays, ReaderProcess, ReadRequest
 from gaitdisc.recording import Finding, Recording, Source, Surface, Trial
 from gaitdisc.recording.arrays import Values
 from gaitdisc.regular_file import file_sha256
 
+GLANCES = 30  # frames by which `glance_at_c3d` sees what a file has
 ANALOG_STREAMS = ("emg", "forces", "signals")
 _SATURATED = 65535  # a 16-bit frame number that stands for "more than that"
 _REMEDY = (
@@ -116,10 +125,13 @@ class C3DReader:
         samples = layout.samples_per_frame
         point_times = np.arange(layout.frames) / rate_hz
         analog_times = np.arange(layout.frames * samples) / (rate_hz * max(samples, 1))
-        recordings = {
-            key: Recording(analog_times if key in ANALOG_STREAMS else point_times, values, columns, source=source)
-            for key, (values, columns) in streams.items()
-        }
+        recordings = {}
+        for key, (values, columns) in streams.items():
+            used = [not is_ignored(channel) for channel in columns]
+            if any(used):
+                times = analog_times if key in ANALOG_STREAMS else point_times
+                own = values if all(used) else values[:, used]
+                recordings[key] = Recording(times, own, tuple(itertools.compress(columns, used)), source=source)
         segments = file_segments(path, header, parameters, source)
         recordings |= {"segments": segments} if segments is not None else {}
         return Trial(path.stem, recordings, events, tuple(findings), surfaces=surfaces)
@@ -152,6 +164,36 @@ def read_c3d(path: str | Path, channels: Mapping[str, str] | None = None) -> Tri
     """Trial of one C3D file; `C3DReader` is faster for many."""
     with C3DReader() as reader:
         return reader.read(path, channels)
+
+
+def glance_at_c3d(path: Path) -> Trial:
+    """Markers, outputs of the model, EMG and events of a C3D file by some 30 frames of it, read in this process.
+
+    Enough to see what a file has and whether somebody walks in it; the EMG has no values.
+    """
+    header = read_c3d_header(path)
+    parameters = read_c3d_parameters(path, header)
+    check_common_scales(header, parameters)
+    layout, findings = find_layout(header, parameters)
+    rate_hz, _ = _rate(header, parameters, layout)
+    step, size = max(layout.frames // GLANCES, 1), 4 * layout.points * layout.word_bytes
+    with path.open("rb") as file:
+        frames = []
+        for frame in range(0, layout.frames, step):
+            file.seek((layout.data_block - 1) * BLOCK + frame * layout.frame_bytes)
+            frames.append(file.read(size))
+    cells = decoded(b"".join(frames), layout.word_bytes, header.processor).astype(float)
+    cells = cells.reshape(len(frames), layout.points, 4)
+    points = cells[:, :, :3] * (abs(parameters.number("POINT", "SCALE") or 1.0) if layout.word_bytes == 2 else 1.0)
+    points[cells[:, :, 3] < 0] = np.nan
+    labels = LabelMap()
+    streams, _, _ = point_streams(points.reshape(len(frames), 3 * layout.points), parameters, labels)
+    analog, _ = analog_streams(np.full((len(frames), layout.channels), np.nan), parameters, set(), labels)
+    first = parameters.field("ACTUAL_START_FIELD") or max(header.first_frame, 1)
+    events, _ = file_events(parameters, layout.frames, rate_hz, first)
+    times = np.arange(len(frames)) * step / rate_hz
+    recordings = {key: Recording(times, *part, source=Source(header.file)) for key, part in (streams | analog).items()}
+    return Trial(path.stem, recordings, events, tuple(findings))
 
 
 def _streams(
@@ -257,7 +299,7 @@ def find_layout(header: C3DHeader, parameters: C3DParameters) -> tuple[C3DLayout
     blocks = _distinct(header.data_block, parameters.count("POINT", "DATA_START") or None)
     layouts = [
         C3DLayout(count, used, channels, samples, word_bytes, block)
-        for count, used, (channels, samples), block in product(frames, points, analog, blocks)
+        for count, used, (channels, samples), block in itertools.product(frames, points, analog, blocks)
     ]
     filling = [layout for layout in layouts if layout.fills(header.size)]
     layout = (filling or layouts)[0]

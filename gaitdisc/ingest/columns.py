@@ -27,6 +27,7 @@ _UNITS_OF = {
     "emg": ("V", "1", "%"),
 }
 _CLOCK = " @ "
+IGNORE = "ignore"  # what the study calls a column, a marker or a channel that is not used
 RATE_WORDS = {"/s": "speed", "/s2": "accel"}  # how OpenSim calls the derivatives of a coordinate
 SLOWEST_S = 0.2  # between samples: people make up to 2.5 steps a second, which fewer than 5 Hz cannot show (Nyquist)
 FEW = 50  # samples, of which fewer are no recording of a walk
@@ -127,6 +128,11 @@ def name_channel(name: str) -> Channel:
     return Channel(name, "signal", "1", find_side(name))
 
 
+def is_ignored(channel: Channel) -> bool:
+    """Whether the study says `ignore` of a column, a marker or a channel."""
+    return channel.name.partition(".")[0] == IGNORE
+
+
 def check_written_names(names: Sequence[str], file: str) -> None:
     """Refuse names that a text table cannot hold."""
     for name in names:
@@ -172,6 +178,8 @@ def find_column(label: str, file: str, channels: Mapping[str, str] | None) -> Co
     """Column of a label, by the study's `[channels]` or the vocabulary."""
     plain = split_unit(label)[0]
     name, unit, said = read_label(label, channels)
+    if said and name == IGNORE:
+        return Column(label, name_channel(name), "1")
     alias = None if said else vocabulary().named(plain)
     channel = alias or name_channel(name)
     if unit is None and name not in vocabulary().by_name:
@@ -204,6 +212,8 @@ def sort_trial(
     source: Source, time: Values, values: Values, columns: Sequence[Column], findings: Sequence[Finding] = ()
 ) -> Trial:
     """Trial of one file whose columns (time, channel), in the file's units, share one even time base [s]."""
+    used = [not is_ignored(column.channel) for column in columns]
+    columns, values = [column for column, use in zip(columns, used, strict=True) if use], values[:, used]
     channels = [column.channel for column in columns]
     names = [channel.name for channel in channels]
     doubled = next((name for name in names if names.count(name) > 1), None)
@@ -224,13 +234,13 @@ def sort_trial(
             f"its times are {step_s:g} s apart, so {len(time)} samples would last {len(time) * step_s / 3600:.3g} h",
             "If the times are in ms, name the column 'time [ms]'.",
         )
-    inside = np.column_stack([column.convert(values[:, i]) for i, column in enumerate(columns)])
+    inside = [column.convert(values[:, i]) for i, column in enumerate(columns)]
     places: dict[str, list[int]] = {}
     for i, channel in enumerate(channels):
         places.setdefault(find_stream(channel), []).append(i)
     streams = {
-        key: Recording(time, inside[:, chosen], tuple(channels[i] for i in chosen), source=source)
-        for key, chosen in places.items()
+        key: Recording(time, np.column_stack([inside[i] for i in own]), tuple(channels[i] for i in own), source=source)
+        for key, own in places.items()
     }
     name = source.file.rpartition(".")[0] or source.file
     return Trial(name, streams, findings=tuple(findings))

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import os
 from collections import Counter
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -72,6 +72,7 @@ def draft_study(
     home: Path | str | None = None,
     files: Sequence[Path] | None = None,
     looked: Looked | None = None,
+    progress: Callable[[int, int], None] = lambda *_: None,
 ) -> tuple[Study, list[str]]:
     """Draft of a study from a folder of recordings.
 
@@ -83,6 +84,7 @@ def draft_study(
     home: folder in which the study file will lie; its paths are relative to it. The same folder by default
     files: only these, relative to the folder
     looked: what was read before of files that are as they were; is added to
+    progress: called with the number of the trial that is read, and of all
     returns study: a draft that can be run as it is; trials whose condition no name shows are 'unknown' and not used
     returns notes: what was guessed, left out or could not be read
     """
@@ -93,9 +95,8 @@ def draft_study(
     files = recording_files(folder) if files is None else files
     tables = [path for path in files if is_people_table(path)]
     measured = read_people(folder, tables, notes)
-    found = _read_drafts(
-        folder, [path for path in files if path not in tables], notes, {} if looked is None else looked
-    )
+    others = [path for path in files if path not in tables]
+    found = _read_drafts(folder, others, notes, {} if looked is None else looked, progress)
     if not found:
         unread = f"; {notes[0]}" if notes else ""
         raise ReadError(
@@ -103,7 +104,9 @@ def draft_study(
             f"none of its files can be read{unread}",
             "Name the folder that contains them.",
         )
-    groups = {trial.person: {one.group for one in found if one.person == trial.person} - {""} for trial in found}
+    groups: dict[str, set[str]] = {}
+    for trial in found:
+        groups.setdefault(trial.person, set()).update({trial.group} - {""})
     alone = {person: next(iter(own)) for person, own in groups.items() if len(own) == 1}
     found = [replace(trial, group=trial.group or alone.get(trial.person, "")) for trial in found]  # the only one
     conditions, called = name_conditions(found, notes)
@@ -173,13 +176,20 @@ def _bodies(
     return found
 
 
-def _read_drafts(folder: Path, files: Sequence[Path], notes: list[str], looked: Looked) -> list[FoundTrial]:
+def _read_drafts(
+    folder: Path,
+    files: Sequence[Path],
+    notes: list[str],
+    looked: Looked,
+    progress: Callable[[int, int], None] = lambda *_: None,
+) -> list[FoundTrial]:
     """Every walk, read one after the other; what a draft needs of it is kept, its samples are not."""
     from gaitdisc.ingest.c3d import C3DReader
 
-    found = []
+    found, groups = [], _walks(files)
     with C3DReader() as reader:
-        for group in _walks(files):
+        for number, group in enumerate(groups, 1):
+            progress(number, len(groups))
             stamp = tuple((file.as_posix(), *read_stamp(folder / file)) for file in group)
             if stamp not in looked:
                 said: list[str] = []
@@ -251,7 +261,11 @@ def _readable(
     folder: Path, group: Sequence[Path], reader: C3DReader, notes: list[str]
 ) -> tuple[list[Path], Trial | None]:
     """The walk and its files, without those that cannot be read or that do not go with the others."""
+    from gaitdisc.ingest.c3d import glance_at_c3d
+
     try:
+        if [file.suffix.lower() for file in group] == [".c3d"]:
+            return list(group), glance_at_c3d(folder / group[0])
         return list(group), read_trial([folder / file for file in group], reader=reader)
     except GaitdiscError:
         read: list[Path] = []

@@ -49,8 +49,8 @@ _SHOWN_BY = {
     "group": "controls patients healthy typical td cp stroke parkinson amputees adults children",
     "session": "pre before preop intake post after postop followup followup2 retention",  # in their order
     # what a file of a walk holds, not which walk it is
-    "content": "ik id grf grfs emg trc markers marker coordinates kinematics kinetics forces electromyography envelope "
-    "inverse dynamics results mot sto c3d experimentaldata inversekinematics inversedynamics analog force",
+    "content": "ik id events grf grfs emg trc markers marker coordinates kinematics kinetics forces electromyography "
+    "envelope inverse dynamics results mot sto c3d experimentaldata inversekinematics inversedynamics analog force",
     "nothing": "raw data trials recordings",
 }
 WORDS = {shown: tuple(words.split()) for shown, words in _SHOWN_BY.items()}

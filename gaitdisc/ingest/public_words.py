@@ -122,6 +122,7 @@ def list_words(study: Study, participant: Participant, named: Iterable[str] = ()
     """
     said = [study.title, *study.sessions, *study.conditions.words, participant.group, participant.excluded, *named]
     said += [each.id for each in study.participants]
+    said += [trial.leave_out for trial in participant.trials]
     said += [trial.condition for each in study.participants for trial in each.trials]
     said += [*study.models.angles, *study.models.emg, *study.models.outputs]
     said += study.channel_names

@@ -10,10 +10,10 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from gaitdisc.channel import hint_nearest
-from gaitdisc.errors import ChannelError, ReadError, SamplingError, WriteError
+from gaitdisc.errors import ChannelError, ReadError, SamplingError, StrideError, WriteError
 from gaitdisc.ingest.array_file import ENDINGS as ARRAYS
 from gaitdisc.ingest.array_file import read_arrays
-from gaitdisc.ingest.columns import split_unit
+from gaitdisc.ingest.columns import IGNORE, split_unit
 from gaitdisc.ingest.plausible import with_flexion_positive, without_frozen, without_impossible
 from gaitdisc.ingest.stated_units import per_kg_findings, plausible_unit
 from gaitdisc.ingest.storage import read_storage, write_storage
@@ -28,6 +28,7 @@ if TYPE_CHECKING:
     from gaitdisc.ingest.c3d import C3DReader
     from gaitdisc.ingest.study import Participant, PlannedTrial, Study
 
+EDGE_S = 0.05  # by which an event may lie outside of its recording
 READERS = {
     ".mot": read_storage,
     ".sto": read_storage,
@@ -111,6 +112,7 @@ def read_trial(
     events = tuple(sorted((event for one in parts for event in one.events), key=lambda event: event.time))
     if not any(str(file).lower().endswith(".c3d") for file in files):  # that reader reports unused labels itself
         findings += _list_unused(channels, named, parts[0].name)
+    _refuse_events_outside(files, parts, named)
     surfaces = tuple(surface for one in parts for surface in one.surfaces)
     trial = Trial(parts[0].name, named, events, tuple(findings), subject, condition=condition, surfaces=surfaces)
     begin_s = {key: float(recording.time[0]) for key, recording in trial.streams.items() if len(recording.time)}
@@ -126,6 +128,8 @@ def read_planned_trial(
     study: Study, participant: Participant, planned: PlannedTrial, reader: C3DReader | None = None
 ) -> Trial:
     """Trial as a study plans it, named by pseudonym, session, condition, and a number where there are several."""
+    if planned.leave_out:
+        raise StrideError("this trial is left out by the study", planned.leave_out, "Remove leave_out to use it.")
     paths = [study.path_of(file) for file in planned.files]
     trial = read_trial(
         paths, study.channels, participant.id, planned.condition, planned.crop_s, reader=reader, part=planned.part
@@ -195,9 +199,23 @@ def _join(one: Recording, other: Recording, key: str) -> Recording:
     )
 
 
+def _refuse_events_outside(files: Sequence[object], parts: Sequence[Trial], streams: Mapping[str, Recording]) -> None:
+    """Refuse events of a table beside a recording that has another clock."""
+    ends = [time for recording in streams.values() for time in (recording.time[0], recording.time[-1])]
+    start, end = min(ends, default=0.0), max(ends, default=float("inf"))
+    for file, one in zip(files, parts, strict=True):
+        far = [event.time for event in one.events if not start - EDGE_S <= event.time <= end + EDGE_S]
+        if far and not one.streams:
+            raise SamplingError(
+                f"{Path(str(file)).name}: events must lie within the recording, from {start:.2f} to {end:.2f} s",
+                f"{len(far)} of {len(one.events)} lie outside, the first at {far[0]:.2f} s",
+                "Write times on the recording's clock; in a C3D file its first frame is at 0 s.",
+            )
+
+
 def _list_unused(channels: Mapping[str, str] | None, streams: Mapping[str, Recording], name: str) -> list[Finding]:
     there = {channel.rpartition(".")[0] or channel for r in streams.values() for channel in r.names}
-    there |= {channel for r in streams.values() for channel in r.names} | {"time"}
+    there |= {channel for r in streams.values() for channel in r.names} | {"time", IGNORE}
     absent = [label for label, said in (channels or {}).items() if split_unit(said)[0] not in there]
     if not absent:
         return []

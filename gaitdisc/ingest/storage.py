@@ -25,6 +25,7 @@ from gaitdisc.channel import (
 from gaitdisc.errors import ReadError
 from gaitdisc.ingest.cells import Form, check_counts, even_time, parse_cells
 from gaitdisc.ingest.columns import (
+    IGNORE,
     RATE_WORDS,
     Column,
     check_written_names,
@@ -61,7 +62,7 @@ def read_storage(path: Path | str, channels: Mapping[str, str] | None = None) ->
 
     Both header styles are read, and both at once. What the header states about degrees is obeyed and checked against
     how far hips and knees move; translations are in m whatever it states. Wrong counts in a header are reported where
-    the rows agree among themselves; fewer rows than it claims are refused, since the file was cut.
+    the rows agree among themselves; more than 1 % fewer rows than it claims are refused, since the file was cut.
 
     channels: the study's `[channels]`: label -> `name` or `name [unit]`
     returns: streams `kinematics`, `emg`, `forces`, `moments`, `signals`, as far as the file has them
@@ -74,7 +75,7 @@ def read_storage(path: Path | str, channels: Mapping[str, str] | None = None) ->
     form = Form(raw.name, header.separator)
     cells = parse_cells(lines[header.body_line - 1 :], header.labels, header.body_line, form)
     claims = ("rows", header.rows, len(cells.values)), ("columns", header.columns, len(header.labels))
-    findings = [*check_counts(cells, raw.name, *claims), *naming_findings(columns, raw.name)]
+    findings = [*check_counts(cells, lines, raw.name, *claims), *naming_findings(columns, raw.name)]
     if lines[-1].strip() and len(cells.lines) >= 3:  # a number cut: no line end, shorter than all of one width
         before = {len(str(lines[number - 1]).rstrip()) for number in cells.lines[:-1].tolist()}
         width = max(before)
@@ -213,7 +214,7 @@ def _keys(lines: Sequence[str], file: str):
                     "Write the count, or remove the line.",
                 )
             yield key, int(value)
-        elif key == "indegrees" and sign:
+        elif key == "indegrees" and sign and value:
             if value.lower() not in _YES_NO:
                 raise ReadError(
                     f"{file}: line {number} must be inDegrees=yes or inDegrees=no",
@@ -273,6 +274,8 @@ def naming_findings(columns: Sequence[Column], file: str) -> list[Finding]:
 def _map_column(label: str, name: str, unit: str | None, title: str, file: str) -> Column:
     """Column as the study's `[channels]` has it."""
     channel = name_channel(name)
+    if name == IGNORE:
+        return Column(label, channel, "1")
     if channel.quantity == "emg" and unit is None:
         return Column(label, replace(channel, unit="1"), "1")
     if channel.quantity != "signal" or unit:

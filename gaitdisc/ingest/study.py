@@ -35,6 +35,7 @@ STATIC = "static"  # condition of a trial in which the person stands
 FUNCTIONAL = "functional"  # condition of a trial in which the legs are circled about the hips
 _DATE = re.compile(r"(?<!\d)(?:\d{1,4}[-_./ ]\d{1,2}[-_./ ]\d{1,4}|\d{6}|\d{8}|(?:19|20)\d{2})(?!\d)")
 
+LEFT_OUT_CYCLE = re.compile(r"(l|r)(?:eft|ight)? (\d+(?:\.\d+)?)(?: s)?[,:]?(?: (.+))?")
 FileName = Annotated[str, Field(min_length=1)]
 Pseudonym = Annotated[str, Field(pattern=r"^[A-Za-z0-9_-]{1,16}$")]
 
@@ -88,8 +89,17 @@ class PlannedTrial(StudyPart):
         default=None, description="start and end of the part to use, on the file's clock [s]"
     )
 
+    leave_out: str = Field(default="", description="reason why this trial is left out; pages show it")
+    leave_out_cycles: tuple[str, ...] = Field(
+        default=(), description='cycles that are left out: side, start [s] and reason, such as "left 2.31 stumbled"'
+    )
+
     @model_validator(mode="after")
     def _check(self) -> PlannedTrial:
+        for i, said in enumerate(self.leave_out_cycles):
+            if not LEFT_OUT_CYCLE.fullmatch(said):
+                remedy = 'Write for example "left 2.31 stumbled"; cycles.csv lists start_s of each cycle.'
+                refuse(("leave_out_cycles", i), "be a side and a start [s]", f"found {said!r}", remedy)
         if self.crop_s and self.crop_s[0] >= self.crop_s[1]:
             refuse(("crop_s",), "have a start before its end", f"found {list(self.crop_s)}", "Write [start, end] in s.")
         return self
@@ -153,8 +163,8 @@ class Study(StudyPart):
     treadmill: Treadmill | None = None
     channels: dict[str, str] = Field(
         default_factory=dict,
-        description='label in a file = "channel name" or "channel name [unit]"; variable of a .mat or .npz file = '
-        '"channel name [unit] @ 100 Hz"',
+        description='label in a file = "channel name", "channel name [unit]" or "ignore"; variable of a .mat or '
+        '.npz file = "channel name [unit] @ 100 Hz"',
     )
     filters: Filters = Filters()
     kinematics: Kinematics | None = None

@@ -140,7 +140,7 @@ def _pairs(part: BaseModel, names: tuple[str, ...], explained: bool) -> str:
     if not explained:
         return "".join(_pair(part, name) for name in names)
     values = {name: getattr(part, name) for name in names}
-    return "".join(f"{name} = {_value(value)}\n" for name, value in values.items() if value not in (None, ""))
+    return "".join(f"{name} = {_value(value)}\n" for name, value in values.items() if value not in (None, "", ()))
 
 
 def _pair(part: BaseModel, name: str) -> str:

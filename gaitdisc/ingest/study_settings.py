@@ -10,7 +10,7 @@ from pydantic import BaseModel, ConfigDict, Field, model_validator
 from pydantic_core import PydanticCustomError
 
 from gaitdisc.channel import hint_nearest, vocabulary
-from gaitdisc.ingest.columns import split_unit
+from gaitdisc.ingest.columns import IGNORE, split_unit
 from gaitdisc.units import list_units, offset_words, parse_unit
 
 ANGLES = tuple(
@@ -149,6 +149,8 @@ def check_channels(channels: Mapping[str, str]) -> None:
     for label, said in channels.items():
         name, unit = split_unit(said)
         place = ("channels", label)
+        if name == IGNORE:
+            continue
         if not name:
             refuse(place, "be the name of a channel", f"found {said!r}", 'Write for example "emg_sol_r [V]".')
         if unit is not None and parse_unit(unit) is None:

@@ -14,7 +14,8 @@ import numpy as np
 
 from gaitdisc.errors import ReadError
 from gaitdisc.ingest.cells import Cells, Form, even_time, parse_cells, printed_digit
-from gaitdisc.ingest.columns import Column, check_written_names, find_column, read_label, sort_trial, split_unit
+from gaitdisc.ingest.columns import IGNORE, Column, check_written_names, find_column, read_label, sort_trial, split_unit
+from gaitdisc.ingest.event_table import read_events
 from gaitdisc.ingest.raw_file import RawFile, read_raw
 from gaitdisc.ingest.stated_units import plausible_unit
 from gaitdisc.recording import Finding, Recording, Source, Trial
@@ -37,7 +38,8 @@ def read_table(path: Path | str, channels: Mapping[str, str] | None = None) -> T
     Commas, semicolons or tabs separate; with the latter two a comma may be the decimal sign. Lines at the top that
     begin with `#`, and up to 50 others above the line that names the column of times, are passed over. Names of the
     vocabulary have their unit by definition; every other name must state one. A column of times of another name is
-    named by the study: `"Frame time" = "time [s]"`. A line of units below the header counts as part of it.
+    named by the study: `"Frame time" = "time [s]"`. A line of units below the header counts as part of it. A table of
+    events (`read_events`) gives a trial of events alone.
 
     channels: the study's `[channels]`: label -> `name` or `name [unit]`
     """
@@ -57,6 +59,8 @@ def read_table(path: Path | str, channels: Mapping[str, str] | None = None) -> T
             ) from error
         labels, values = _of_frame(frame, raw.name, channels)
         return _trial(raw.source("parquet"), _split_time(labels, values, channels, raw.name), channels)
+    if events := read_events(raw.lines(), raw.name):
+        return Trial(raw.stem, {}, events)
     labels, cells = _text(raw, channels)
     return _trial(raw.source("csv"), _split_time(labels, cells.values, channels, raw.name, cells), channels)
 
@@ -163,7 +167,9 @@ def _text(raw: RawFile, channels: Mapping[str, str] | None) -> tuple[list[str], 
     units = _units_below(lines[top + 1 : top + 2], labels, separator)
     labels, top = (units, top + 1) if units else (labels, top)
     comma = separator != "," and any("," in line for line in lines[top + 1 : top + 50])
-    return labels, parse_cells(lines[top + 1 :], labels, top + 2, Form(raw.name, separator, "," if comma else "."))
+    ignored = frozenset(label for label in labels if read_label(label, channels)[0] == IGNORE)
+    form = Form(raw.name, separator, "," if comma else ".", ignored)
+    return labels, parse_cells(lines[top + 1 :], labels, top + 2, form)
 
 
 def _header(line: str, channels: Mapping[str, str] | None) -> tuple[str, list[str]] | None:
@@ -208,6 +214,7 @@ def _of_frame(frame: pd.DataFrame, name: str, channels: Mapping[str, str] | None
     """Labels and numbers (row, column) of a table in memory."""
     from pandas.api.types import is_bool_dtype, is_numeric_dtype
 
+    frame = frame.loc[:, [read_label(str(label), channels)[0] != IGNORE for label in frame.columns]]
     labels = [str(label) for label in frame.columns]
     for label, dtype in zip(labels, frame.dtypes, strict=True):
         if not is_numeric_dtype(dtype) or is_bool_dtype(dtype) or dtype.kind == "c":

@@ -51,7 +51,7 @@ def read_trc(path: Path | str, channels: Mapping[str, str] | None = None) -> Tri
         lines[header.body_line - 1 :], ["Frame#", "Time", *coordinates], header.body_line, Form(raw.name)
     )
     claims = ("frames", [header.frames], len(cells.values)), ("markers", [header.markers], len(header.labels))
-    findings = check_counts(cells, raw.name, *claims)
+    findings = check_counts(cells, lines, raw.name, *claims)
     digit = cells.printed_digit(1)
     time = even_time(cells.values[:, 1], digit, raw.name, cells.lines)
     step = (time[-1] - time[0]) / (len(time) - 1)

@@ -103,7 +103,7 @@ def same_recording(study: Study, one: PlannedTrial, other: PlannedTrial) -> bool
 def report_shared_recording(study: Study, participant: Participant) -> str:
     """Say that a recording of a participant is also one of another participant, session or condition; or empty."""
     people = [person for person in study.participants if not person.excluded]
-    used = [(one, trial) for one in people for trial in one.trials if trial.condition != UNKNOWN]
+    used = [(one, t) for one in people for t in one.trials if t.condition != UNKNOWN and not t.leave_out]
     for own, (other, trial) in itertools.product((t for one, t in used if one is participant), used):
         alike = other is participant and own.condition == trial.condition  # counted once, or standing for two sessions
         if alike and (own.session == trial.session or not is_walk(study, own)):
@@ -118,7 +118,7 @@ def report_shared_recording(study: Study, participant: Participant) -> str:
 def differing_body(study: Study, participant: Participant) -> str:
     """Say which measure differs between files of a session by more than one body does; the study's own go first."""
     found: dict[tuple[str | None, str], dict[float, str]] = {}
-    for trial in (one for one in participant.trials if one.condition != UNKNOWN):
+    for trial in (one for one in participant.trials if one.condition != UNKNOWN and not one.leave_out):
         for file in trial.files:
             with suppress(OSError, GaitdiscError):  # reading says why
                 body = body_measures_in(study.path_of(file))

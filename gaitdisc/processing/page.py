@@ -88,8 +88,11 @@ def write_lone_cycles(one: PooledCycles, folder: Path) -> Path:
 
 def save_cycle_tables(run: StudyRun, folder: Path) -> None:
     """Write all cycles, all mean curves and all spatiotemporal values of a run as three tables."""
-    for name, table in (("cycles", all_cycles), ("means", all_means), ("spatiotemporal", all_spatiotemporal)):
-        save_table(table(run.of(CYCLES)), folder / "tables" / f"{name}.csv")
+    cycles, tables = run.of(CYCLES), folder / "tables"
+    for name, table in (("cycles", all_cycles), ("spatiotemporal", all_spatiotemporal)):
+        save_table(table(cycles), tables / f"{name}.csv")
+    means = (all_means([one]) for one in cycles if len(one.kept))  # of 500 people, two million rows
+    save_table(next(means, all_means(())), tables / "means.csv", means)
 
 
 def cycles_sentences(run: StudyRun) -> list[str]:

@@ -38,6 +38,7 @@ from gaitdisc.processing.trial_cycles import (
     with_plate_steps,
     with_plates,
     without_doubted,
+    without_stated,
 )
 from gaitdisc.recording import PERCENT, Cycle, Finding, Recording, Strides, Trial
 from gaitdisc.recording.arrays import Values
@@ -186,10 +187,14 @@ def _pool(
 ) -> PooledCycles:
     study, participant = standing.study, standing.participant
     cut = [_cut(study, trial, later) for trial in seen]
+    stated = [
+        without_stated(cycles, trial.planned.leave_out_cycles, participant.trial_name(trial.planned))
+        for trial, (cycles, _) in zip(seen, cut, strict=True)
+    ]
     # durations are checked over all trials together
     durations = np.array([cycle.duration_s for cycles, _ in cut for cycle in cycles])
     reasons = iter(duration_reasons(durations, study.strides.min_s, study.strides.max_s))
-    checked = [[replace(cycle, reason=next(reasons) or cycle.reason) for cycle in cycles] for cycles, _ in cut]
+    checked = [[replace(cycle, reason=next(reasons) or cycle.reason) for cycle in cycles] for cycles, _ in stated]
     outside = bool(seen) and all(trial.over_ground for trial in seen)
     too_few = _too_few(study, participant, one, seen, checked)
     where = " ".join(part for part in (one.session, one.condition) if part)
@@ -205,6 +210,7 @@ def _pool(
     off_late = next((trial.steps.off_detector for trial in seen), "")
     offset_s, steps = _offset_s(later, "contacts", late), len(later.get(("contacts", late), ()))
     findings = [finding for trial in seen for finding in trial.findings]
+    findings += [finding for _, unknown in stated for finding in unknown]
     if late:
         by = "the one step" if steps == 1 else f"the median of {steps} steps"
         by, spoils = (f"{by} that a plate or the file's events recorded", "phase, and stance, by 3 to 5 % of the cycle")

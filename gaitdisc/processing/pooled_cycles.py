@@ -270,6 +270,27 @@ class WalkSummary:
         return {str(side): int(count) for side, count in chosen["side"].value_counts().sort_index().items()}
 
 
+def pooled_walk(pooled: PooledCycles, follow: str) -> WalkSummary:
+    """Kept cycles of many short trials as the strides of one walk; channels without a side are those of `follow`."""
+    feet = pooled.kept["side"].to_numpy()
+    curves = np.full((max(pooled.counted("l"), pooled.counted("r")), len(PERCENT), len(pooled.channels)), np.nan)
+    for column, channel in enumerate(pooled.channels):
+        own = pooled.curves[feet == (channel.side or follow), :, column]
+        curves[: len(own), :, column] = own
+    return WalkSummary(
+        pooled.subject,
+        pooled.condition,
+        duration_s=float(pooled.kept["stride_s"].sum()),
+        rate_hz=float("nan"),
+        detector=next(iter(pooled.detectors), ""),
+        channels=pooled.channels,
+        curves=curves,
+        strides=pooled.cycles[list(STRIDE_COLUMNS)],
+        findings=pooled.findings,
+        files=pooled.files,
+    )
+
+
 WALK = Kind(
     WalkSummary,
     "walk.json",

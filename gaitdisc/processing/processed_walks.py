@@ -106,6 +106,14 @@ def compute_cycles(study: Study, participant: Participant, folder: Path) -> tupl
     stored = tuple(one for one in (CYCLES.kept(place, key) for place in places) if one is not None)
     if len(stored) == len(places):
         return stored
+    found, unread = pool_public(study, participant)
+    for pooled, place in zip(found, places, strict=True):  # unread files may be readable another time
+        CYCLES.save(pooled, place, "" if unread else key)
+    return tuple(CYCLES.load(place) for place in places)
+
+
+def pool_public(study: Study, participant: Participant) -> tuple[list[PooledCycles], bool]:
+    """Pooled cycles of a participant in public words, and whether a file could not be read."""
     from gaitdisc.processing.pooled import pool_cycles  # brings scipy.signal, which a second run does not need
 
     words = list_words(study, participant)
@@ -127,11 +135,7 @@ def compute_cycles(study: Study, participant: Participant, folder: Path) -> tupl
             )
             for pooled in pool_cycles(study, participant, read)
         ]
-    if unread:  # they may be readable another time, so that this stands for no key
-        key = ""
-    for pooled, place in zip(found, places, strict=True):
-        CYCLES.save(pooled, place, key)
-    return tuple(CYCLES.load(place) for place in places)
+    return found, bool(unread)
 
 
 def cycles_key(study: Study, participant: Participant) -> str:

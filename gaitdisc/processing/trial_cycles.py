@@ -10,7 +10,7 @@ import numpy as np
 
 from gaitdisc.channel import Channel, other_side, vocabulary
 from gaitdisc.errors import GaitdiscError
-from gaitdisc.ingest.study import Filters
+from gaitdisc.ingest.study import LEFT_OUT_CYCLE, Filters
 from gaitdisc.kinematics.markers import PATH_S, STRAIGHT_DEG
 from gaitdisc.kinematics.pose import clinical_angles, make_rotation
 from gaitdisc.kinetics.plate_steps import PlateStep
@@ -30,6 +30,7 @@ from gaitdisc.signals.strides import gap_reasons
 
 LONGEST_STANCE = 0.8  # of a stride: a plate that is loaded for longer carried two feet
 SHORTEST_STRIDE_M = 0.1  # below it the line of a stride has no direction
+SAME_START_S = 0.1  # by which the start that a study gives of a cycle may differ
 EDGE_S = 0.06  # by which markers and a plate may differ about one event
 Timed = Mapping[str, tuple[tuple[float, str], ...]]
 FORCE_HZ = 20.0
@@ -145,6 +146,28 @@ def without_doubted(cycles: list[Cycle], spans: Sequence[Span]) -> list[Cycle]:
         inside = max([0.0, *(span.shared(stance).seconds for span in spans)])
         found.append(replace(one, kinetic=one.kinetic and not inside > 0.5 * stance.seconds))
     return found
+
+
+def without_stated(cycles: list[Cycle], said: Sequence[str], file: str) -> tuple[list[Cycle], list[Finding]]:
+    """Same cycles, left out where the study says so, by side and start, and a finding for what it says of no cycle.
+
+    >>> cycles = [Cycle("l", 2.305, 3.4, ("force", "force"))]
+    >>> found, unknown = without_stated(cycles, ("left 2.31 stumbled", "right 9.1"), "P01 fast")
+    >>> found[0].reason, unknown[0].what
+    ('left out by the study: stumbled', "leave_out_cycles says 'right 9.1', but no such cycle begins there")
+    """
+    found, findings = list(cycles), []
+    for words in said:
+        parts = LEFT_OUT_CYCLE.fullmatch(words)
+        side, start, reason = (parts[1], float(parts[2]), parts[3]) if parts else ("", 0.0, "")
+        near = {abs(one.start - start): i for i, one in enumerate(found) if one.side == side}
+        if near and min(near) <= SAME_START_S:
+            at = near[min(near)]
+            found[at] = replace(found[at], reason=f"left out by the study: {reason or 'no reason is given'}")
+        else:
+            what = f"leave_out_cycles says {words!r}, but no such cycle begins there"
+            findings.append(Finding("warning", "cycle not found", file, what, "nothing; correct it by cycles.csv"))
+    return found, findings
 
 
 @dataclass(frozen=True, eq=False)

@@ -46,9 +46,9 @@ def save_tables(tables: Iterable[Table], folder: Path) -> None:
         save_table(table.numbers, folder / "tables" / f"{table.name}.csv")
 
 
-def save_table(table: pd.DataFrame, path: Path) -> None:
-    """Write a table without its index as CSV, whole, with the same bytes for the same numbers."""
-    write_csv(table, path, "%.8g")
+def save_table(table: pd.DataFrame, path: Path, rest: Iterable[pd.DataFrame] = ()) -> None:
+    """Write a table without its index, and further rows, as CSV, whole, with the same bytes for the same numbers."""
+    write_csv(table, path, "%.8g", rest)
 
 
 def as_markdown(table: Table) -> str:

@@ -76,6 +76,20 @@ def test_recordings_that_the_study_does_not_name_are_counted_by_pseudonym_and_no
     assert "anna" not in said and "w2" not in said
 
 
+def test_recordings_of_somebody_new_beside_the_others_are_counted(tmp_path, capsys):
+    for name in ("anna/w1.c3d", "anna/later/w4.c3d", "bob/w1.c3d", "carl/w1.c3d"):
+        (tmp_path / "recordings" / name).parent.mkdir(exist_ok=True, parents=True)
+        (tmp_path / "recordings" / name).write_bytes(b"")
+    people = [
+        Participant(id=who, trials=(PlannedTrial(condition="walk", files=(f"../recordings/{folder}/w1.c3d",)),))
+        for who, folder in (("P01", "anna"), ("P02", "bob"))
+    ]
+    study = Study(conditions=Conditions(nominal="walk"), participants=tuple(people))
+    say_new_recordings(study.placed(tmp_path / "study"))
+    said = capsys.readouterr().err
+    assert says(said, "1 beside those of P01", "1 of somebody new or in a new folder") and "carl" not in said
+
+
 def test_a_reference_stays_with_the_run(tmp_path):
     save_reference(made_controls(3), tmp_path / "ref")
     assert load_kept_reference(tmp_path / "run") is None

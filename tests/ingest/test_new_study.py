@@ -1,14 +1,17 @@
 """A draft of a study from real folders and from made ones; what came since is added, what stands in it stays."""
 
+from pathlib import Path
+
 import numpy as np
 import pandas as pd
 import pytest
 from texts import says
 
 from gaitdisc.channel import Channel, vocabulary
-from gaitdisc.errors import ReadError, SchemaError
-from gaitdisc.ingest.new_study import _read_drafts, draft_study, recording_files, stands
-from gaitdisc.ingest.reading import read_planned_trial
+from gaitdisc.errors import GaitdiscError, ReadError, SchemaError
+from gaitdisc.ingest.c3d import glance_at_c3d
+from gaitdisc.ingest.new_study import _describe_trial, _read_drafts, draft_study, recording_files, stands
+from gaitdisc.ingest.reading import read_planned_trial, read_trial
 from gaitdisc.ingest.storage import write_storage
 from gaitdisc.ingest.study import Conditions, Participant, PlannedTrial, Study
 from gaitdisc.ingest.study_file import grow_study, load_study, write_study
@@ -197,6 +200,20 @@ def test_who_walks_straight_along_an_axis_does_not_stand():
     events = tuple(Event("initial contact", side, at) for side, at in (("r", 0.2), ("l", 0.7)))
     among_still_points = {"markers": Recording(time, np.tile(step * [0, 1, 1], 6), channels)}
     assert not stands(Trial("a walk by its contacts", among_still_points, events))
+
+
+def test_a_glance_at_a_c3d_shows_what_reading_all_of_it_shows(gait_data, reader):
+    count = 0
+    for file in sorted(gait_data.rglob("*.c3d")):
+        try:
+            whole = read_trial([file], reader=reader)
+        except GaitdiscError as error:
+            with pytest.raises(type(error)):
+                glance_at_c3d(file)
+            continue
+        place, count = (Path("P01/a.c3d"),), count + 1
+        assert _describe_trial(place, glance_at_c3d(file)) == _describe_trial(place, whole), file.name
+    assert count >= 40
 
 
 def test_a_draft_keeps_no_samples(tmp_path):

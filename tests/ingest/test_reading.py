@@ -8,7 +8,7 @@ from hypothesis.extra.numpy import arrays
 from texts import says
 
 from gaitdisc.channel import Channel, vocabulary
-from gaitdisc.errors import ChannelError, ReadError, SamplingError, UnitError
+from gaitdisc.errors import ChannelError, ReadError, SamplingError, StrideError, UnitError
 from gaitdisc.ingest.reading import READERS, WRITERS, read_planned_trial, read_trial
 from gaitdisc.ingest.storage import write_storage
 from gaitdisc.ingest.study import Conditions, Participant, PlannedTrial, Study
@@ -98,6 +98,26 @@ def test_labels_of_the_study_that_no_file_has_are_reported(tmp_path):
     path = _csv(tmp_path, "a.csv", "time,ch 1")
     trial = read_trial(path, {"ch 1": "emg_sol_r", "ch 2": "emg_sol_l"})
     assert len(trial.findings) == 1 and says(trial.findings[0].what, "[channels]", "'ch 2'")
+
+
+def test_events_of_a_table_lie_within_the_recording(tmp_path):
+    walk, events = _csv(tmp_path, "walk.csv", "time,knee_angle_r"), tmp_path / "walk_events.csv"
+    events.write_text("event,side,time\nheel strike,r,0.2\nfoot off,r,0.4\n")
+    assert [(one.label, one.time) for one in read_trial([walk, events]).events] == [
+        ("initial contact", 0.2),
+        ("foot off", 0.4),
+    ]
+    events.write_text("event,side,time\nheel strike,r,0.2\nfoot off,r,2.4\n")
+    with pytest.raises(SamplingError, match=r"walk_events.csv: .* from 0.00 to 0.49 s; 1 of 2 .* at 2.40 s"):
+        read_trial([walk, events])
+
+
+def test_a_trial_that_the_study_leaves_out_is_not_read(tmp_path):
+    planned = PlannedTrial(condition="walk", files=("walk.csv",), leave_out="tripped")
+    person = Participant(id="P01", trials=(planned,))
+    study = Study(conditions=Conditions(nominal="walk"), participants=(person,)).placed(tmp_path)
+    with pytest.raises(StrideError, match="left out by the study; tripped"):
+        read_planned_trial(study, person, planned)
 
 
 def test_a_planned_trial_has_the_name_of_the_plan(tmp_path):

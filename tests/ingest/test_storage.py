@@ -159,6 +159,15 @@ def test_more_rows_than_the_header_claims_are_reported(tmp_path):
     assert len(trial.findings) == 1 and says(trial.findings[0].what, "50 rows", "60")
 
 
+def test_a_header_of_one_percent_too_many_rows_is_read_where_the_file_ends_with_a_line(tmp_path):
+    rows = "".join(f"{i / 100}\t{40 * np.sin(i)}\n" for i in range(200))
+    text = "Coordinates\ndatarows 202\ninDegrees=\nendheader\ntime\tknee_angle_r\n" + rows
+    assert says(read_storage(_written(tmp_path, text)).findings[0].what, "202 rows", "200")
+    for cut in (text[:-1], text.replace("202", "203")):
+        with pytest.raises(ReadError, match="incomplete"):
+            read_storage(_written(tmp_path, cut))
+
+
 def test_both_styles_at_once_as_in_the_emg_file_of_an_example():
     lines = ["EMG.mot", "nRows=4", "nColumns=3", "", "name EMG.mot", "datacolumns 3", "datarows 5", "range 0.1 4.6"]
     header = parse_header([*lines, "endheader", "Time\tHamL_r\tTA_r\t", "0\t1\t2"], "EMG.mot")

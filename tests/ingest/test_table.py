@@ -5,7 +5,7 @@ import pandas as pd
 import pytest
 
 from gaitdisc.errors import ReadError, SamplingError, UnitError
-from gaitdisc.ingest.table import read_table
+from gaitdisc.ingest.table import read_frame, read_table
 
 
 def _read(tmp_path, text, channels=None, name="walk.csv"):
@@ -39,9 +39,33 @@ def test_the_study_names_and_units(tmp_path):
     assert trial.streams["kinematics"]["knee_angle_r"].tolist() == [2, 4]
 
 
+def test_the_study_ignores_columns_of_text_and_without_a_unit(tmp_path):
+    text = "time,note,CH7,knee_angle_r\n0,ok,1,5\n0.01,,2,6\n"
+    trial = _read(tmp_path, text, {"note": "ignore", "ch7": "ignore"})
+    assert list(trial.streams) == ["kinematics"] and trial.streams["kinematics"].names == ("knee_angle_r",)
+    frame = pd.read_csv(tmp_path / "walk.csv")
+    assert read_frame(frame, {"note": "ignore", "CH7": "ignore"}).streams["kinematics"].names == ("knee_angle_r",)
+
+
+@pytest.mark.parametrize(
+    ("text", "times"),
+    [
+        ("Subject,Context,Name,Time (s),Description\nA,Right,Foot Strike,0.52,\nA,Left,General,0.6,\n", [0.52]),
+        ("exported\nevent;side;time [ms]\nheel strike;r;520,5\nto;r;1210\n", [0.5205, 1.21]),
+        ("RHS\tRTO\n0.52\t1.21\n1.66\t\n", [0.52, 1.21, 1.66]),
+    ],
+)
+def test_a_table_of_events_gives_contacts_and_foot_offs(tmp_path, text, times):
+    trial = _read(tmp_path, text)
+    assert not trial.streams and [event.time for event in trial.events] == pytest.approx(times)
+    assert {event.side for event in trial.events} == {"r"} and trial.events[0].label == "initial contact"
+
+
 @pytest.mark.parametrize(
     ("text", "kind", "words"),
     [
+        ("event,time\nheel strike,1.0\n", ReadError, "line 2: each initial contact must have a side; it has none"),
+        ("event,time\nleft heel strike,soon\n", ReadError, "line 2: the time of an event must be a number.*'soon'"),
         (
             "time,foo\n0,1\n1,2\n",
             UnitError,

@@ -119,6 +119,21 @@ def test_a_trial_that_fails_is_left_out_with_its_reason_and_the_others_go_on(pie
     assert "it is damaged" in found.refusals[1].reason
 
 
+def test_a_cycle_that_the_study_leaves_out_stays_with_its_reason(pieces):
+    def pooled(first):
+        study, person = _study((first, *_planned(8)[1:]), **OVERGROUND)
+        return pool_cycles(study, person, lambda planned: pieces[int(planned.files[0][0])])[0]
+
+    (first,) = _planned(1)
+    whole = pooled(first)
+    start = whole.kept.query("trial == 1 and side == 'l'")["start_s"].iloc[0]
+    said = (f"left {start:.2f} looked aside", "right 99")
+    found = pooled(first.model_copy(update={"leave_out_cycles": said}))
+    assert found.counted("l") == whole.counted("l") - 1 and found.counted("r") == whole.counted("r")
+    assert "left out by the study: looked aside" in set(found.left_out["reason"])
+    assert [says(one.what, "'right 99'") for one in found.findings if one.kind == "cycle not found"] == [True]
+
+
 def test_too_few_cycles_are_refused_by_the_setting_of_the_ground(pieces):
     trials = _planned(2)
     for ground, key, needed in (("overground", "min_cycles", 9), ("treadmill", "min_strides", 10)):

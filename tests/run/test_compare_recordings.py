@@ -49,3 +49,16 @@ def test_a_participant_of_a_study_and_too_few_participants(lab):
         compare_study(study, "P02")
     with pytest.raises(ComparisonError, match="1 have both"):
         compare_study(study)
+
+
+def test_short_trials_are_compared_by_their_pooled_cycles(lab):
+    trials = tuple(
+        PlannedTrial(condition=word, files=(f"walk_{word}_ik.mot",), speed_m_per_s=1.2, crop_s=(start, start + 9.5))
+        for word in ("exo", "free")
+        for start in (0.0, 10.0, 20.0)
+    )
+    people = (Participant(id="P01", trials=trials),)
+    study = Study(conditions=Conditions(nominal="free", device="exo"), participants=people).placed(lab)
+    found = compare_study(study, "P01")
+    assert (found.first, found.second) == ("P01 free", "P01 exo")
+    assert found.ordered()[0].startswith("ankle")
