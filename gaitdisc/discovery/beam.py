@@ -55,9 +55,9 @@ class Beam:
         """The set of least cost."""
         return min(self.known.values(), key=self.cost)
 
-    def fit(self, sets: Iterable[tuple[Part, ...]]) -> list[CrossValidated]:
+    def fit(self, sets: Iterable[tuple[Part, ...]], begun: CrossValidated | None = None) -> list[CrossValidated]:
         """Fit sets, so that they are weighed as well."""
-        fitted = [cross_validated(self.scale, self.as_read, parts) for parts in sets]
+        fitted = [cross_validated(self.scale, begun or self.as_read, parts) for parts in sets]
         fitted = [one for one in fitted if self.search.sensible(one.model)]
         self.known.update((one.model.explanations, one) for one in fitted)
         return fitted
@@ -190,7 +190,7 @@ class Outcome:
 
     as_read: ScoredModel
     now: ScoredModel  # with the set, on the same runs
-    closed: float  # share of the gap that goes, on runs left out of the fit
+    closed: float  # share of the squared gap that goes, on runs left out of the fit
     # of the errors left out of the fit, with and without the set; its p times the number of explanations that were open
     # (Bonferroni), for the same runs chose among these
     test: PairedTest
@@ -217,16 +217,18 @@ def closing_most(case: Case, also: tuple[tuple[Part, ...], ...]) -> Outcome | No
     best = beam.select_forward(as_read)
     longer = on_longer_runs(case, best) if best.model.explanations else None
     if longer:
+        plainest = beam.plainest(best)  # that shorter runs do not distinguish from the best
         beam = Beam(search, scale, as_read_on(scale, as_read, longer))
         if not beam.as_read.gap:
             return None
+        beam.fit((plainest.model.parts,), longer)
         best = beam.select_forward(longer)
     now, small = beam.material(best)
     now = beam.plainest(now)
     if not now.model.explanations:
         return None
     near, others = (tuple(beam.near(now, within)) for within in (TIED, np.inf))
-    closed = 1 - now.gap / beam.as_read.gap
+    closed = 1 - (now.gap / beam.as_read.gap) ** 2
     p = min(len(search.candidates) * errs_more(beam.as_read, now), 1.0)
     test = PairedTest(p, len(now.errors), float((beam.as_read.errors - now.errors).sum()), case.alpha)
     return Outcome(beam.as_read, now, closed, test, small=tuple(small), near=near, others=others[:LISTED])

@@ -37,7 +37,7 @@ class Criteria:
     # product, a period, a state of its own
     bent: float = 0.05
     matters: float = 0.05  # of the gap, the least that is named, and what a damping that drives costs more
-    half: float = 0.5  # of an error: what names together, or one name more on whole runs, must take
+    half: float = 0.5  # of a squared error: what names together, or one name more on whole runs, must take
     each_number: float = 0.004  # of the gap, price of a number of a fitted shape
     reading: float = 0.95  # of what a fitted shape closes, for an expression to stand in its place
 

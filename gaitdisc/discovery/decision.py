@@ -134,7 +134,7 @@ def plainest(case: Case, named: ScoredModel) -> Verdict | None:
         return None
     found = replace(found, now=prefer_on_held_out(case, found.now, found.near))
     plain, likelier = compared([found.as_read, found.now])
-    if plain.bic - likelier.bic < CRITERIA.margin:
+    if likelier.bic > plain.bic:  # unseen data decide; what was learned from must not speak against it
         return None
     now = keep_useful(case, found.as_read, found.now)
     fit, names = now.model.fit, now.model.size

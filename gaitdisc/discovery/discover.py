@@ -14,7 +14,7 @@ from gaitdisc.discovery.candidate_model import Part
 from gaitdisc.discovery.case import FEWEST_SAMPLES, TRIED_SUBSTEPS, Case, hangs_on_step, set_up_case, split_in_time
 from gaitdisc.discovery.catalogue import ALL, Request
 from gaitdisc.discovery.decision import Verdict, decide, prove_held_out
-from gaitdisc.discovery.held_out import grows_along_runs, holding_out_others, is_uninformative, noted
+from gaitdisc.discovery.held_out import grows_along_runs, holding_out_others, is_uninformative, noted, noting_alike
 from gaitdisc.discovery.odd_trials import agreeing_trials, without_trial_apart
 from gaitdisc.discovery.result import Discovery
 from gaitdisc.discovery.scored_model import ScoredModel, score
@@ -107,7 +107,10 @@ def weigh_explanations(
     progress("weighing errors of the inputs")
     case, verdict = weigh_input_errors(case, verdict)
     case, verdict = weigh_unstated_errors(case, verdict)
-    return case, as_read, without_small(case, as_read, verdict)
+    verdict = without_small(case, as_read, verdict)
+    if verdict.proof and verdict.proof.test.fall < 0 and is_uninformative(case, as_read, verdict.found):
+        case = noting_alike(case)
+    return case, as_read, verdict
 
 
 def refuse_blow_up(simulation: Simulation, measured: Measured) -> bool:

@@ -33,29 +33,31 @@ def select_forward(
     """
     rivals: list[ScoredModel] = []
     explored = {now.model.explanations}
-    explained, turns, begun = 0.0, 0, len(now.model.parts)
-    while len(now.model.parts) < most and turns < MOST_TURNS:
-        search.progress(f"round {turns + 1} of {MOST_TURNS} at most")
-        enough = bool(scale and now.model.parts and scale.excess(now.model.fit) < CRITERIA.model_error)
+    explained, alone = 0.0, not now.model.parts
+    for turn in range(MOST_TURNS):
+        number = len(now.model.parts) + 1
+        if number > most:
+            break
+        search.progress(f"round {turn + 1} of {MOST_TURNS} at most")
         before, *more = search.extended(now) or [now]
         more = ranked(more, search.candidates)
         rivals = rivals or more
-        number = len(now.model.parts) + 1
         worth = max(CRITERIA.margin, CRITERIA.material * explained)
         least = CRITERIA.margin if number == 2 else worth  # two together may explain what neither does
         if not more or before.bic - more[0].bic < least:
             break
         better = more[0]
-        if number == 2 and not begun:
+        if number == 2 and alone:
             better = beside_others(search, better, [one for one in rivals if one is not now], explored)
         far = scale is not None and number > 1 and leaves(better, scale.noise) > FAR
         if number > 1:
             better = better if far else settle(search, better, worth, explored)
             before, better = compared([before, better])
+        enough = scale is not None and scale.excess(now.model.fit) < CRITERIA.model_error
         gained = before.bic - better.bic
-        if gained < worth or not is_certain(better.model) or (enough and len(better.model.parts) == number):
+        if gained < worth or not is_certain(better.model) or (enough and 1 < number == len(better.model.parts)):
             break
-        explained, now, turns = max(explained, gained), better, turns + 1
+        explained, now = max(explained, gained), better
         explored.add(now.model.explanations)
         note_found(" and ".join(named_at(part.candidate) for part in now.model.parts))
         if far:

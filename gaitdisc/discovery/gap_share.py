@@ -7,14 +7,13 @@ person can use is another question: how much of the disagreement goes, and with 
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 import numpy as np
-from numpy.typing import NDArray
 
 from gaitdisc.discovery.candidate_model import Part
 from gaitdisc.discovery.criteria import CRITERIA
-from gaitdisc.discovery.fitted import Fitted, start_basis, without
+from gaitdisc.discovery.fitted import Fitted
 from gaitdisc.discovery.noise import Noise, white_noise
 from gaitdisc.discovery.paired_test import errors_rise_p
 from gaitdisc.discovery.scored_model import ScoredModel
@@ -126,17 +125,13 @@ def errors_left_out(fit: Fitted) -> Values:
 
 def _without_runs(fit: Fitted) -> Values:
     left, slopes = fit.projected
-    normal = np.swapaxes(slopes, 1, 2) @ slopes
-    match = np.einsum("srf,sr->sf", slopes, left)
-    prior_normal, prior_match = _prior(fit)
     runs = len(left)
     folds = min(FOLDS, runs)
     fold = np.arange(runs) * folds // runs
     errors = []
     for number in range(folds):
-        others = fold != number
-        moved = _solved(normal[others].sum(axis=0) + prior_normal, match[others].sum(axis=0) + prior_match)
-        for run in np.flatnonzero(~others):
+        moved = _estimate(fit.among(np.flatnonzero(fold != number)))
+        for run in np.flatnonzero(fold == number):
             pieces = np.array_split(left[run] - slopes[run] @ moved, math.ceil(PIECES / runs))
             errors += [float(np.mean(piece**2)) for piece in pieces]
     return np.array(errors)
@@ -144,49 +139,26 @@ def _without_runs(fit: Fitted) -> Values:
 
 def _without_pieces(fit: Fitted) -> Values:
     """As above with one or two runs: pieces are left out, never the first of a run, which determines its start."""
-    runs, rows = fit.white.shape
+    (runs, rows), known = fit.white.shape, fit.starts.shape[1]
     pieces = math.ceil((FEW if fit.white.size < SHORT_RUN * runs else MANY) / runs)
     errors = []
     for run in range(runs):
         for piece in np.array_split(np.arange(rows), pieces + 1)[1:]:
-            kept = np.setdiff1d(np.arange(rows), piece)
-            start, moved = _estimate_without(fit, run, kept)
-            n = fit.starts.shape[1]
-            slopes = fit.slopes[run, piece]
-            error = fit.white[run, piece] - slopes[:, :n] @ start - slopes[:, n:] @ moved
+            white, slopes = fit.white.copy(), fit.slopes.copy()
+            white[run, piece], slopes[run, piece] = 0.0, 0.0
+            moved = _estimate(replace(fit, white=white, slopes=slopes))
+            left = white[run] - slopes[run, :, known:] @ moved
+            start = np.linalg.lstsq(slopes[run, :, :known], left, rcond=None)[0]
+            error = fit.white[run, piece] - fit.slopes[run, piece] @ np.concatenate([start, moved])
             errors.append(float(np.mean(error**2)))
     return np.array(errors)
 
 
-def _estimate_without(fit: Fitted, run: int, kept: NDArray[np.intp]) -> tuple[Values, Values]:
-    """Start states of one run (state,) and the constants (free,), from its kept rows and all other runs."""
-    n = fit.starts.shape[1]
-    normal, match = _prior(fit)
-    for number in range(len(fit.white)):
-        rows = kept if number == run else np.arange(fit.white.shape[1])
-        basis = start_basis(fit.slopes[number : number + 1, rows, :n])
-        left = without(basis, fit.white[number : number + 1, rows, None])[0, :, 0]
-        slopes = without(basis, fit.slopes[number : number + 1, rows, n:])[0]
-        normal, match = normal + slopes.T @ slopes, match + slopes.T @ left
-    moved = _solved(normal, match)
-    own, right = fit.slopes[run, kept], fit.white[run, kept]
-    start = np.linalg.lstsq(own[:, :n], right - own[:, n:] @ moved, rcond=None)[0]
-    return np.asarray(start, np.float64), moved
-
-
-def _prior(fit: Fitted) -> tuple[Values, Values]:
-    """What the prior adds to the normal equations (free, free), (free,)."""
-    own = len(fit.prior.names)
-    normal, match = np.zeros((len(fit.free), len(fit.free))), np.zeros(len(fit.free))
-    if own:
-        first = len(fit.free) - own
-        normal[first:, first:] = np.diag(1 / fit.prior.sd**2)
-        match[first:] = fit.prior.left(fit.values) / fit.prior.sd
-    return normal, match
-
-
-def _solved(normal: Values, match: Values) -> Values:
-    if not len(match):
-        return match
+def _estimate(fit: Fitted) -> Values:
+    """By how much the constants of least misfit differ from a fit's (free,)."""
+    left, slopes = fit.stacked
+    if not fit.free:
+        return np.zeros(0)
+    normal = slopes.T @ slopes
     size = np.sqrt(np.maximum(np.diag(normal), 1e-300))
-    return np.linalg.lstsq(normal / np.outer(size, size), match / size, rcond=WEAK)[0] / size
+    return np.linalg.lstsq(normal / np.outer(size, size), slopes.T @ left / size, rcond=WEAK)[0] / size

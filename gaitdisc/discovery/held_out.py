@@ -21,6 +21,7 @@ from gaitdisc.recording.arrays import Values
 from gaitdisc.recording.finding import Finding
 
 TURNS = 30
+ALIKE = "runs alike with and without the identified effect"
 DRAWN = 20  # times, inputs with their stated errors: the mean square to some 10 % where their effects are independent
 
 
@@ -152,7 +153,14 @@ def holding_out_others(case: Case, as_read: ScoredModel, now: ScoredModel) -> Ca
     return replace(case, learned=learned, held_out=held)
 
 
-def noted(before: Case, now: Case, why: str = "runs alike with and without the identified effect") -> Case:
+def noting_alike(case: Case) -> Case:
+    """Return a case with a finding that says that the held-out data do not show what the others speak for."""
+    blind = ", ".join(case.measured.trials[trial] for trial in case.held_out)
+    what = f"trial {blind} {ALIKE}; only the other trials show it"
+    return case.noting(Finding("note", "held out", case.measured.source, what, "a test on data in which it acts"))
+
+
+def noted(before: Case, now: Case, why: str = ALIKE) -> Case:
     """Return a case with a finding that says what is held out in place of what, and why."""
     blind, instead = (", ".join(one.measured.trials[trial] for trial in one.held_out) for one in (before, now))
     what = f"trial {blind} {why}; trial {instead} is held out instead"

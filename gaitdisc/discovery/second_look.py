@@ -14,7 +14,7 @@ from gaitdisc.discovery.decision import MOST_NEAR, Verdict, prove_held_out
 from gaitdisc.discovery.forward_selection import select_forward
 from gaitdisc.discovery.gap_share import cross_validated, errs_more
 from gaitdisc.discovery.grids import delays
-from gaitdisc.discovery.held_out import free_run_error, gap_size, grows_along_runs, prove, strays
+from gaitdisc.discovery.held_out import free_run_error, gap_size, grows_along_runs, is_uninformative, prove, strays
 from gaitdisc.discovery.result import ALPHA
 from gaitdisc.discovery.scored_model import ScoredModel, compared, ranked, score
 from gaitdisc.discovery.search import TURNS, is_certain, may_vanish
@@ -159,10 +159,10 @@ def complete_on_whole_runs(case: Case, as_read: ScoredModel, verdict: Verdict) -
 def without_small(case: Case, as_read: ScoredModel, verdict: Verdict) -> Verdict:
     """Return a verdict that names nothing where what is named closes too little of the gap, and mere noise is not left.
 
-    The gap is that of unseen data above the sensors' noise.
+    The gap is that of unseen data above the sensors' noise; data that run alike without it say nothing.
     """
     found, proof = verdict.found, verdict.proof
-    if not found.model.parts or not proof or case.leaves_noise(found):
+    if not found.model.parts or not proof or case.leaves_noise(found) or is_uninformative(case, as_read, found):
         return verdict
     size = gap_size(proof.before, proof.after, case.noise_floor(found.noise.size), case.measured.channels, proof.test)
     if 1 - np.sqrt(size.unexplained) >= CRITERIA.matters:

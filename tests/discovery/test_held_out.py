@@ -13,6 +13,7 @@ from gaitdisc.discovery.held_out import (
     holding_out_others,
     is_uninformative,
     noted,
+    noting_alike,
     prove,
     run_trials,
     tabulate_runs,
@@ -108,15 +109,11 @@ def test_the_start_of_a_long_run_is_found_by_way_of_short_ones():
 def test_trials_that_can_tell_stay_held_out(case, as_read, named):
     now, _ = named
     assert not is_uninformative(case, as_read, now)
+    assert not is_uninformative(case, as_read, replace(now, gained=10.0))  # nothing speaks for it
+    assert not is_uninformative(case, as_read, as_read)
     other = holding_out_others(case, as_read, now)
     assert sorted((*other.learned, *other.held_out)) == sorted((*case.learned, *case.held_out))
     assert other.held_out == case.learned[-1:]
-
-
-def test_nothing_is_asked_where_nothing_speaks_for_it(case, as_read, named):
-    now, _ = named
-    assert not is_uninformative(case, as_read, replace(now, gained=10.0))
-    assert not is_uninformative(case, as_read, as_read)
 
 
 def test_what_is_held_out_in_place_of_what_is_noted(case):
@@ -124,3 +121,4 @@ def test_what_is_held_out_in_place_of_what_is_noted(case):
     note = noted(case, other).measured.findings[-1]
     blind, instead = (case.measured.trials[one.held_out[0]] for one in (case, other))
     assert f"trial {blind} runs alike with and without" in note.what and f"trial {instead} is held out" in note.what
+    assert f"trial {blind} runs alike with and without" in noting_alike(case).measured.findings[-1].what
