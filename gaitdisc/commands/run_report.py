@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, TypeVar
 
 import typer
 
-from gaitdisc.commands.clinic_pages import say_new_recordings
+from gaitdisc.commands.new_recordings import say_new_recordings
 from gaitdisc.commands.options import REFUSED, SOME_REFUSED, STOPPED
 from gaitdisc.errors import LOG
 
