@@ -7,7 +7,6 @@ import re
 import zipfile
 from collections.abc import Mapping
 from pathlib import Path
-from xml.etree import ElementTree
 
 import numpy as np
 import pandas as pd
@@ -93,27 +92,20 @@ def _read_xlsx(content: bytes, file: str) -> Curves:
     """Variables of a workbook: two columns of one name, least and largest, that is mean less and more one deviation."""
     try:
         with zipfile.ZipFile(io.BytesIO(content)) as book:
-
-            def part(name: str) -> ElementTree.Element:
-                if book.getinfo(name).file_size > LARGEST_BYTES:
-                    raise ValueError(f"{name} is larger than {LARGEST_BYTES >> 20} MiB")
-                return ElementTree.fromstring(re.sub(rb'\sxmlns="[^"]*"', b"", book.read(name)))
-
-            shared = "xl/sharedStrings.xml"
-            texts = ["".join(one.itertext()) for one in part(shared)] if shared in book.namelist() else []
-            sheets = [one.get("name") for one in part("xl/workbook.xml").iter("sheet")]
-            sheet = part(f"xl/worksheets/sheet{sheets.index('Normal') + 1 if 'Normal' in sheets else 1}.xml")
-            columns: dict[str, list[str]] = {}
-            for cell in sheet.iter("c"):
-                text = "".join(cell.itertext())
-                value = texts[int(text)] if cell.get("t") == "s" else text
-                columns.setdefault(re.sub(r"\d", "", cell.get("r", "")), []).append(value)
-    except (zipfile.BadZipFile, KeyError, ValueError, IndexError, ElementTree.ParseError) as error:
+            size = sum(part.file_size for part in book.infolist())
+        if size > LARGEST_BYTES:
+            raise ValueError(f"unpacked it has {size >> 20} MiB, more than {LARGEST_BYTES >> 20}")
+        sheets = pd.read_excel(io.BytesIO(content), sheet_name=None, header=None)
+    except ImportError as error:
+        remedy = "Install it: pip install 'gaitdisc[xlsx]'."
+        raise SchemaError("a workbook requires the package openpyxl", "it is not installed", remedy) from error
+    except (zipfile.BadZipFile, KeyError, ValueError, TypeError, AttributeError) as error:
         remedy = "Save it as .xlsx again."
         raise SchemaError(f"{file} must be a workbook with a sheet 'Normal'", str(error)[:120], remedy) from error
+    sheet = sheets.get("Normal", next(iter(sheets.values())))
     found: dict[str, list[NDArray[np.float64]]] = {}
-    for name, *rest in columns.values():
-        numbers = [cell for cell in rest[2:] if cell]  # below the name stand two lines that are no values
-        found.setdefault(name.strip(), []).append(np.array(numbers, float))
+    for _, column in sheet.items():
+        name, numbers = str(column.iloc[0]).strip(), pd.to_numeric(column.iloc[3:], errors="coerce")
+        found.setdefault(name, []).append(numbers.dropna().to_numpy(float))  # below the name stand two lines of others
     both = {name: np.column_stack(own) for name, own in found.items() if len(own) == 2 and len(own[0]) == len(own[1])}
     return {name: np.column_stack([one.mean(axis=1), np.ptp(one, axis=1) / 2]) for name, one in both.items()}

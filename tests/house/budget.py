@@ -14,7 +14,7 @@ from pathlib import Path
 from typing import Any, NamedTuple
 
 CHECKOUT = Path(__file__).parents[2]
-TEXTS = frozenset((".css", ".csv", ".j2", ".js", ".json", ".pyi", ".toml", ".bib"))
+TEXTS = frozenset((".css", ".csv", ".j2", ".js", ".json", ".pyi", ".toml", ".typ", ".bib"))
 Rooms = dict[str, dict[str, Any]]
 
 
