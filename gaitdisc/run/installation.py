@@ -21,6 +21,8 @@ EXTRAS = {
     "h5py": "HDF5 and .mat 7.3, extra fields",
     "xarray": "netCDF, extra fields",
     "dask": "more than one machine, extra cluster",
+    "typst": "PDF of a person's page, extra pdf",
+    "openpyxl": "normal data of Polygon, extra xlsx",
     "c3d": "the second C3D reader",
 }
 
