@@ -70,5 +70,6 @@ if __name__ == "__main__":
         rates = f"fresh {one['fresh']} of {count}"
         if one["named"] == one["truth"]:
             table = [[kept, count - kept] for kept in (one["twins"] or 0, one["fresh"])]
-            rates += f", twins {one['twins'] or 0} of {count}, p {fisher_exact(table).pvalue:.2g}"
+            _, p = fisher_exact(table)
+            rates += f", twins {one['twins'] or 0} of {count}, p {p:.2g}"
         print(f"{one['case']:3d}  {one['truth']:28s} named {one['named']:36s} {rates}, invented {one.get('invented')}")

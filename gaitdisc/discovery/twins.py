@@ -136,8 +136,8 @@ def search_twins(
         return replace(found, findings=(*found.findings, finding))
     note_found("")
     answers = [*search_records(source, [(now, seed) for now in kinds for seed in range(request.twins)], model, request)]
-    *acting, without = (Counter(answers[k * request.twins : (k + 1) * request.twins]) for k in range(len(kinds)))
-    return replace(found, twins=Twins(request.twins, _name(found), *(acting or [{}]), without))
+    acting, without = (Counter(some) for some in (answers[: -request.twins], answers[-request.twins :]))
+    return replace(found, twins=Twins(request.twins, _name(found), acting, without))
 
 
 def search_records(
@@ -151,7 +151,7 @@ def search_records(
     for done, (now, number) in enumerate(records, 1):
         answer = recall(f"record {number}", now.model.fit.values.tobytes())
         if answer is None:
-            pending = pending or _answer([(model, source, *one, rule) for one in records[done - 1 :]])
+            pending = pending or _search_side_by_side(source, records[done - 1 :], model, rule)
             answer = next(pending)
             left = (time.perf_counter() - begun) / done * (len(records) - done)
             request.progress(f"{done} of {len(records)} simulated records searched, about {left:.0f} s left")
@@ -159,9 +159,11 @@ def search_records(
         yield answer
 
 
-def _answer(work: list[tuple[Simulation, TwinSource, ScoredModel, int, Request]]) -> Iterator[str]:
-    processes = min(os.cpu_count() or 1, MOST_PROCESSES, len(work))
-    drawn = ((model, source.draw(now, number), rule) for model, source, now, number, rule in work)
+def _search_side_by_side(
+    source: TwinSource, records: Sequence[tuple[ScoredModel, int]], model: Simulation, rule: Request
+) -> Iterator[str]:
+    processes = min(os.cpu_count() or 1, MOST_PROCESSES, len(records))
+    drawn = ((model, source.draw(now, number), rule) for now, number in records)
     if processes == 1:
         yield from starmap(_search, drawn)
         return

@@ -179,7 +179,7 @@ def read_navy_winds(path: Path) -> Field:
             f"{path.name} has {held['u'].shape} and {held['v'].shape} for {len(lat)} latitudes, {len(lon)} longitudes",
             "Name the file as it was published.",
         )
-    months = 144.0 + np.arange(len(held["u"]))  # the file begins in January 1982
+    months = 144.0 + np.arange(len(held["u"]), dtype=float)  # the file begins in January 1982
     values = np.stack([held[name].reshape(len(months), -1) for name in ("u", "v")], axis=-1)
     everywhere, source = np.ones((len(lat), len(lon)), bool), Source(path.name, file_sha256(path), "npz")
     return Field(months, values, _globe(lat, lon), everywhere, ("u", "v"), ("m/s", "m/s"), "month", source)
