@@ -8,8 +8,9 @@ import ch3_lorenz
 import ch3_measurement_bias
 import ch3_van_der_pol
 from chapter3.cell import NOISES
+from chapter3.kept_cells import FURTHER
 from chapter3.methods import Method, MethodSettings
-from chapter3.record import Approach, Conditions, System
+from chapter3.record import Approach, Conditions, System, further_start, recorded
 
 FOUR: tuple[Method, ...] = ("sindy", "dmd", "gp", "nn")
 LONG, SHORT = 50.0, 10.0
@@ -49,9 +50,17 @@ def cell_sets() -> dict[str, CellSet]:
         "lorenz_state": CellSet(lorenz, long, "state"),
     }
     return found | {
-        f"{name}_bopdmd": replace(found[name], methods=("bopdmd",), seeds=3)
-        for name in ("van_der_pol_text", "van_der_pol_code", "lorenz", "mass_code", "mass_text")
+        f"{name}{FURTHER}{number:02d}": replace(begun, noises=NOISES[1:], seeds=6)
+        for name in ("van_der_pol_text", "lorenz")
+        for number, begun in enumerate(begun_elsewhere(found[name]), 1)
     }
+
+
+def begun_elsewhere(cells: CellSet) -> list[CellSet]:
+    """The same cells from ten further starts, drawn from where the training part went."""
+    record = recorded(cells.system, cells.conditions)
+    starts = [further_start(record.truth[: record.split], number) for number in range(1, 11)]
+    return [replace(cells, system=replace(cells.system, start=start)) for start in starts]
 
 
 def chosen_sets(names: list[str] | None, noises: list[float] | None) -> dict[str, CellSet]:

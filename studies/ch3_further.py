@@ -1,10 +1,11 @@
 """Chapter 3 beyond its figures, over twelve noise seeds: methods, noise, starts and trajectories that the text names.
 
-    python studies/ch3_further.py [FOLDER] [--seeds 6] [--tables methods noise filters trajectories variance] [--keep]
+    python studies/ch3_further.py [FOLDER] [--seeds 6] [--tables methods noise ...] [--keep]
     python studies/ch3_further.py --print TABLE
 
 `methods`: exact DMD, SINDy in weak form and as an ensemble, a Gaussian process with a Matern kernel; `noise` that is
-not normal; `filters`: the start of a forecast by unscented and ensemble Kalman filters; `trajectories`: several, and a
+not normal; `filters`: the start of a forecast by unscented and ensemble Kalman filters; `gain`: filters with
+a sensor's bias among their states; `trajectories`: several, and a
 forecast whose beginning is learned from; `variance` of the Gaussian process. Each number is a file of its own in
 FOLDER: a run that was stopped goes on.
 """
@@ -17,7 +18,7 @@ from pathlib import Path
 
 from command_line import argument, command_line
 
-TABLES = ("methods", "noise", "filters", "trajectories", "variance")
+TABLES = ("methods", "noise", "filters", "gain", "trajectories", "variance")
 GIVEN = command_line(
     __name__,
     __doc__,
@@ -31,7 +32,8 @@ GIVEN = command_line(
 import warnings
 
 import pandas as pd
-from ch3_further_numbers import numbers
+from ch3_further_numbers import SIDES, numbers
+from chapter3.biased_sensor import OFF
 from chapter3.kept_cells import said_of
 from markdown_table import markdown_table
 
@@ -44,6 +46,7 @@ HEADINGS = {
     "methods": BOTH,
     "noise": BOTH,
     "filters": "valid time [Lyapunov times], SINDy",
+    "gain": "forecast by Kalman filters of a biased sensor [% less RMSE], and the gain they find",
     "trajectories": "forecast from 5 s on [% less RMSE], state approach",
     "variance": "missing rate within 1.96 SD of the Gaussian process [%]",
 }
@@ -77,10 +80,15 @@ def gathered(folder: Path) -> pd.DataFrame:
 def printed(table: pd.DataFrame, name: str) -> str:
     """One table as documents hold it: median [least, greatest] over the seeds."""
     some, rows = table[table["table"] == name], []
-    columns = sorted(set(zip(some["system"], some["noise"], strict=True)), key=lambda one: (one[0] == "Lorenz", one[1]))
+    columns = sorted(set(zip(some["system"], some["noise"], strict=True)), key=lambda one: (one[0] == "Lorenz", *one))
     for row in dict.fromkeys(some["row"]):
         found = some[some["row"] == row].groupby(["system", "noise"])
         said = [said_of(found.get_group(one), "value") if one in found.groups else "" for one in columns]
+        if row.endswith(OFF):
+            inside = (some[some["row"] == row].set_index(["system", "noise"])["value"].abs() <= SIDES).groupby(
+                level=[0, 1]
+            )
+            said = [f"{words}; {inside.sum()[one]} inside {SIDES}" for words, one in zip(said, columns, strict=True)]
         rows.append((row, str(found.size().max()), *said))
     headings = (HEADINGS[name], "n", *(f"{system}, {100 * noise:g} % noise" for system, noise in columns))
     return markdown_table(" | ".join(headings), rows)

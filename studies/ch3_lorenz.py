@@ -2,8 +2,8 @@
 
     python studies/ch3_lorenz.py [FOLDER] [--quick]
 
-Beside the accuracy over the whole forecast, which chaos takes away from every model, stands what a forecast is worth:
-the accuracy until the truth first changes lobes, and the time that the forecast is valid, in Lyapunov times.
+What a forecast is worth where chaos takes the accuracy over the whole of it from every model (until the truth first
+changes lobes; the time that it is valid), and short records: `ch3_seeds.py`, `ch3_tables.py`.
 """
 
 from __future__ import annotations
@@ -14,19 +14,14 @@ from command_line import report_line
 
 GIVEN = report_line(__name__, __doc__, "ch3_lorenz")  # before the slow imports
 
-import numpy as np
-import pandas as pd
-from chapter3.cell import ALL_METHODS, FORECAST, NOISES, ORACLE, PART_WORDS, grid
-from chapter3.kept_cells import LYAPUNOV_PER_S
-from chapter3.pages import Cells, Result, blocks_of, written
-from chapter3.record import APPROACHES, Conditions, System, system_of
+from chapter3.cell import NOISES, grid
+from chapter3.pages import Result, blocks_of, written
+from chapter3.record import Conditions, System, system_of
 
 import gaitdisc as gd
-from gaitdisc.report.page import Block
-from gaitdisc.report.table import Table
 
 SEEDS = (0, 1, 2)
-FINE_DT_S, FINE_S, SHORT_S = 0.001, 20.0, 10.0  # of the short record 601 samples are learned from
+FINE_DT_S, FINE_S = 0.001, 20.0
 FIGURES = {
     "system": "Fig. 3.6", "dynamics": "Fig. 3.7", "state": "Fig. 3.8", "horizon": "Fig. 3.9", "noise": "Fig. 3.10",
     "cost": "Fig. 3.11",
@@ -55,33 +50,8 @@ def run(quick: bool = False, folder: Path = Path("ch3_lorenz")) -> Result:
     if not quick:
         fine = Conditions(dt_s=FINE_DT_S, duration_s=FINE_S)
         cells["done right, dt 0.001 s, 20 s"] = grid(system(), fine, NOISES[:1], (0,))
-        chosen = (ALL_METHODS, APPROACHES[:1])
-        cells["done right, 10 s"] = grid(system(), Conditions(duration_s=SHORT_S), noises, seeds, chosen)
     blocks = blocks_of(cells, FIGURES, STATED, {"done right": system()})
-    jump = Block("jump", "Until the first jump", (), tables=(jump_table(cells),))
-    return written(cells, [blocks[0], jump, *blocks[1:]], "Lorenz system, section 3.4.2", folder)
-
-
-def jump_table(cells: Cells) -> Table:
-    """Forecast until the truth's first jump, and valid time."""
-    rows = [
-        (variant, c.approach, c.method, c.noise, PART_WORDS[name], c.seed,
-         float(np.min(part.accuracy(until_s=part.first_jump_s()))), part.first_jump_s(),
-         LYAPUNOV_PER_S * part.valid_s("augmented"), LYAPUNOV_PER_S * part.valid_s("known"))
-        for variant, found in cells.items() for c in found if c.parts
-        for name, part in c.parts.items() if name in (ORACLE, FORECAST)
-    ]  # fmt: skip
-    names = ("variant", "approach", "method", "noise", "start", "seed", "worst [%]", "jump [s]", "valid [1]",
-             "known valid [1]")  # fmt: skip
-    numbers = pd.DataFrame(rows, columns=pd.Index(names))
-    middle = numbers.groupby(list(names[:5]), sort=False)[list(names[6:])].median().reset_index()
-    shown = tuple(tuple(f"{v:.2f}" if isinstance(v, float) and k != 3 else f"{v}" for k, v in enumerate(row))
-                  for row in middle.itertuples(index=False))  # fmt: skip
-    caption = (
-        "Accuracy of the worst channel until the truth first changes lobes, and valid time in Lyapunov times "
-        f"({LYAPUNOV_PER_S} /s); medians over seeds. Below 0: loses to the known model."
-    )
-    return Table("jump", caption, tuple(middle.columns), shown, numbers)
+    return written(cells, blocks, "Lorenz system, section 3.4.2", folder)
 
 
 if __name__ == "__main__":

@@ -3,7 +3,7 @@
     python studies/ch3_measurement_bias.py [FOLDER] [--quick]
 
 The known model is right, its measurement is not: the residual model (Eq. 3.5) learns the bias. So does a Kalman filter
-that has the bias among its states: the chapter's neutral result.
+that has the bias among its states: the chapter's neutral result (`ch3_further.py --tables gain`).
 """
 
 from __future__ import annotations
@@ -14,16 +14,12 @@ from command_line import report_line
 
 GIVEN = report_line(__name__, __doc__, "ch3_measurement_bias")  # before the slow imports
 
-import numpy as np
 from chapter3.cell import ALL_METHODS, NOISES, grid
 from chapter3.methods import MethodSettings
-from chapter3.pages import Result, blocks_of, statements_table, written
-from chapter3.record import Conditions, Record, System, recorded, system_of
-from chapter3.starts import Uncertainty, unscented_kalman
-from numpy.typing import NDArray
+from chapter3.pages import Result, blocks_of, written
+from chapter3.record import APPROACHES, Conditions, System, system_of
 
 import gaitdisc as gd
-from gaitdisc.report.page import Block
 
 SEEDS = (0, 1, 2)
 FIGURES = {"state": "Fig. 3.13", "noise": "Fig. 3.13"}
@@ -44,41 +40,11 @@ def systems() -> dict[str, System]:
 
 
 def run(quick: bool = False, folder: Path = Path("ch3_measurement_bias")) -> Result:
-    """Compute all cells and both filters, draw the figures."""
+    """Compute all cells, draw the figures."""
     noises, seeds = (NOISES[:2], SEEDS[:1]) if quick else (NOISES, SEEDS)
-    conditions = Conditions(duration_s=20.0)
-    cells, rows = {}, []
-    for variant, system in systems().items():
-        cells[variant] = grid(system, conditions, noises, seeds, (ALL_METHODS, ("state",)), SETTINGS)
-        for noise in noises:
-            for seed in seeds if noise else seeds[:1]:
-                record = recorded(system, Conditions(noise, seed, duration_s=20.0))
-                what = f"{variant}, {noise:.1%} noise, seed {seed}: filters do as well"
-                rows.append(("3.4.4", what, filters(record)))
-    neutral = Block("kalman", "The neutral result", (), tables=(statements_table(rows, "kalman"),))
-    stated, *others = blocks_of(cells, FIGURES, STATED)
-    return written(cells, [stated, neutral, *others], "Measurement bias, section 3.4.4", folder)
-
-
-def filters(record: Record) -> str:
-    """Share of the bias that each filter removes from the measured position, after 2 s, and the bias it states."""
-    system, dt, y = record.system, record.conditions.dt_s, record.measured[:, 0]
-    clean, settled = record.truth @ system.observation[0], slice(200, None)
-    sd = max(float(np.std(y - clean)), 1e-6)
-    start, noise = np.array([*system.start, 0.0]), Uncertainty(np.array([1e-6, 1e-6, 0.2]), np.full(3, 1e-6), sd)
-
-    def turn(points: NDArray[np.float64]) -> NDArray[np.float64]:
-        return np.column_stack([system.known.run(points[:, :2], dt, 1)[:, 1], points[:, 2]])
-
-    jacobian = np.column_stack([(turn(np.eye(3)[[k]] * 1e-4) - turn(np.zeros((1, 3))))[0] / 1e-4 for k in range(3)])
-    walking = Uncertainty(noise.first, np.array([1e-5, 1e-4, 2e-4]), sd)  # an offset that is to follow a gain
-    linear = unscented_kalman(lambda p: p @ jacobian.T, lambda p: p[:, 0] + p[:, 2], y, start, walking).states
-    unscented = unscented_kalman(turn, lambda p: (1 + p[:, 2]) * p[:, 0], y, start, noise)
-    states, known = unscented.states, record.truth[:, 0]
-    seen = {"linear (offset)": linear[:, 0] + linear[:, 2], "unscented (gain)": (1 + states[:, 2]) * states[:, 0]}
-    gap = np.sqrt(np.mean((clean - known)[settled] ** 2))
-    words = [f"{n} {100 * (1 - np.sqrt(np.mean((clean - s)[settled] ** 2)) / gap):.1f} %" for n, s in seen.items()]
-    return f"{', '.join(words)}; gain found {1 + states[-1, 2]:.4f} ± {1.96 * unscented.sd[-1, 2]:.4f}"
+    chosen, conditions = (ALL_METHODS, APPROACHES[1:]), Conditions(duration_s=20.0)
+    cells = {name: grid(system, conditions, noises, seeds, chosen, SETTINGS) for name, system in systems().items()}
+    return written(cells, blocks_of(cells, FIGURES, STATED), "Measurement bias, section 3.4.4", folder)
 
 
 if __name__ == "__main__":

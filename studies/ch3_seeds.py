@@ -32,8 +32,8 @@ from itertools import product
 import numpy as np
 import pandas as pd
 from ch3_cell_sets import CellSet, cell_sets, chosen_sets
-from chapter3.cell import METHODS, DiscrepancyCell, cell_of
-from chapter3.kept_cells import CELLS, measured, sets_tables
+from chapter3.cell import METHODS, RECONSTRUCTION, DiscrepancyCell, cell_of
+from chapter3.kept_cells import CELLS, FURTHER, measured, sets_tables
 from chapter3.recommend import FOUND, evidence_of
 from chapter3.record import recorded
 
@@ -41,24 +41,22 @@ from gaitdisc.report.table import save_table
 
 
 def compute(folder: Path, sets: dict[str, CellSet], seeds: int) -> None:
-    """Compute what is not there yet: all sets of a seed before the next seed."""
-    warm = set()
-    for seed in range(seeds):
-        for name, cell_set in sets.items():
-            wanted = [
-                noise for noise in cell_set.noises if seed < (cell_set.seeds if noise else 1)
-            ]  # without noise one
-            for noise, method in product(wanted, cell_set.methods):
+    """Compute what is not there yet: all sets of a seed before the next seed; without noise one seed."""
+    warm = set()  # no cell's seconds hold importing and compiling
+    for seed, (name, cells) in product(range(seeds), sets.items()):
+        for noise in (noise for noise in cells.noises if seed < (cells.seeds if noise else 1)):
+            record = recorded(cells.system, replace(cells.conditions, noise=noise, seed=seed))
+            for method in cells.methods:
                 path = folder / f"{name}-{noise:g}-{seed:02d}-{method}.csv"
                 if path.exists():
                     continue
-                if (method, cell_set.approach) not in warm:  # no cell's seconds hold importing and compiling
-                    first = recorded(cell_set.system, replace(cell_set.conditions, duration_s=600 * 0.01, dt_s=0.01))
-                    cell_of(first, method, cell_set.approach)
-                    warm.add((method, cell_set.approach))
-                record = recorded(cell_set.system, replace(cell_set.conditions, noise=noise, seed=seed))
-                table = rows_of(cell_of(record, method, cell_set.approach, cell_set.settings))
-                table.insert(0, "set", name.removesuffix("_bopdmd"))
+                if (method, cells.approach) not in warm:
+                    first = recorded(cells.system, replace(cells.conditions, duration_s=600 * 0.01, dt_s=0.01))
+                    cell_of(first, method, cells.approach)
+                    warm.add((method, cells.approach))
+                table = rows_of(cell_of(record, method, cells.approach, cells.settings))
+                table.insert(0, "set", name)
+                table["variant"] += ", begun elsewhere" * (FURTHER in name)
                 save_table(table, path)
                 print(path.name, file=sys.stderr, flush=True)
 
@@ -88,9 +86,9 @@ def gathered(folder: Path) -> pd.DataFrame:
 
 def keep(folder: Path) -> None:
     """Write the table of all cells, and what `recommend` answers from."""
-    save_table(gathered(folder), CELLS)
-    seeds = measured()
-    save_table(evidence_of(seeds[(seeds["approach"] == "dynamics") & (seeds["variant"] == "right")]), FOUND)
+    table = gathered(folder)
+    save_table(table[(table["part"] != RECONSTRUCTION) | ~table["set"].str.contains(FURTHER)], CELLS)
+    save_table(evidence_of(measured().query("approach == 'dynamics' and variant == 'right'")), FOUND)
 
 
 if __name__ == "__main__":

@@ -1,8 +1,8 @@
-"""Tables of section 3.4 as README and docs hold them, from the cells that `ch3_seeds.py` measured; nothing is computed.
+"""Tables of section 3.4 as the docs hold them, from the cells that `ch3_seeds.py` measured; nothing is computed.
 
     python studies/ch3_tables.py TABLE
 
-TABLE is `readme`, `recommended`, `evidence`, `rankings`, or a set of `ch3_seeds.py` with the number that is shown:
+TABLE is `recommended`, `evidence`, `rankings`, or a set of `ch3_seeds.py` with the number that is shown:
 `lorenz:valid`, `lorenz:jump`, `van_der_pol_text:forecast`; `all` for each of them. Where a number has two starts,
 `estimated` is a state estimated from the noisy measurement; the true state is an oracle.
 """
@@ -13,13 +13,13 @@ from itertools import combinations
 
 from command_line import argument, command_line
 
-TABLE = argument("table", "readme, recommended, evidence, rankings, SET:NUMBER, or all")
+TABLE = argument("table", "recommended, evidence, rankings, SET:NUMBER, or all")
 GIVEN = command_line(__name__, __doc__, TABLE)  # before the slow imports
 
 import numpy as np
 import pandas as pd
-from chapter3.cell import FORECAST, ORACLE
 from chapter3.kept_cells import (
+    FURTHER,
     NUMBERS,
     START_WORDS,
     evidence_table,
@@ -34,50 +34,60 @@ from markdown_table import markdown_table
 import gaitdisc as gd
 from gaitdisc.statistics.signed_rank import exact_p
 
-IN_README = ("sindy", "dmd", "gp", "nn")
-RANKED = {"van_der_pol_text": "forecast", "van_der_pol_code": "forecast", "lorenz": "valid"}
-
-
-def readme_table(table: pd.DataFrame) -> str:
-    """Van der Pol in short: medians from the estimated start, in brackets from the true state."""
-    of_set, rows = table[table["set"] == "van_der_pol_text"], []
-    noises = sorted(of_set["noise"].unique())
-    for method in IN_README:
-        said = []
-        for noise in noises:
-            some = of_set[(of_set["method"] == method) & (of_set["noise"] == noise)]
-            one, other = (float(np.median(some.loc[some["part"] == part, "accuracy"])) for part in (FORECAST, ORACLE))
-            said.append(f"{one:.1f} ({other:.1f})")
-        rows.append((METHOD_WORDS[method], *said))
-    words = ["no noise" if noise == 0 else f"{100 * noise:g} %" for noise in noises]
-    return markdown_table(" | ".join(("Van der Pol with a hidden cubic spring", *words)), rows)
+FOUR, ALPHA = ("sindy", "dmd", "gp", "nn"), 0.05
+RANKED = {
+    "van_der_pol_text": ("forecast", "Van der Pol, text [% less RMSE]"),
+    "van_der_pol_code": ("forecast", "Van der Pol, code [% less RMSE]"),
+    "lorenz": ("valid", "Lorenz, valid [Lyapunov times]"),
+}
 
 
 def rankings(table: pd.DataFrame) -> str:
-    """Methods paired by noise seed, forecast accuracy (on Lorenz valid time): the pairs that differ beyond chance."""
-    pairs = []
-    for name, number in RANKED.items():
+    """Methods paired by noise seed, or by start over its seeds; the pairs of one cell are a family (Holm-Sidak)."""
+    rows, counts = [], set()
+    for name, (number, words) in RANKED.items():
         column, factor, parts = NUMBERS[number]
         for part, noise in [(part, noise) for part in parts for noise in (0.001, 0.01, 0.1)]:
-            some = table[(table["set"] == name) & (table["noise"] == noise) & (table["part"] == part)]
-            by_seed = some.pivot_table(index="seed", columns="method", values=column)
-            for one, other in combinations(("sindy", "gp", "nn"), 2):
-                ahead = factor * (by_seed.loc[:, one] - by_seed.loc[:, other]).dropna().to_numpy()
-                what = f"{name}, {noise:.1%} noise, {START_WORDS[part]}: {METHOD_WORDS[one]} against"
-                size = f"{np.median(ahead):+.2g} {'Lyapunov times' if number == 'valid' else 'points'}"
-                pairs.append((exact_p(ahead), f"{what} {METHOD_WORDS[other]} {size} in the median, n = {len(ahead)}"))
-    corrected = gd.holm_sidak([p for p, _ in pairs])
-    sure = [
-        f"{said}, p = {p:.3g} ({p_corrected:.2g} corrected)"
-        for (p, said), p_corrected, differs in zip(pairs, corrected.adjusted, corrected.rejected, strict=True)
-        if differs
-    ]
-    counted = f"{len(pairs)} pairs; beyond chance (signed rank, Holm-Sidak) differ {len(sure)}"
-    return "\n".join(f"- {line}" for line in (counted, *sure))
+            some = table[(table["noise"] == noise) & (table["part"] == part)]
+            own, further = some[some["set"] == name], some[some["set"].str.startswith(name + FURTHER)]
+            for by, found in (("seed", own), ("set", further)):
+                if len(found):
+                    values = factor * found.pivot_table(index=by, columns="method", values=column)[list(FOUR)]
+                    counts.add(len(values))
+                    begun = "its own" if by == "seed" else f"{len(values)} others, {found['seed'].nunique()} seeds each"
+                    said = [f"{value:.1f}" for value in values.median()]
+                    rows.append(
+                        (words, f"{noise:.1%}", begun, START_WORDS[part], len(values), *said, differing(values))
+                    )
+    heads = ("system", "noise", "starts", "forecast from", "n", *(METHOD_WORDS[one] for one in FOUR), "differ")
+    return "\n".join([markdown_table(" | ".join(heads), rows), "", *(f"- {least(n)}" for n in sorted(counts))])
+
+
+def differing(values: pd.DataFrame) -> str:
+    """The pairs of one cell's methods that differ beyond chance: which is ahead, with its corrected p."""
+    pairs = list(combinations(values.columns, 2))
+    ahead = [(values[one] - values[other]).dropna().to_numpy() for one, other in pairs]
+    corrected = gd.holm_sidak([exact_p(each) for each in ahead])
+    said = [
+        f"{' > '.join(METHOD_WORDS[each] for each in (pair if np.median(gain) > 0 else pair[::-1]))} (p {p:.2g})"
+        for pair, gain, p, differs in zip(pairs, ahead, corrected.adjusted, corrected.rejected, strict=True) if differs
+    ]  # fmt: skip
+    return "; ".join(said) or "none"
+
+
+def least(n: int) -> str:
+    """What n pairs can reject, by the p of ranks 1 to k against."""
+    pairs = len(list(combinations(FOUR, 2)))
+    needed = 1 - (1 - ALPHA) ** (1 / pairs)
+    p = [exact_p(np.array([-rank if rank <= against else rank for rank in range(1, n + 1)])) for against in range(n)]
+    most = sum(each <= needed for each in p) - 1
+    return (
+        f"n = {n}: least p {p[0]:.2g}, {1 - (1 - p[0]) ** pairs:.2g} over the {pairs} pairs of a cell; a difference is "
+        f"seen first at p <= {needed:.2g}: no more than {most} of {n}, the smallest, go against it"
+    )
 
 
 NAMED = {
-    "readme": ("In short", readme_table),
     "rankings": ("Rankings", rankings),
     "recommended": ("What `recommend` answers", recommended_table),
     "evidence": ("What it answers from", evidence_table),

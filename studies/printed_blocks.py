@@ -9,7 +9,10 @@ from dataclasses import dataclass
 
 BLOCK = re.compile(r"(<!-- printed by: (.+?) \| (.+?) -->\n)(.*?)(\n<!-- end -->)", re.DOTALL)
 NUMBER = re.compile(r"(?<![\w.])[-−+]?\d[\d,]*(?:\.\d+)?(?:e[-+]?\d+)?|(?<![\w.])\.\d+")
-PLACEHOLDER, WIDTH = "#", 150
+PLACEHOLDER, WIDTH, SLOW = "#", 150, ", slow"  # of a form: more than half a minute
+CODE = re.compile(r"^```.*?^```", re.DOTALL | re.MULTILINE)
+TABLE = re.compile(r"^(.*)\n(\|.*)\n\|[-: |]+$", re.MULTILINE)  # the line above, and the heads
+MEASURED = re.compile(r"<!-- measured by: (.+?) \| [0-9a-f]{8}, .+ -->")
 
 
 @dataclass(frozen=True)
@@ -35,6 +38,12 @@ def renewed(text: str, wanted: Callable[[Block], str | None]) -> str:
         return found[1] + (block.written if new is None else new) + found[5]
 
     return BLOCK.sub(one, text)
+
+
+def commands_of_tables(text: str) -> dict[str, str]:
+    """Heads of the tables that stand in no block, and by which command each was measured; empty without one."""
+    found = TABLE.finditer(CODE.sub("", BLOCK.sub("", f"\n{text}\n")))
+    return {one[2]: mark[1] if (mark := MEASURED.fullmatch(one[1])) else "" for one in found}
 
 
 def quoted(printed: str) -> str:

@@ -136,7 +136,7 @@ def search_twins(
         return replace(found, findings=(*found.findings, finding))
     note_found("")
     answers = [*search_records(source, [(now, seed) for now in kinds for seed in range(request.twins)], model, request)]
-    acting, without = (Counter(some) for some in (answers[: -request.twins], answers[-request.twins :]))
+    acting, without = (dict(Counter(some)) for some in (answers[: -request.twins], answers[-request.twins :]))
     return replace(found, twins=Twins(request.twins, _name(found), acting, without))
 
 

@@ -15,6 +15,8 @@ from .recommend import FOUND, STARTS, WANTS, recommend
 CELLS = Path(__file__).parents[1] / "ch3_cells.csv"
 LYAPUNOV_PER_S = 0.906  # largest exponent of the Lorenz system: Sprott 2003, Chaos and Time-Series Analysis
 START_WORDS = {**STARTS, RECONSTRUCTION: "reconstruction, true start"}
+FURTHER = "_start"  # in the name of a set that begins elsewhere
+LAWS = {"van_der_pol": r"y: \S+\*x\*\*3", "lorenz": r"x: \S+\*x\*\*3", "mass": r"x: \S+\*x"}  # of SINDy
 NUMBERS = {
     "forecast": ("accuracy", 1.0, (FORECAST, ORACLE)),
     "parts": ("accuracy", 1.0, (RECONSTRUCTION, FORECAST, ORACLE)),
@@ -38,18 +40,24 @@ def measured() -> pd.DataFrame:
 def set_table(table: pd.DataFrame, name: str, number: str) -> str:
     """One number of a set: a row a method and start, a column a noise; median and range over the n seeds with noise.
 
-    Where the noises have unlike numbers of seeds, n names each in the order of the columns.
+    Where the noises have unlike numbers of seeds, n names each in the order of the columns. Last, in how many fits
+    SINDy names the law and nothing else; the other methods name nothing.
     """
     column, factor, parts = NUMBERS[number]
-    of_set = table[table["set"] == name]
+    of_set = table[table["set"].str.startswith(name) if name.endswith(FURTHER) else table["set"] == name]
     noises, rows = sorted(of_set["noise"].unique()), []
     for method in [each for each in METHOD_WORDS if each in set(of_set["method"])]:
         for part in parts:
             found = of_set[(of_set["method"] == method) & (of_set["part"] == part)]
-            counts = found[found["noise"] > 0].groupby("noise")["seed"].nunique()
+            counts = found[found["noise"] > 0].groupby("noise").size()
             n = ", ".join(map(str, counts if len(set(counts)) > 1 else counts[:1])) or "1"
             said = [said_of(found[found["noise"] == noise], column, factor) for noise in noises]
             rows.append((METHOD_WORDS[method], START_WORDS[part], n, *said))
+    law = "" if name.endswith("_state") else next((one for begins, one in LAWS.items() if name.startswith(begins)), "")
+    if law:
+        fits = of_set[(of_set["method"] == "sindy") & (of_set["part"] == ORACLE)]
+        named = fits["terms"].str.fullmatch(law).groupby(fits["noise"])
+        rows.append(("SINDy names the law alone", "", "", *(f"{one.sum()} of {len(one)}" for _, one in named)))
     headings = ("method", "start", "n", *(f"{noise:.1%} noise" for noise in noises))
     return markdown_table(" | ".join(headings), rows)
 

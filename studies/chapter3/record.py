@@ -276,11 +276,16 @@ def recorded(system: System, conditions: Conditions) -> Record:
     if conditions.noise:
         training = smoothed(training, 1.0 / conditions.dt_s, 4.0 if conditions.published else None)
     others = []
-    for number in range(1, conditions.trajectories):  # from starts drawn evenly from where this one went
-        start = np.random.default_rng([STARTS_SEED, number]).uniform(truth.min(axis=0), truth.max(axis=0))
+    for number in range(1, conditions.trajectories):
+        further = replace(system, start=further_start(truth[:split], number))
         seed = conditions.seed + OTHER_NOISE * number
-        others.append(recorded(replace(system, start=start), replace(conditions, seed=seed, trajectories=1)))
+        others.append(recorded(further, replace(conditions, seed=seed, trajectories=1)))
     return Record(system, conditions, np.asarray(time, float), truth, measured, training, split, tuple(others))
+
+
+def further_start(trained: NDArray[np.float64], number: int) -> NDArray[np.float64]:
+    """A start, drawn evenly from the box of the states (sample, state) that a training part went through, (state,)."""
+    return np.random.default_rng([STARTS_SEED, number]).uniform(trained.min(axis=0), trained.max(axis=0))
 
 
 Approach = Literal["dynamics", "state"]

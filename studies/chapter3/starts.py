@@ -45,7 +45,7 @@ class Filtered:
 class Uncertainty:
     """Noise that a filter assumes."""
 
-    first: NDArray[np.float64]  # (state,), standard deviation of the first state
+    first: NDArray[np.float64]  # (state,), standard deviation of the first state, or its covariance (state, state)
     step: NDArray[np.float64]  # (state,), that each step adds
     measured: float | NDArray[np.float64]  # float or (channel,), of what is measured
 
@@ -61,7 +61,7 @@ def unscented_kalman(
     scale = SPREAD**2 * n
     mean = np.r_[1 - n / scale, np.full(2 * n, 0.5 / scale)]
     spread = np.r_[mean[0] + 1 - SPREAD**2 + 2, mean[1:]]
-    x, p = np.array(start, float), np.diag(noise.first**2)
+    x, p = np.array(start, float), noise.first if noise.first.ndim == 2 else np.diag(noise.first**2)
     values = np.reshape(np.asarray(y, float), (len(y), -1))
     states, sd, likelihood = np.empty((len(y), n)), np.empty((len(y), n)), 0.0
     for k, value in enumerate(values):

@@ -3,7 +3,7 @@ import pandas as pd
 import pytest
 from ch3_cell_sets import cell_sets
 from ch3_seeds import gathered, rows_of
-from ch3_tables import printed
+from ch3_tables import differing, least, printed
 from chapter3.cell import FORECAST, ORACLE, PARTS, cell_of
 from chapter3.kept_cells import CELLS, measured, set_table
 from chapter3.recommend import FOUND, evidence_of
@@ -57,6 +57,14 @@ def test_every_cell_of_the_first_grids_rests_on_twelve_seeds():
     some = table[table["set"].isin(["van_der_pol_text", "van_der_pol_code", "lorenz"]) & (table["noise"] > 0)]
     some = some[(some["method"] != "bopdmd") & (some["part"] == FORECAST)]
     assert some.groupby(["set", "method", "noise"])["seed"].nunique().ge(12).all()
+
+
+def test_a_cell_is_a_family_of_six_pairs_dmd_among_them():
+    values = np.arange(12.0)[:, None] + [0, -5, 0, 0] + np.linspace(0, 1e-3, 48).reshape(12, 4)
+    said = differing(pd.DataFrame(values, columns=["sindy", "dmd", "gp", "nn"]))
+    assert said.startswith("SINDy > DMD (p 0.0029)") and said.count("DMD") == 3
+    assert "least p 0.00049, 0.0029 over the 6 pairs of a cell" in least(12)
+    assert "no more than 3 of 12" in least(12) and "no more than 1 of 10" in least(10)
 
 
 def test_a_row_is_a_method_and_a_start_with_the_seeds_counted():

@@ -62,6 +62,7 @@ def searched():
 def test_what_was_planted_returns_and_nothing_is_invented(searched):
     found, ((before, augmented),), _ = searched
     assert found.twins == Twins(2, "cubic_stiffness@load", {"cubic_stiffness@load": 2}, {"no_gap": 2})
+    assert found.to_json()["twins"]["with_effects"] == {"cubic_stiffness@load": 2}
     assert before.twins is None and before.sentence == found.sentence and augmented.effects
     assert found.twins.sentence == (
         "In simulated records like these, the search names the same in 2 of 2 in which it acts, and an effect in 0 of "

@@ -2,7 +2,6 @@
 
 import shutil
 
-import clinic_rules
 import ezc3d
 import faults_in_people
 import faults_on_pages
@@ -131,14 +130,6 @@ def test_only_what_is_new_and_named_counts_as_said():
         next(one for one in faults_on_pages.KINDS if one.people == 2), clean._replace(people=2), clean, False
     )
     assert not faults_on_pages.said(kinds["11 heels 0.5 s"], clean._replace(cycles=1), clean, True)
-
-
-@pytest.mark.slow
-def test_what_is_planted_is_found_on_pages_of_few_people():
-    rows = list(clinic_rules.run(quick=True))
-    assert [row["planted"] for row in rows] == ["nothing", "stiff knee", "drop foot", "child"]
-    assert rows[0]["said elsewhere"] == 0
-    assert all(row["found"] <= row["pages"] == 2 for row in rows)
 
 
 @pytest.mark.slow

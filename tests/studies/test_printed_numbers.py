@@ -5,7 +5,7 @@ import pytest
 from claims import write_table
 from command_line import SHARED
 from printed_blocks import FORMS, Block, apart, blocks, difference, first_two, quoted, renewed, scores
-from printed_numbers import PROJECT, answer, pages
+from printed_numbers import PROJECT, answer, commands_of_tables, pages, without_command
 
 PAGES = {page.relative_to(PROJECT).as_posix(): page.read_text(encoding="utf-8") for page in pages()}
 EVERY = [(name, block) for name, text in PAGES.items() for block in blocks(text)]
@@ -59,7 +59,9 @@ def test_forms_take_what_readers_need():
 def test_marks_are_whole_and_forms_known():
     for name, text in PAGES.items():
         assert text.count("<!-- printed by:") == text.count("<!-- end -->") == len(blocks(text)), name
-    assert {block.form for _, block in EVERY} <= set(FORMS)
+    assert {block.form.removesuffix(", slow") for _, block in EVERY} <= set(FORMS)
+    assert [heads for page in pages() for heads in without_command(page)] == []
+    assert commands_of_tables("| a |\n|---|\n| 1 |\n") == {"| a |": ""}
     assert {"README.md", "docs/examples.md", "docs/discover.md", "studies/results/chapter3.md"} <= {
         name for name, _ in EVERY
     }

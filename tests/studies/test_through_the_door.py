@@ -23,7 +23,6 @@ INSIDE = {
     },
     "what a command does with a whole study, beside its inner numbers": {
         "ch4_ankle_exo", "ch4_ours", "ch5_gait_individual",
-        "clinic_rules",
         "as_a_user", "compare_exo_emg", "engine_cases", "false_alarms", "planted_faults", "tracked_walks",
     },
     "fits and windows of one kind set beside others of the literature": {
