@@ -90,8 +90,11 @@ class Guard:
             raise _refusal(path.parent, f"already holds another kind of result ({other[0]})")
         if not os.path.lexists(path) or (place.known and place.mends(path)):
             return place
-        if os.path.exists(path) and any(_is_same(path.stat(), one) for one in self.inputs):  # noqa: PTH110 never raises
-            raise _refusal(path, f"is an input of {self.command}")
+        if os.path.exists(path):  # noqa: PTH110 never raises
+            own, same = path.stat(), os.path.samestat
+            # of a file that was replaced, the number may be given to a new one
+            if any(same(own, read) and own.st_mtime_ns == read.st_mtime_ns for read in self.inputs):
+                raise _refusal(path, f"is an input of {self.command}")
         whole = path.is_dir() or place.mends(path)
         own = place.known if whole else path.is_file() and place.wrote(path, file_sha256(path))
         if not own and not self.overwrite:
@@ -114,11 +117,6 @@ def guard(command: str, inputs: Iterable[Path] = (), overwrite: bool = False) ->
     with _at_work(Guard(command, overwrite)):
         note_inputs(one for path in inputs for one in (path, *(path / name for name in KINDS)))
         yield
-
-
-def _is_same(one: os.stat_result, read: os.stat_result) -> bool:
-    """Whether a file is the one that was read: the number of one that was replaced may be given to a new file."""
-    return os.path.samestat(one, read) and one.st_mtime_ns == read.st_mtime_ns
 
 
 @contextmanager

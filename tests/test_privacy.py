@@ -1,6 +1,7 @@
 """Words that a recording brings may say who a person is: planted everywhere in one, they stand in no result."""
 
 import base64
+import io
 import re
 import zipfile
 import zlib
@@ -10,6 +11,7 @@ import numpy as np
 import pyarrow.parquet as pq
 import pytest
 from driven_walker import DrivenWalker
+from pypdf import PdfReader
 from texts import says
 
 from gaitdisc.commands.options import SOME_REFUSED
@@ -168,10 +170,12 @@ def found_in(folder):
 
 
 def printed(content):
-    """Text of a PDF, whose strings are broken between letters."""
+    """Text of a PDF: its pages and metadata, and what its objects hold, such as words for those who cannot see it."""
     packed = re.findall(rb"stream\r?\n(x.*?)\r?\nendstream", content, re.DOTALL)
-    pages = [zlib.decompressobj().decompress(part) for part in packed]
-    return b"".join(b"".join(re.findall(rb"\(((?:[^()\\]|\\.)*)\)", page)) + b"\n" for page in pages)
+    objects = [zlib.decompressobj().decompress(part) for part in packed]
+    reader = PdfReader(io.BytesIO(content))
+    words = "\n".join([*(page.extract_text() for page in reader.pages), repr(reader.metadata)])
+    return b"\n".join([words.encode(), *objects])
 
 
 def test_the_tokens_are_planted(recordings, study):

@@ -138,7 +138,11 @@ def write_people(
             raise
         except (GaitdiscError, ArithmeticError, LookupError, ValueError, TypeError) as error:
             failed.append(Refusal(title, "", f"the page could not be written: {error}"))
-    return write_index(_with_failed(run, failed, run_folder), rows, pages.reference, report, say)
+    # where the folder lies may name somebody
+    for place in [str(run_folder.absolute()), *([str(run_folder)] if len(run_folder.parts) > 1 else [])]:
+        failed = [replace(one, reason=one.reason.replace(place, "run")) for one in failed]
+    run = replace(run, refusals=(*run.refusals, *failed))
+    return write_index(run, rows, pages.reference, report, say)
 
 
 def write_person(
@@ -177,11 +181,3 @@ class _Pages:
     def write(self, person: PersonSession, name: str) -> list[Path]:
         """Write the page of a person and session as HTML and where wanted as PDF."""
         return write_person_page(person, name, self.reference, self._provenance, self.report, self.say, self.pdf)
-
-
-def _with_failed(run: StudyRun, failed: list[Refusal], run_folder: Path) -> StudyRun:
-    """Run with those refused whose pages failed; where the folder lies may name somebody, so that is taken out."""
-    places = [str(run_folder.absolute()), *([str(run_folder)] if len(run_folder.parts) > 1 else [])]
-    for place in places:
-        failed = [replace(one, reason=one.reason.replace(place, "run")) for one in failed]
-    return replace(run, refusals=(*run.refusals, *failed))

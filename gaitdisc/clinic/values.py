@@ -32,7 +32,8 @@ def values_table(reading: ClinicalReading) -> Table:
         uneven = 100 * (left - right) / ((left + right) / 2) if left * right > 0 else None
         limits = reading.spatiotemporal.get(value)
         cells = [_cell(each.get(side), digits) for side in FEET]
-        own = f"{number(limits.mean, digits)} ± {limits.sd:.{digits}f}" if limits else NONE
+        own = number(limits.mean, digits) if limits else NONE
+        own += f" ± {limits.sd:.{digits}f}" if limits and np.isfinite(limits.sd) else ""  # one control has no spread
         rows.append((f"{words} [{unit}]", *cells, own, NONE if uneven is None else f"{number(uneven, 0)} %"))
         record = {"value": value, "unit": unit, "asymmetry_percent": uneven}
         for side, values in each.items():

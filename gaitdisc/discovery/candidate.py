@@ -230,12 +230,11 @@ def list_candidates(
         if _occurs(name, used):
             scaled = () if f"gain_of_{name}" in simulation.values() else ("input_gain",)  # a number of the file
             found += [Candidate("input_error", "input", name, error) for error in ("input_delay", *scaled)]
-    if isinstance(simulation, Simulation):
-        found += [
-            _lag_input(simulation, each.name)
-            for each in simulation.driving
-            if _occurs(each.name, used) and not each.wraps
-        ]
+    for each in simulation.driving if isinstance(simulation, Simulation) else ():
+        if _occurs(each.name, used) and not each.wraps:  # it may act through a first-order lag
+            own = free_name(f"{each.name}_lagged", {*simulation.signals})
+            states, names = {own: f"({each.name} - {own})/_seconds"}, {"seconds": "time_constant"}
+            found.append(Candidate("input_error", "input", each.name, "input_lag", names=names, states=states))
     for name, _ in simulation.observations:
         found += [
             Candidate("sensor_error", "observation", name, error)
@@ -269,13 +268,6 @@ def list_candidates(
                     )
                 )
     return tuple(found)
-
-
-def _lag_input(simulation: Simulation, name: str) -> Candidate:
-    """An input that acts through a first-order lag."""
-    own = free_name(f"{name}_lagged", {*simulation.signals})
-    states, names = {own: f"({name} - {own})/_seconds"}, {"seconds": "time_constant"}
-    return Candidate("input_error", "input", name, "input_lag", names=names, states=states)
 
 
 def saturations(simulation: Simulation) -> tuple[Candidate, ...]:

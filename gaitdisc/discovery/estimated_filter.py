@@ -56,7 +56,14 @@ def find_record_filter(
     if cutoffs and max(cutoffs.values()) < ALIKE * min(cutoffs.values()):  # one filter
         cutoffs = dict.fromkeys(cutoffs, float(np.exp(np.mean(np.log(list(cutoffs.values()))))))
     passed = RecordFilter(tuple(cutoffs.get(number, cutoff) for number, cutoff in enumerate(stated)), measured.rate)
-    return passed, tuple(_finding(measured, number, cutoff) for number, cutoff in cutoffs.items())
+    findings = []
+    for number, cutoff in cutoffs.items():
+        what = (
+            f"assumed to be low-passed at {cutoff:.3g} Hz without lag (order 2, both directions), as its spectrum falls"
+        )
+        spoils = "everything that depends on this filter; state lowpass in the simulation file if you know it"
+        findings.append(Finding("note", "low-pass", measured.source, what, spoils, measured.channels[number]))
+    return passed, tuple(findings)
 
 
 def _trials(measured: Measured, channel: int) -> list[Values]:
@@ -84,12 +91,6 @@ def _as_the_surer(seen: dict[int, RecordedFilter], units: list[str]) -> dict[int
         ]
         found[number] = float(np.exp(np.mean(np.log(surer)))) if surer else one.cutoff_hz
     return found
-
-
-def _finding(measured: Measured, channel: int, cutoff: float) -> Finding:
-    what = f"assumed to be low-passed at {cutoff:.3g} Hz without lag (order 2, both directions), as its spectrum falls"
-    spoils = "everything that depends on this filter; state lowpass in the simulation file if you know it"
-    return Finding("note", "low-pass", measured.source, what, spoils, measured.channels[channel])
 
 
 def _beside_the_simulation(

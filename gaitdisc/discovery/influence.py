@@ -37,18 +37,14 @@ class Idle:
             ("note", "parameter", self.parameters, "nothing; these data cannot determine its value"),
             ("note", "state", self.states, "nothing; these data cannot determine its initial value"),
         )
-        return tuple(
-            Finding(
-                severity, "no influence", source, f"{_say_names(part, names)} no effect on what is measured", spoils
-            )
-            for severity, part, names, spoils in idle
-            if names
-        )
-
-
-def _say_names(kind: str, names: tuple[str, ...]) -> str:
-    words = " and ".join(repr(name) for name in names)
-    return f"{kind} {words} has" if len(names) == 1 else f"{kind}s {words} have"
+        found = []
+        for severity, part, names, spoils in idle:
+            words = " and ".join(repr(name) for name in names)
+            who = f"{part} {words} has" if len(names) == 1 else f"{part}s {words} have"
+            if names:
+                what = f"{who} no effect on what is measured"
+                found.append(Finding(severity, "no influence", source, what, spoils))
+        return tuple(found)
 
 
 def idle_parts(shooting: Shooting, simulation: Simulation, places: tuple[Place, ...], starts: Values) -> Idle:

@@ -69,7 +69,13 @@ def changes(record: JointRecord) -> list[Change]:
         ("coulomb_friction", "friction", once, "", lambda d, _: -np.sign(d.rate)[:, None]),
     )
     changes = [Change(name, word, number, at, columns=by, piece=piece) for name, number, at, piece, by in shapes]
-    changes.append(Change("wrong_parameter", "emg_delay", "value", DELAYS_S, _later))
+
+    def later(driven: Driven, delay_s: float) -> Driven:
+        at = np.arange(len(driven.angle))
+        late = np.column_stack([np.interp(at - delay_s * driven.rate_hz, at, one) for one in driven.envelopes.T])
+        return replace(driven, envelopes=late)
+
+    changes.append(Change("wrong_parameter", "emg_delay", "value", DELAYS_S, later))
 
     def stronger(driven: Driven, by: float, sign: int) -> Driven:
         return replace(driven, envelopes=driven.envelopes * np.where(driven.signs == sign, by, 1.0))
@@ -83,12 +89,6 @@ def changes(record: JointRecord) -> list[Change]:
         per_kg = -record.per_kg[:, None]
         changes.append(Change("wrong_parameter", "added_foot_mass", "value", once, columns=lambda _, __: per_kg))
     return changes
-
-
-def _later(driven: Driven, delay_s: float) -> Driven:
-    at = np.arange(len(driven.angle))
-    late = np.column_stack([np.interp(at - delay_s * driven.rate_hz, at, one) for one in driven.envelopes.T])
-    return replace(driven, envelopes=late)
 
 
 def joint_model(record: JointRecord, model: MuscleMoment) -> Simulation:

@@ -106,7 +106,7 @@ def find_power(model: Simulation, data: Measured, request: Request) -> list[Powe
         (part,), fit = now.model.parts, now.model.fit
         if not part.candidate.idle:
             raise SchemaError(
-                "a plan needs an effect with a number that tells its size", f"{effect} has none", "Give another effect."
+                "a plan needs an effect with a number for its size", f"{effect} has none", "Give another effect."
             )
         slot, none = next(iter(part.candidate.idle.items()))
         place = now.model.machine.parameters.index(now.model.names[0][slot])
@@ -124,7 +124,8 @@ def find_power(model: Simulation, data: Measured, request: Request) -> list[Powe
         named = np.array([answer == effect for answer in answers]).reshape(len(SIZES), records).sum(axis=1)
         sizes, counts = tuple((error * SIZES).tolist()), tuple(named.tolist())
         (most, _), *_ = Counter(answers[-records:]).most_common(1)
-        found.append(Power(effect, number, one.unit, sizes, counts, records, "" if most == effect else most))
+        instead = "" if most == effect else most
+        found.append(Power(effect, number, one.unit, sizes, counts, records=records, instead=instead))
     return found
 
 

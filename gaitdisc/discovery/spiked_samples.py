@@ -87,17 +87,13 @@ def mark_spikes(record: Values) -> NDArray[np.bool_]:
         beside = at[width + 1 :] - at[: -width - 1] <= width + LONGEST
         for begin in (np.flatnonzero(far & back & beside) + 1).tolist():
             here[begin : begin + width] = True
-            shouldered.append(_has_shoulder(x, begin, begin + width, max(SHOULDER * middle, OF_LEAP * leap[begin - 1])))
+            # the sample before or after a leap is on its way there: the record turns towards the leap
+            up, least = np.sign(x[begin] - x[begin - 1]), max(SHOULDER * middle, OF_LEAP * leap[begin - 1])
+            sides = slice(max(begin - 3, 0), begin), slice(begin + width, begin + width + 3)
+            shouldered.append(any(bool((up * np.diff(x[side], 2) > least).any()) for side in sides))
     if here.sum() <= MOST * len(known) and np.sum(shouldered) <= SHOULDERED * len(shouldered):
         marks[known] = here[LONGEST:-LONGEST]
     return marks
-
-
-def _has_shoulder(x: Values, begin: int, end: int, least: float) -> bool:
-    """Whether the sample before or after a leap is on its way there: the record turns towards the leap by `least`."""
-    up = np.sign(x[begin] - x[begin - 1])
-    turns = [np.diff(x[side], 2) for side in (slice(max(begin - 3, 0), begin), slice(end, end + 3))]
-    return any(bool((up * turn > least).any()) for turn in turns)
 
 
 def _line(x: Values) -> Values:
@@ -116,9 +112,13 @@ def _finding(measured: Measured, marks: NDArray[np.bool_], channel: int) -> Find
         first = int(np.argmax(mine))
         count = int(mine.sum())
         value = measured.observed[trial, first, channel]
+        record = np.where(marks[trial, :, channel], np.nan, measured.observed[trial, :, channel])
+        known = np.flatnonzero(np.isfinite(record))
+        nearest = [known[known < first][-1:], known[known > first][:1]]
+        beside = " and ".join(f"{record[one[0]]:.4g}" for one in nearest if one.size)
         said.append(
             f"trial {measured.trials[trial]!r}: {count} of {len(time)} samples, the first at {time[first]:.4g} s "
-            f"({value:.4g} between {_beside(measured, marks, trial, channel, first)})"
+            f"({value:.4g} between {beside})"
         )
         spans += [(float(time[begin]), float(time[end - 1])) for begin, end in runs(mine)]
     more = f"; the same in {len(said) - LISTED} more trials" if len(said) > LISTED else ""
@@ -126,11 +126,3 @@ def _finding(measured: Measured, marks: NDArray[np.bool_], channel: int) -> Find
     spoils = "these samples only, which are excluded like empty cells"
     name = measured.channels[channel]
     return Finding("warning", KIND, measured.source, what, spoils, name, spans=tuple(spans) if len(said) == 1 else ())
-
-
-def _beside(measured: Measured, marks: NDArray[np.bool_], trial: int, channel: int, first: int) -> str:
-    """The nearest values before and after a spike that are none."""
-    record = np.where(marks[trial, :, channel], np.nan, measured.observed[trial, :, channel])
-    known = np.flatnonzero(np.isfinite(record))
-    sides = [known[known < first][-1:], known[known > first][:1]]
-    return " and ".join(f"{record[one[0]]:.4g}" for one in sides if one.size)

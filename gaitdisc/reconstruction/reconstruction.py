@@ -91,7 +91,13 @@ class Reconstruction(Saved, file="reconstruction.json"):
 
     def over_participants(self) -> pd.DataFrame:
         """Mean of each measure over participants, and its 95 % interval (Student's t, n of 3 or more), by model."""
-        return pd.DataFrame({model: _over(rows) for model, rows in self.summary.groupby("model", sort=False)}).T
+        found: dict[object, dict[str, float]] = {}
+        for model, rows in self.summary.groupby("model", sort=False):
+            found[model] = {"n": len(rows)}
+            for measure in MEASURES:
+                mean, _, half = mean_over_people(rows[measure].to_numpy(float))
+                found[model] |= {measure: mean, f"{measure}_low": mean - half, f"{measure}_high": mean + half}
+        return pd.DataFrame(found).T
 
     def over_states(self) -> pd.DataFrame:
         """Mean RMSE, relative L2 and R2 over participants; indexed by state and model."""
@@ -149,14 +155,6 @@ def enough_sensors(found: pd.DataFrame) -> int:
     root = np.sqrt(found["loss"].to_numpy(float))
     worth = root[1:] < (1 - WORTH) * root[:-1]
     return int(np.argmin(worth)) if not worth.all() else len(root) - 1
-
-
-def _over(rows: pd.DataFrame) -> pd.Series:
-    found: dict[str, float] = {"n": len(rows)}
-    for measure in MEASURES:
-        mean, _, half = mean_over_people(rows[measure].to_numpy(float))
-        found |= {measure: mean, f"{measure}_low": mean - half, f"{measure}_high": mean + half}
-    return pd.Series(found)
 
 
 RECONSTRUCTION = Kind(

@@ -120,7 +120,13 @@ def representative(reductions: pd.DataFrame) -> str:
 
 
 def _of_one(response: ParticipantResponse) -> pd.DataFrame:
-    sizes = {model: _sizes(curves) for model, curves in response.residuals.items()}
+    sizes = {}
+    for model, curves in response.residuals.items():
+        if len(curves) < LEAST_STRIDES:
+            sizes[model] = pd.DataFrame(np.nan, index=range(curves.shape[2]), columns=pd.Index(MEASURES))
+            continue
+        mean = mean_over_strides(curves)
+        sizes[model] = pd.DataFrame({measure: getattr(mean, measure) for measure in MEASURES})
     nominal = sizes["nominal"].where(sizes["nominal"] > 0)
     tables = [
         pd.concat([size, (1 - size / nominal).add_suffix("_reduction")], axis=1).assign(
@@ -133,13 +139,6 @@ def _of_one(response: ParticipantResponse) -> pd.DataFrame:
         for model, size in sizes.items()
     ]
     return pd.concat(tables, ignore_index=True)
-
-
-def _sizes(residuals: NDArray[np.float64]) -> pd.DataFrame:
-    if len(residuals) < LEAST_STRIDES:
-        return pd.DataFrame(np.nan, index=range(residuals.shape[2]), columns=pd.Index(MEASURES))
-    mean = mean_over_strides(residuals)
-    return pd.DataFrame({measure: getattr(mean, measure) for measure in MEASURES})
 
 
 def responder_table(responses: Sequence[ParticipantResponse], seed: int = 0) -> tuple[pd.DataFrame, str]:

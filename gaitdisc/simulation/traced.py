@@ -44,7 +44,9 @@ class Quantity:
             raise NotTraced("its expressions are too long")
 
     def __add__(self, other: Any) -> Quantity:
-        return _sum(self, other)
+        if _is(self, 0) and isinstance(other, Quantity | int | float):
+            return other if isinstance(other, Quantity) else Quantity(_tree(other), self.ways)
+        return self if _is(other, 0) else _operation("+", self, other)
 
     def __sub__(self, other: Any) -> Quantity:
         return self if _is(other, 0) else _operation("-", self, other)
@@ -217,12 +219,6 @@ def _operation(symbol: str, *arguments: Any) -> Quantity:
     own = [one for one in arguments if isinstance(one, Quantity)]
     size, depth = 1 + sum(one.size for one in own), 1 + max(one.depth for one in own)
     return Quantity(Operation(symbol, tuple(map(_tree, arguments))), own[0].ways, size, depth)
-
-
-def _sum(one: Quantity, other: Any) -> Quantity:
-    if _is(one, 0) and isinstance(other, Quantity | int | float):
-        return other if isinstance(other, Quantity) else Quantity(_tree(other), one.ways)
-    return one if _is(other, 0) else _operation("+", one, other)
 
 
 def _product(one: Quantity, other: Any, swapped: bool = False) -> Quantity:
