@@ -75,7 +75,7 @@ def build_oracle(simulation, oracle):
 
 def make_case(name, checkout, out):
     """Writes the five files of one rig."""
-    sets = ("open", "kept", "second", "third", "fourth", "fifth")
+    sets = ("open", "kept", "second", "third", "fourth", "fifth", "sixth")
     folder = next(HERE / f for f in sets if (HERE / f / f"{name}.py").exists())
     recipe = runpy.run_path(str(folder / f"{name}.py"))
     learned, unseen = recipe["read_trials"](load_files(recipe, checkout))
