@@ -173,9 +173,9 @@ def printed(content):
     """Text of a PDF: its pages and metadata, and what its objects hold, such as words for those who cannot see it."""
     packed = re.findall(rb"stream\r?\n(x.*?)\r?\nendstream", content, re.DOTALL)
     objects = [zlib.decompressobj().decompress(part) for part in packed]
-    reader = PdfReader(io.BytesIO(content))
-    words = "\n".join([*(page.extract_text() for page in reader.pages), repr(reader.metadata)])
-    return b"\n".join([words.encode(), *objects])
+    reader = PdfReader(io.BytesIO(content)) if content.startswith(b"%PDF") else None
+    words = [*(page.extract_text() for page in reader.pages), repr(reader.metadata)] if reader else []
+    return b"\n".join([*(one.encode() for one in words), *objects])
 
 
 def test_the_tokens_are_planted(recordings, study):
