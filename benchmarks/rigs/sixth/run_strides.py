@@ -46,6 +46,6 @@ def read_trials(files):
         columns = {m: [i for i, n in enumerate(names) if n.endswith(m + " Z")] for m in SHARES}
         heights.append(sum(share * rows[:, columns[m]].mean(1) for m, share in SHARES.items()) / 1000)
     standing, height = heights
-    force = sum(rows[:, 4] for _, rows in tables[2:])
+    force = sum((rows[:, 4] for _, rows in tables[2:]), np.zeros(len(tables[2][1])))
     run = {"time": np.arange(len(force)) * 0.005, "force": force, "height": height - standing.mean()}
     return [{c: v[:165] for c, v in run.items()}], [{c: v[165:] for c, v in run.items()}]
