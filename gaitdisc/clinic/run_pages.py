@@ -131,7 +131,7 @@ def write_people(
             for page in written:
                 progress(page)
             drawn = index_rows(person, name, say)
-            files = [*written, *(report / "people" / name).glob("*.csv")]
+            files = [*written, *(report / "people" / name).glob("[!.]*.csv")]  # none that another process writes
             keep_part(report, f"people-{name}", key, drawn, files)
             rows += drawn
         except WriteError:  # of the disk, not of the person: the page would stand as one that cannot be written

@@ -61,6 +61,6 @@ def test_a_wrong_name_is_refused_and_a_stop_is_said(computed, called, tmp_path, 
 def test_the_quickest_part_prints_the_tables_of_the_pages(called, tmp_path):
     called("chapter", 3, tmp_path, "--part", "tables", ends=0)
     text = (tmp_path / "tables" / "printed.md").read_text(encoding="utf-8")
-    assert says(text, "Van der Pol", "cubic spring", "no noise | 0.1 %", "10 %")
+    assert says(text, "Van der Pol", "estimated", "true state (oracle)", "10.0%")
     assert text.count("## ") > 8
     assert "kept as it stands" in called("chapter", 3, tmp_path, "--part", "tables").stdout
