@@ -8,15 +8,12 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 from functools import cache
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 from gaitdisc.channel import schema_folder
 from gaitdisc.errors import SchemaError
 from gaitdisc.processing.leg_curves import BY_NAME
 from gaitdisc.toml_text import parse_toml
-
-if TYPE_CHECKING:
-    pass
 
 FILE, TABLE = "clinic.toml", "clinical_axes.csv"
 LARGEST_LOGO = 2**19  # [bytes] a page stays one file that can be mailed

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 import time
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
@@ -10,7 +11,6 @@ from typing import TYPE_CHECKING, TypeVar
 
 import typer
 
-from gaitdisc.commands.new_recordings import say_new_recordings
 from gaitdisc.commands.options import REFUSED, SOME_REFUSED, STOPPED
 from gaitdisc.errors import LOG
 
@@ -143,3 +143,29 @@ def end(refusals: Sequence[Refusal], count: int, page: Path, seconds: float) -> 
     typer.echo(f"{counted(count, 'participant')} in {seconds:.0f} s. report: {page}")
     if refusals:
         raise typer.Exit(SOME_REFUSED if count else REFUSED)
+
+
+def say_new_recordings(study: Study) -> None:
+    """Say how many recordings beside those of the study it does not name, and of whom; their names stay away.
+
+    Looked at is the folder that all recordings lie in, or, where that is the study's own, the folder of each.
+    """
+    from gaitdisc.ingest.people_table import is_people_table
+
+    people = study.participants
+    owners = {study.path_of(file).resolve(): one.id for one in people for t in one.trials for file in t.files}
+    folders = {path.parent: who for path, who in owners.items()}
+    above = Path(os.path.commonpath(folders)) if len(set(folders.values())) > 1 else Path()
+    inside = above.parts[2:] and not study.folder.resolve().is_relative_to(above)
+    endings = {path.suffix.lower() for path in owners}
+    found: dict[str, int] = {}
+    each = above.rglob("*") if inside else (path for one in folders if one.is_dir() for path in one.iterdir())
+    for path in each:
+        if path.suffix.lower() in endings and path.resolve() not in owners and not is_people_table(path):
+            who = next((folders[folder] for folder in path.parents if folder in folders), "")
+            beside = f"beside those of {who}" if who else "of somebody new or in a new folder"
+            found[beside] = found.get(beside, 0) + 1
+    new = ", ".join(f"{count} {beside}" for beside, count in sorted(found.items()))
+    if new:
+        words = "New recordings are not in the study file: {}. Take them up: gaitdisc watch STUDY --from RECORDINGS."
+        typer.echo(words.format(new), err=True)

@@ -43,7 +43,6 @@ class Trial:
 class FirstSamples:
     """A trial as one run, whose start is found by its first samples."""
 
-    segments: Segments
     shooting: Shooting  # of the whole trial
     fit: Fitted  # to the first samples
     first: int  # sample before which the start is fitted
@@ -76,7 +75,7 @@ def free_runs(case: Case, now: ScoredModel) -> tuple[float, float]:
     scale, found = case.scale, []
     for trial in case.held_out:
         begun = begin_by_first_samples(case, now, trial)
-        segments, shooting = begun.segments, begun.shooting
+        shooting, segments = begun.shooting, begun.shooting.segments
         whole = shooting.at(now.model.machine, (), begun.fit.values, begun.fit.starts)
         error = np.where(np.isfinite(whole.residual), (whole.residual / scale.spread) ** 2, CRITERIA.lost)
         slopes = np.nan_to_num(whole.slopes.reshape(*whole.residual.shape, -1))
@@ -106,7 +105,7 @@ def begin_by_first_samples(case: Case, now: ScoredModel, trial: int) -> FirstSam
     seen[trial, first:] = np.nan
     shooting = case.shooting(segments).with_noise(white_noise(case.scale.size))
     begun = replace(shooting, measured=replace(case.measured, observed=seen))
-    return FirstSamples(segments, shooting, _start_runs(begun, now, case.guess.starts(segments)), first)
+    return FirstSamples(shooting, _start_runs(begun, now, case.guess.starts(segments)), first)
 
 
 def strays(case: Case, now: ScoredModel, before: float) -> bool:

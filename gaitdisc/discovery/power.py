@@ -18,11 +18,12 @@ from scipy.optimize import minimize
 from scipy.stats import norm
 
 from gaitdisc.discovery.candidate_model import Part
-from gaitdisc.discovery.case import set_up_case
+from gaitdisc.discovery.case import Case, set_up_case
 from gaitdisc.discovery.catalogue import Request
 from gaitdisc.discovery.discover import fit_given, refuse_unknown
 from gaitdisc.discovery.effect_words import amount, spoken, with_unit
 from gaitdisc.discovery.estimates import name_estimates
+from gaitdisc.discovery.scored_model import ScoredModel
 from gaitdisc.discovery.spiked_samples import without_spikes
 from gaitdisc.discovery.twins import TwinSource, search_records
 from gaitdisc.errors import SchemaError
@@ -53,7 +54,7 @@ class Power:
         True
         """
         log, share = np.log(self.sizes), np.divide(self.found, self.records)
-        if share[-1] < POWER and share.max() < POWER:
+        if share.max() < POWER:
             return math.inf
         if share.min() >= POWER:
             return math.nan
@@ -94,39 +95,45 @@ def find_power(model: Simulation, data: Measured, request: Request) -> list[Powe
             "none is given",
             'Name them: --effects "viscous_damping@port, input_delay@input".',
         )
-    records = request.twins
     case = set_up_case(model, without_spikes(data), request)
     refuse_unknown(case.search, request.effects)
     request.progress("fitting the simulation as it was read")
-    as_read, found = case.as_read(), []
-    source = TwinSource(case, as_read.noise)
-    for effect in request.effects:
-        request.progress(f"fitting {effect}")
-        now = fit_given(case, as_read, (effect,)).found
-        (part,), fit = now.model.parts, now.model.fit
-        if not part.candidate.idle:
-            raise SchemaError(
-                "a plan needs an effect with a number for its size", f"{effect} has none", "Give another effect."
-            )
-        slot, none = next(iter(part.candidate.idle.items()))
-        place = now.model.machine.parameters.index(now.model.names[0][slot])
-        error = math.sqrt(fit.covariance[(row := fit.free.index(now.model.names[0][slot]), row)])
-        unit_part = Part(part.candidate, part.values | {slot: none + 1.0})
-        nothing = np.zeros((len(part.candidate.slots), len(part.candidate.slots)))
-        number, one = next(iter(name_estimates(unit_part, nothing, case.search.base).items()))
-        sign = 1.0 if one.value >= 0 else -1.0
-        models = []
-        for size in error * SIZES:
-            values = fit.values.copy()
-            values[place] = none + sign * size
-            models.append(replace(now, model=replace(now.model, fit=replace(fit, values=values))))
-        answers = [*search_records(source, [*product(models, range(records))], model, request)]
-        named = np.array([answer == effect for answer in answers]).reshape(len(SIZES), records).sum(axis=1)
-        sizes, counts = tuple((error * SIZES).tolist()), tuple(named.tolist())
-        (most, _), *_ = Counter(answers[-records:]).most_common(1)
-        instead = "" if most == effect else most
-        found.append(Power(effect, number, one.unit, sizes, counts, records=records, instead=instead))
-    return found
+    as_read = case.as_read()
+    return [find_power_for(effect, case, as_read, model, request) for effect in request.effects]
+
+
+def find_power_for(effect: str, case: Case, as_read: ScoredModel, model: Simulation, request: Request) -> Power:
+    """Search records with more and more of one effect.
+
+    as_read: the simulation as read in the case, which leaves the noise of the records
+    model: the simulation that is searched
+    """
+    request.progress(f"fitting {effect}")
+    now = fit_given(case, as_read, (effect,)).found
+    (part,), fit = now.model.parts, now.model.fit
+    if not part.candidate.idle:
+        raise SchemaError(
+            "a plan needs an effect with a number for its size", f"{effect} has none", "Give another effect."
+        )
+    slot, none = next(iter(part.candidate.idle.items()))
+    name = now.model.names[0][slot]
+    row, place = fit.free.index(name), now.model.machine.parameters.index(name)
+    sizes = math.sqrt(fit.covariance[row, row]) * SIZES
+    one_more = Part(part.candidate, part.values | {slot: none + 1.0})
+    exactly = np.zeros((len(part.candidate.slots), len(part.candidate.slots)))
+    number, estimate = next(iter(name_estimates(one_more, exactly, case.search.base).items()))
+    sources = []
+    for size in sizes:
+        values = fit.values.copy()
+        values[place] = none + (size if estimate.value >= 0 else -size)
+        grown = replace(now, model=replace(now.model, fit=replace(fit, values=values)))
+        sources.append(TwinSource(case, grown, as_read.noise))
+    answers = np.array([*search_records([*product(sources, range(request.twins))], model, request)])
+    answers = answers.reshape(len(sizes), request.twins)
+    (most, _), *_ = Counter(answers[-1].tolist()).most_common(1)
+    found, instead = (answers == effect).sum(axis=1), "" if most == effect else most
+    sized = tuple(sizes.tolist())
+    return Power(effect, number, estimate.unit, sized, tuple(found.tolist()), records=request.twins, instead=instead)
 
 
 def tabulate_power(found: Sequence[Power]) -> pd.DataFrame:

@@ -11,7 +11,8 @@ import time
 from collections import Counter
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
-from itertools import starmap
+from functools import cached_property
+from itertools import product, starmap
 from typing import Any, NoReturn
 
 import numpy as np
@@ -45,31 +46,53 @@ RANDOM = ("process_noise", "wrong_initial_condition")  # answers that no term or
 
 @dataclass(frozen=True)
 class TwinSource:
-    """What records like the user's are drawn from: the case that was decided, and noise."""
+    """What records like the user's are drawn from: the case that was decided, a model of it, and noise."""
 
-    case: Case
+    decided: Case
+    now: ScoredModel
     noise: Noise
 
-    def draw(self, now: ScoredModel, number: int) -> Measured | None:
-        """Draw a record like the user's: its inputs, trials and gaps, free runs of a model, and noise.
+    @cached_property
+    def case(self) -> Case:
+        """The case with its only trial whole again, where it was split in time."""
+        case, measured, drive = self.decided, self.decided.measured, self.decided.measured.drive
+        first = measured.trials[0]
+        if measured.trials not in [(first, f"{first}, {which} quarter") for which in ("last", "first")]:
+            return case
+        order = np.argsort(drive.time0)
+        inputs, observed, states = (
+            np.concatenate([one[part, : drive.samples[part]] for part in order])[None]
+            for one in (drive.inputs, measured.observed, case.guess.states)
+        )
+        whole = Drive.of([*inputs], drive.rate, [float(drive.time0.min())])
+        measured = replace(measured, drive=whole, observed=observed, trials=(first,))
+        return replace(case, measured=measured, guess=StateGuess(states))
+
+    @cached_property
+    def starts(self) -> list[Values]:
+        """Where each trial begins by its first samples (1, state)."""
+        trials = range(len(self.case.measured.trials))
+        with outside_work():
+            return [begin_by_first_samples(self.case, self.now, trial).fit.starts for trial in trials]
+
+    def draw(self, number: int) -> Measured | None:
+        """Draw a record like the user's: its inputs, trials and gaps, free runs of the model, and noise.
 
         number: of the record, which seeds what is drawn
         returns: None where a free run leaves the record
         """
-        case, machine = _join_halves(self.case), now.model.machine
-        measured, rng = case.measured, np.random.default_rng(number)
+        case, measured, model = self.case, self.case.measured, self.now.model
         erring, seen = with_drawn_errors(measured, case.search.base, number), np.full_like(measured.observed, np.nan)
         for trial, samples in enumerate(map(int, measured.samples)):
-            with outside_work():
-                begun = begin_by_first_samples(case, now, trial).fit
             whole = replace(case.shooting(Segments(np.array([trial]), np.array([0]), samples)), measured=erring)
-            seen[trial, :samples] = whole.run(machine, begun.starts[None], begun.values[None])[1][0, 0]
+            _, runs = whole.run(model.machine, self.starts[trial][None], model.fit.values[None])
+            seen[trial, :samples] = runs[0, 0]
         known, record = np.isfinite(measured.observed), measured.observed
         low, high = np.nanmin(record, axis=(0, 1)), np.nanmax(record, axis=(0, 1))
         if not np.all((np.maximum(low - seen, seen - high) < FLED * (high - low))[known]):
             return None
-        observed = np.where(known, seen + self._draw_noise(seen.shape, rng), np.nan)
-        return replace(measured, observed=observed, findings=())
+        noise = self._draw_noise(seen.shape, np.random.default_rng(number))
+        return replace(measured, observed=np.where(known, seen + noise, np.nan), findings=())
 
     def _draw_noise(self, shape: tuple[int, ...], rng: np.random.Generator) -> Values:
         """Draw noise (trial, sample, channel); where the record was filtered, white noise that was filtered alike."""
@@ -96,26 +119,10 @@ def draw_noise(noise: Noise, shape: tuple[int, ...], rng: np.random.Generator) -
     return out[:, first:]
 
 
-def _join_halves(case: Case) -> Case:
-    """Return a case with its only trial whole again, where it was split in time."""
-    measured, drive = case.measured, case.measured.drive
-    first = measured.trials[0]
-    if measured.trials not in [(first, f"{first}, {which} quarter") for which in ("last", "first")]:
-        return case
-    order = np.argsort(drive.time0)
-    inputs, observed, states = (
-        np.concatenate([one[part, : drive.samples[part]] for part in order])[None]
-        for one in (drive.inputs, measured.observed, case.guess.states)
-    )
-    whole = Drive.of([*inputs], drive.rate, [float(drive.time0.min())])
-    measured = replace(measured, drive=whole, observed=observed, trials=(first,))
-    return replace(case, measured=measured, guess=StateGuess(states))
-
-
 def refuse_twins(model: str) -> NoReturn:
-    """Refuse twins of what only an engine or a study can run."""
+    """Refuse twins, and a plan, of what only an engine or a study can run."""
     raise SchemaError(
-        "twins need a simulation file or a Python function", f"{model} is neither", "Leave out the number of twins."
+        "twins and a plan need a simulation file or a Python function", f"{model} is neither", "Leave them out."
     )
 
 
@@ -128,30 +135,29 @@ def search_twins(
     model: the simulation that was searched
     """
     case, as_read, verdict = explained
-    source, acts = TwinSource(case, verdict.found.noise), verdict.found.model.parts and found.verdict not in RANDOM
-    kinds = [verdict.found, as_read] if acts else [as_read]
-    if any(source.draw(now, 0) is None for now in kinds):
+    acts = verdict.found.model.parts and found.verdict not in RANDOM
+    models = [verdict.found, as_read] if acts else [as_read]
+    sources = [TwinSource(case, now, verdict.found.noise) for now in models]
+    if any(source.draw(0) is None for source in sources):
         what = "a free run of the simulation leaves the record, so that records like these cannot be simulated"
         finding = Finding("note", "twins", case.measured.source, what, "how often this answer is right")
         return replace(found, findings=(*found.findings, finding))
     note_found("")
-    answers = [*search_records(source, [(now, seed) for now in kinds for seed in range(request.twins)], model, request)]
+    answers = [*search_records([*product(sources, range(request.twins))], model, request)]
     acting, without = (dict(Counter(some)) for some in (answers[: -request.twins], answers[-request.twins :]))
     return replace(found, twins=Twins(request.twins, _name(found), acting, without))
 
 
-def search_records(
-    source: TwinSource, records: Sequence[tuple[ScoredModel, int]], model: Simulation, request: Request
-) -> Iterator[str]:
+def search_records(records: Sequence[tuple[TwinSource, int]], model: Simulation, request: Request) -> Iterator[str]:
     """Search simulated records side by side by the rule of a request, and give the answers in their order.
 
-    records: for each the model that runs, and its number
+    records: for each what it is drawn from, and its number
     """
     rule, pending, begun = replace(request, effects=(), twins=0, progress=lambda _: None), None, time.perf_counter()
-    for done, (now, number) in enumerate(records, 1):
-        answer = recall(f"record {number}", now.model.fit.values.tobytes())
+    for done, (source, number) in enumerate(records, 1):
+        answer = recall(f"record {number}", source.now.model.fit.values.tobytes())
         if answer is None:
-            pending = pending or _search_side_by_side(source, records[done - 1 :], model, rule)
+            pending = pending or _search_side_by_side(records[done - 1 :], model, rule)
             answer = next(pending)
             left = (time.perf_counter() - begun) / done * (len(records) - done)
             request.progress(f"{done} of {len(records)} simulated records searched, about {left:.0f} s left")
@@ -159,11 +165,9 @@ def search_records(
         yield answer
 
 
-def _search_side_by_side(
-    source: TwinSource, records: Sequence[tuple[ScoredModel, int]], model: Simulation, rule: Request
-) -> Iterator[str]:
+def _search_side_by_side(records: Sequence[tuple[TwinSource, int]], model: Simulation, rule: Request) -> Iterator[str]:
     processes = min(os.cpu_count() or 1, MOST_PROCESSES, len(records))
-    drawn = ((model, source.draw(now, number), rule) for now, number in records)
+    drawn = ((model, source.draw(number), rule) for source, number in records)
     if processes == 1:
         yield from starmap(_search, drawn)
         return

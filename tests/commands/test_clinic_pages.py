@@ -17,7 +17,7 @@ from texts import says
 
 from gaitdisc.clinic.clinical_reference import load_reference, save_reference
 from gaitdisc.clinic.run_pages import keep_reference, load_kept_reference, write_people
-from gaitdisc.commands.new_recordings import say_new_recordings
+from gaitdisc.commands.run_report import say_new_recordings
 from gaitdisc.errors import WriteError
 from gaitdisc.ingest.study import Conditions, Participant, PlannedTrial, Study
 from gaitdisc.response.participant_response import load_run

@@ -177,7 +177,9 @@ def test_the_answer_stands_before_its_twins_are_searched(lab, tmp_path, monkeypa
 
 def test_twins_are_refused_where_an_engine_runs_the_model(lab, tmp_path, called):
     done = called("discover", lab / "leg.xml", lab / "good.csv", "--twins", "2", "--out", tmp_path, ends=REFUSED)
-    assert says(done.stderr, "twins need a simulation file or a Python function", "leg.xml", "Leave out")
+    assert says(
+        done.stderr, "twins and a plan need a simulation file or a Python function", "leg.xml", "Leave them out"
+    )
 
 
 def test_a_plan_says_from_which_size_on_an_effect_is_found(lab, tmp_path, monkeypatch, called):

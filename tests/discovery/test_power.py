@@ -41,8 +41,9 @@ def test_records_have_more_and_more_of_the_effect(monkeypatch):
     """A record counts where exactly this effect is named; of damping positive numbers resist."""
     measured, factors = record(mass(), 3, Experiment(trials=2, seconds=6.0)), []
 
-    def searched(source, records, *_):
-        for now, number in records:
+    def searched(records, *_):
+        for source, number in records:
+            now = source.now
             place = now.model.machine.parameters.index(now.model.names[0]["factor"])
             factors.append((now.model.fit.values[place], number))
             yield "viscous_damping@load" if len(factors) > 10 else "no_gap"

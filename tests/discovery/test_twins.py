@@ -28,12 +28,12 @@ def source(request):
     """Return what twins of a cubic spring's record are drawn from, and that record."""
     measured = with_gaps(record(with_load("-14*x**3"), 3, Experiment(trials=request.param, seconds=8.0)))
     case, as_read, verdict = explain(mass(), measured)
-    return TwinSource(case, verdict.found.noise), measured, verdict.found, as_read
+    return *(TwinSource(case, now, verdict.found.noise) for now in (verdict.found, as_read)), measured
 
 
 def test_a_twin_has_the_records_times_gaps_and_noise(source):
-    source, measured, found, as_read = source
-    (twin, other), without = (source.draw(found, number) for number in (0, 1)), source.draw(as_read, 0)
+    source, base, measured = source
+    (twin, other), without = (source.draw(number) for number in (0, 1)), base.draw(0)
     assert twin.trials == measured.trials and twin.channels == measured.channels
     assert (np.isnan(twin.observed) == np.isnan(measured.observed)).all()
     assert (twin.drive.time0 == measured.drive.time0).all() and (twin.drive.inputs == measured.drive.inputs).all()
@@ -94,9 +94,11 @@ def test_twins_that_were_searched_are_not_searched_again(searched, tmp_path, mon
 
 def test_a_run_that_leaves_the_record_has_no_twins(source, monkeypatch):
     monkeypatch.setattr("gaitdisc.discovery.twins.FLED", -1.0)
-    assert source[0].draw(source[2], 0) is None
+    assert source[0].draw(0) is None
 
 
 def test_what_an_engine_runs_has_no_twins():
-    with pytest.raises(SchemaError, match=r"twins need a simulation file .*; leg.xml is neither. Leave out the number"):
+    with pytest.raises(
+        SchemaError, match=r"twins and a plan need a simulation file .*; leg.xml is neither. Leave them out"
+    ):
         refuse_twins("leg.xml")
