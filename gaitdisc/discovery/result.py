@@ -163,8 +163,8 @@ class ConditionAnswer:
 class Twins:
     """What the same search answers to simulated records like the user's.
 
-    >>> Twins(20, "coulomb_friction@air", {"coulomb_friction@air": 19, "no_gap": 1}, {"no_gap": 20}).sentence[:70]
-    'In simulated records like these, the search names the same in 19 of 20'
+    >>> Twins(20, "coulomb_friction@air", {"coulomb_friction@air": 19, "no_gap": 1}, {"no_gap": 20}).sentence[44:77]
+    'gives the same answer in 19 of 20'
     """
 
     records: int  # of each kind
@@ -177,11 +177,11 @@ class Twins:
     def sentence(self) -> str:
         """How often the answer returns, and how often something is named where nothing is missing."""
         invented = sum(count for answer, count in self.without.items() if "@" in answer)
-        said = [f"an effect in {invented} of {self.records} in which nothing is missing"]
+        said = [f"names an effect in {invented} of {self.records} in which nothing is missing"]
         if self.with_effects:
             same = self.with_effects.get(self.named, 0)
-            said.insert(0, f"the same in {same} of {self.records} in which it acts")
-        return f"In simulated records like these, the search names {', and '.join(said)}."
+            said.insert(0, f"gives the same answer in {same} of {self.records} with the effect")
+        return f"In simulated records like these, the search {', and '.join(said)}."
 
 
 @dataclass(frozen=True)
