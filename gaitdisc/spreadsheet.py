@@ -13,6 +13,8 @@ from collections.abc import Iterable, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+import numpy as np
+
 from gaitdisc.whole_file import whole_file
 
 if TYPE_CHECKING:
@@ -90,6 +92,10 @@ def read_csv(path: Path, words: Sequence[str] = (), skiprows: int = 0) -> pd.Dat
     kinds = dict.fromkeys(words, str)
     read = {"engine": "python", "keep_default_na": False, "na_values": [""], "skiprows": skiprows}
     table = pd.read_csv(path, dtype=kinds, **read)
+    if tuple(map(int, pd.__version__.split(".")[:2])) < (3, 1):  # which read 0.3 as 0.30000000000000004
+        cells = pd.read_csv(path, dtype=str, **read)
+        for place in np.flatnonzero([kind.kind == "f" for kind in table.dtypes]):
+            table.isetitem(place, cells.iloc[:, place].to_numpy(object).astype(float))
     for place in range(len(table.columns)):
         if table.dtypes.iloc[place].kind not in _NUMBERS:
             plain = table.iloc[:, place].map(lambda cell: unquote(cell) if isinstance(cell, str) else cell)

@@ -249,7 +249,7 @@ class Recording:
         import pandas as pd
 
         names = [f"{one.name} [{one.unit}]" if units else one.name for one in self.channels]
-        table = pd.DataFrame(self.values, pd.Index(self.time, name="time"), names)
+        table = pd.DataFrame(self.values, pd.Index(self.time, name="time"), names, copy=True)  # a user edits it
         table.attrs["units"] = {name: one.unit for name, one in zip(names, self.channels, strict=True)} | {"time": "s"}
         return table
 
