@@ -28,10 +28,12 @@ from typing import IO, Any
 import numpy as np
 from numpy.typing import NDArray
 
+from gaitdisc.recording.arrays import Values
+
 ROWS_AT_ONCE = 16384
 
 
-def points_in_rows(points: NDArray[np.float64], residuals: NDArray[np.float64]) -> NDArray[np.float64]:
+def points_in_rows(points: Values, residuals: Values) -> Values:
     """Points (3 or 4, point, frame) of ezc3d as (frame, 3 * point), NaN where the residual is negative.
 
     >>> points_in_rows(np.ones((4, 1, 2)), np.array([[0.0, -1.0]]))
@@ -44,7 +46,7 @@ def points_in_rows(points: NDArray[np.float64], residuals: NDArray[np.float64]) 
     return rows.reshape(frames, 3 * count)
 
 
-def read_with_ezc3d(path: str) -> tuple[NDArray[np.float64], NDArray[np.float64], object]:
+def read_with_ezc3d(path: str) -> tuple[Values, Values, object]:
     """Points (frame, 3 * point) and analog values (channel, sample) as ezc3d reads them, in the file's units.
 
     The file itself comes with them: to take its frames apart takes ezc3d a tenth of the time of reading, which can
@@ -57,7 +59,7 @@ def read_with_ezc3d(path: str) -> tuple[NDArray[np.float64], NDArray[np.float64]
     return points_in_rows(points, residuals[0]), analog[0], file
 
 
-def read_with_c3d(path: str) -> tuple[NDArray[np.float64], NDArray[np.float64], object]:
+def read_with_c3d(path: str) -> tuple[Values, Values, object]:
     """Points (frame, 3 * point) and analog values (channel, sample) as the pure-Python reader c3d sees them."""
     import c3d
 
