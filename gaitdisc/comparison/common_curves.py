@@ -12,7 +12,7 @@ from gaitdisc.comparison.mismatch import Alignment
 from gaitdisc.errors import ChannelError
 from gaitdisc.processing.pooled_cycles import WalkSummary
 from gaitdisc.recording import Finding
-from gaitdisc.recording.arrays import Values
+from gaitdisc.recording.arrays import Values, finite_rows
 from gaitdisc.recording.wrapping import find_turn
 
 LEAST_KEPT = 0.5  # of a walk's strides: a channel that would cost more is left out
@@ -113,7 +113,7 @@ def _whole_strides(walks: Sequence[WalkSummary], channel: Channel) -> list[Value
     parts = []
     for walk in walks:
         curves = walk.curves[:, :, [one.name for one in walk.channels].index(channel.name)]
-        parts.append(curves[np.isfinite(curves).all(axis=1)])
+        parts.append(finite_rows(curves))
     turn = find_turn(channel)
     if turn is None or not len(parts[0]):
         return parts

@@ -59,38 +59,17 @@ def read_with_ezc3d(path: str) -> tuple[Values, Values, object]:
     return points_in_rows(points, residuals[0]), analog[0], file
 
 
-def read_with_c3d(path: str) -> tuple[Values, Values, object]:
-    """Points (frame, 3 * point) and analog values (channel, sample) as the pure-Python reader c3d sees them."""
-    import c3d
-
-    with Path(path).open("rb") as handle:
-        reader = c3d.Reader(handle)
-        frames = [(points, analog) for _, points, analog in reader.read_frames(check_nan=False)]
-    if not frames:
-        return np.empty((0, 0)), np.empty((0, 0)), None
-    points = np.stack([points for points, _ in frames]).astype(float)
-    rows = points[:, :, :3]
-    rows[points[:, :, 3] < 0] = np.nan
-    analog = [analog for _, analog in frames]
-    joined = np.concatenate(analog, axis=1) if analog[0].size else np.empty((0, 0))
-    return rows.reshape(len(frames), -1), joined, None
-
-
-READERS = {"ezc3d": read_with_ezc3d, "c3d": read_with_c3d}
-
-
-def read_c3d(reader: str, path: str, *promised: int) -> tuple[dict[str, Any], Any]:
+def read_c3d(path: str, *promised: int) -> tuple[dict[str, Any], Any]:
     """Points and analog values of a C3D file, or what was found in place of the promised counts of the header."""
-    points, analog, file = READERS[reader](path)
+    points, analog, file = read_with_ezc3d(path)
     channels, samples = analog.shape if analog.size else (0, 0)
     found = (len(points), points.shape[1] // 3, channels, samples)
     # A file without points has no frames of points to count.
     if found[1:] != promised[1:] or (promised[1] and found[0] != promised[0]):
-        frames, count, channels, samples = found
-        said = f"it finds {frames} frames of {count} points and {samples} samples of {channels} analog channels"
+        said = f"it finds {found[0]} frames of {found[1]} points and {samples} samples of {channels} analog channels"
         return {"said": said}, ()
     shapes = [(promised[0] if promised[1] else 0, 3 * promised[1]), (samples, channels)]
-    return {"reader": f"{reader} {version(reader)}", "shapes": shapes}, (points, analog.T, file)
+    return {"reader": f"ezc3d {version('ezc3d')}", "shapes": shapes}, (points, analog.T, file)
 
 
 def read_arrays(path: str, name: str) -> tuple[dict[str, Any], Any]:
@@ -158,15 +137,15 @@ def read_hdf5_text(path: str, name: str, attribute: str) -> tuple[dict[str, Any]
     return {"text": text.decode("utf-8", "replace") if isinstance(text, bytes) else str(text), "shapes": []}, ()
 
 
+READERS = {"ezc3d": read_c3d, "arrays": read_arrays, "hdf5 text": read_hdf5_text}
+
+
 def answer(request: dict[str, Any]) -> tuple[dict[str, Any], Any]:
     """Answer a request (`path`, `reader`, `wanted`): what the file holds and its arrays, or what the reader said."""
-    reader = request["reader"]
     try:
         with warnings.catch_warnings():
             warnings.simplefilter("ignore")
-            if reader in READERS:
-                return read_c3d(reader, request["path"], *request["wanted"])
-            return {"arrays": read_arrays, "hdf5 text": read_hdf5_text}[reader](request["path"], *request["wanted"])
+            return READERS[request["reader"]](request["path"], *request["wanted"])
     except MemoryError:
         return {"said": "it exceeded the memory limit for a file of this size"}, ()
     except Exception as error:  # whatever a reader raises is its opinion of the file

@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from gaitdisc.channel import Channel
 from gaitdisc.errors import ChannelError, ReadError, ShapeError, UnitError
 from gaitdisc.recording import Recording, Surface, Trial
-from gaitdisc.recording.arrays import Span, Values, read_only
+from gaitdisc.recording.arrays import Span, Values, mean_rate, read_only
 from gaitdisc.signals.butterworth import low_pass
 from gaitdisc.signals.contacts import loaded
 
@@ -96,7 +96,7 @@ class Platform:
     @property
     def rate_hz(self) -> float:
         """Samples a second."""
-        return (len(self.time) - 1) / float(self.time[-1] - self.time[0])
+        return mean_rate(self.time)
 
     @property
     def span(self) -> Span:

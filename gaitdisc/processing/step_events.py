@@ -22,7 +22,7 @@ from gaitdisc.processing.contact_choice import (
     walking_markers,
 )
 from gaitdisc.recording import Finding, Recording, Trial
-from gaitdisc.recording.arrays import Values
+from gaitdisc.recording.arrays import Values, finite_rows
 from gaitdisc.signals.contact_movement import angle_foot_off, marker_foot_off, stance_windows
 from gaitdisc.signals.direction import LEAST_SPEED, PATH_S, Direction, pelvis_position
 
@@ -169,7 +169,7 @@ def _stepping(trial: Trial) -> tuple[Values, NDArray[np.bool_]] | None:
         heels, pelvis = {}, []
     if markers is not None and heels:
         centre, half = pelvis_position(markers, pelvis), round(PATH_S / 2 * markers.rate_hz)
-        known = centre[np.isfinite(centre).all(axis=1)]
+        known = finite_rows(centre)
         if len(centre) > 2 * half and len(known) and np.linalg.norm(np.ptp(known, axis=0)) >= BELT_M:
             metres = np.linalg.norm(centre[2 * half :] - centre[: -2 * half], axis=1)
             return markers.time, np.pad(metres, half, mode="edge") >= LEAST_SPEED * PATH_S
@@ -193,8 +193,7 @@ def over_ground(trial: Trial) -> bool:
     kinematics = trial.streams.get("kinematics")
     path = [] if kinematics is None else [n for n in ("pelvis_tx", "pelvis_tz") if n in kinematics.names]
     if kinematics is not None and path:
-        places = kinematics.selected(path).values
-        places = places[np.isfinite(places).all(axis=1)]
+        places = finite_rows(kinematics.selected(path).values)
         away = float(np.linalg.norm(np.ptp(places, axis=0))) if len(places) else 0.0
         return away / kinematics.duration_s >= LEAST_PATH_M_PER_S
     return max((recording.duration_s for recording in trial.streams.values()), default=0.0) <= NO_WALKWAY_S

@@ -17,7 +17,7 @@ from gaitdisc.kinetics.plate_steps import PlateStep
 from gaitdisc.processing.process import is_raw, make_envelope
 from gaitdisc.processing.step_events import trial_markers
 from gaitdisc.recording import Cycle, Finding, Recording, Trial
-from gaitdisc.recording.arrays import Span, Values, runs
+from gaitdisc.recording.arrays import Span, Values, finite_values, runs
 from gaitdisc.recording.strides import NAN, interpolate
 from gaitdisc.recording.wrapping import unwrap
 from gaitdisc.signals.butterworth import low_pass
@@ -106,7 +106,7 @@ def plate_loadings(trial: Trial, rise_n: float = RISE_N) -> PlateLoadings:
     belts = frozenset(channel.side for channel in forces.channels if channel.side)
     spans = []
     for force in () if belts else forces.values.T:
-        known = force[np.isfinite(force)]
+        known = finite_values(force)
         upward = -force if len(known) and -known.min() > known.max() else force
         found = loaded(upward, forces.rate_hz, rise_n)
         spans += [Span(float(forces.time[a]), float(forces.time[b - 1])) for a, b in found if a > 0 and b < len(force)]

@@ -27,7 +27,7 @@ from gaitdisc.reconstruction.state_errors import (
 from gaitdisc.reconstruction.window_model import KINDS, WITHOUT_NETWORK, Sensing, WindowModel, fit_reconstructor
 from gaitdisc.reconstruction.windows import PERSON_OUT, Parts, stacked
 from gaitdisc.recording import Samples
-from gaitdisc.recording.arrays import Values
+from gaitdisc.recording.arrays import Values, finite_rows
 from gaitdisc.statistics.r2 import r2
 
 PERSISTENCE, PHASE_AVERAGE = FLOORS
@@ -233,8 +233,7 @@ def _baselines(parts: Parts, what: Sensing) -> list[_Prediction]:
     known = [trial for trial in (*parts.training, *parts.check) if len(trial)]
     found = []
     for name, forecast in ((PERSISTENCE, persistence), (PHASE_AVERAGE, phase_average(parts.training).forecast)):
-        missed = forecast(known, ahead_s) - stacked(known).y
-        missed = missed[np.isfinite(missed).all(axis=1)]
+        missed = finite_rows(forecast(known, ahead_s) - stacked(known).y)
         found.append(_Prediction(name, forecast(parts.test, ahead_s), missed, half_widths(missed)))
     return found
 

@@ -18,7 +18,7 @@ from gaitdisc.reconstruction.state_errors import half_widths
 from gaitdisc.reconstruction.window_model import Sensing, fit_reconstructor
 from gaitdisc.reconstruction.windows import SEAM_S, Lags, cut_windows, stacked
 from gaitdisc.recording import Recording, Samples
-from gaitdisc.recording.arrays import Values, real_array
+from gaitdisc.recording.arrays import Values, mean_rate, real_array
 from gaitdisc.saved.kind import Kind, Saved
 from gaitdisc.statistics.r2 import r2
 
@@ -318,7 +318,7 @@ def _timeless(given: Any, rate_hz: float) -> Any:
     if not hasattr(given, "columns") or not has_times(given):
         return given
     timed = frame_columns(given)
-    _check_rate(rate_hz, (len(timed.time) - 1) / float(timed.time[-1] - timed.time[0]), "table")
+    _check_rate(rate_hz, mean_rate(timed.time), "table")
     return given[[name for name in given.columns if str(name) in timed.labels]]
 
 

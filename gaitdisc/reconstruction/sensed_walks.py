@@ -19,7 +19,7 @@ from gaitdisc.processing.process import ReadWalk, StudyWalks, is_raw
 from gaitdisc.processing.processed_walks import public_trial
 from gaitdisc.processing.walk_pair import FORCE_HZ
 from gaitdisc.recording import Finding, Recording, Strides, Trial
-from gaitdisc.recording.arrays import Values
+from gaitdisc.recording.arrays import Values, finite_values
 from gaitdisc.recording.strides import interpolate
 from gaitdisc.saved.provenance import Refusal
 from gaitdisc.signals.butterworth import low_pass
@@ -248,7 +248,7 @@ def _moving(walks: Sequence[SensedWalk], sensors: Sequence[str]) -> tuple[tuple[
 
 
 def _still(values: Values, least: float) -> bool:
-    known = values[np.isfinite(values)]
+    known = finite_values(values)
     return not len(known) or float(np.std(known)) < least
 
 

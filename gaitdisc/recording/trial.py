@@ -286,8 +286,7 @@ class Trial:
         values = []
         for r in streams:  # a heading that comes round between two samples is read on the short way
             between = interpolate(r.time, unwrap(r).values, time)
-            unmarked = np.zeros(between.shape, bool)
-            values.append(wrap_recording(replace(r, time=time, values=between, suspect=unmarked), r).values)
+            values.append(wrap_recording(replace(r, time=time, values=between, suspect=None), r).values)
         marks = [interpolate(r.time, np.asarray(r.suspect, float), time) > 0 for r in streams]
         return Recording(
             time,

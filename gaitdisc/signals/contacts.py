@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from gaitdisc.channel import other_side
 from gaitdisc.errors import ChannelError, StrideError
 from gaitdisc.recording import Finding, Recording, Trial
-from gaitdisc.recording.arrays import Span, Values, read_only, runs
+from gaitdisc.recording.arrays import Span, Values, finite_values, read_only, runs
 from gaitdisc.signals.direction import Direction, marker_position, pelvis_position
 
 DETECTORS = ("force", "markers", "angles", "events", "oscillator")
@@ -335,7 +335,7 @@ def plate_contacts(
 
 def _contacts(forces: Recording, name: str, body_weight_n: float | None) -> tuple[Values, Values, str]:
     force, time = forces[name], forces.time
-    known = force[np.isfinite(force)]
+    known = finite_values(force)
     downwards = len(known) > 0 and -known.min() > known.max()
     upward = -force if downwards else force
     rise = find_rise(body_weight_n)

@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 from gaitdisc.errors import ReadError, SamplingError
 from gaitdisc.recording import Finding
-from gaitdisc.recording.arrays import Values, runs
+from gaitdisc.recording.arrays import Values, mean_step, runs
 
 SHORTEST = 20  # samples of a trial
 JITTER = 0.1  # of a step: how far a sample may lie from its place on the even time base
@@ -90,7 +90,7 @@ def _refuse_short(trial: TrialColumns, where: str) -> None:
 
 def _places(time: Values, where: str) -> tuple[float | None, NDArray[np.intp]]:
     """Rate of a clock that is even but for the digits that it was printed with (else None), and each row's place."""
-    mean = (time[-1] - time[0]) / (len(time) - 1)
+    mean = mean_step(time)
     off = np.abs(time - time[0] - mean * np.arange(len(time)))
     # decimals that the times were printed with, 9 at most
     decimals = (d for d in range(9) if np.all(np.abs(time - np.round(time, d)) < 1e-12 * (1 + np.abs(time))))
