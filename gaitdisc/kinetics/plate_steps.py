@@ -13,7 +13,7 @@ from gaitdisc.errors import ShapeError
 from gaitdisc.kinetics.newton_euler import GRAVITY
 from gaitdisc.kinetics.platform import Platform, Wrench
 from gaitdisc.recording import Finding, Recording
-from gaitdisc.recording.arrays import Span, Values, finite_values, mean_rate, read_only, runs
+from gaitdisc.recording.arrays import Span, Values, finite_values, freeze, mean_rate, runs
 from gaitdisc.signals.derivatives import derivative
 from gaitdisc.signals.direction import marker_position
 
@@ -39,15 +39,14 @@ class FootPath:
 
     def __post_init__(self) -> None:
         """Check shapes once."""
-        heel, toe, time = read_only(self.heel), read_only(self.toe), read_only(self.time)
+        freeze(self, "heel", "toe", "time")
+        heel, toe, time = self.heel, self.toe, self.time
         if heel.shape != (len(time), 3) or toe.shape != heel.shape:
             raise ShapeError(
                 "heel and toe of a foot must have shape (frame, 3)",
                 f"their shapes are {heel.shape} and {toe.shape}, with {len(time)} times",
                 "Use the markers of one recording.",
             )
-        for name, value in (("heel", heel), ("toe", toe), ("time", time)):
-            object.__setattr__(self, name, value)
 
     def swings(self) -> list[Span]:
         """Spans [s] in which heel and toes go forwards, where the foot is fastest, too fast to bear load."""

@@ -15,14 +15,11 @@ from torch import Tensor, nn
 
 from gaitdisc.errors import TrainingError
 from gaitdisc.models.descent import Descent, descend
+from gaitdisc.models.ridge import LEAST_BEFORE_INNER, LEAST_SAMPLES, SEAM_S
 from gaitdisc.models.trained_network import TrainedNetwork, pin_threads
 from gaitdisc.models.training_settings import ScaledSamples, TrainingSettings, make_schedule
 from gaitdisc.recording import Samples, Scale, fit_scale
 from gaitdisc.recording.arrays import Values
-
-LEAST_SAMPLES = 50
-LEAST_BEFORE_INNER = 20
-SEAM_S = 0.3  # as Trajectory.split: zero-lag filters look ahead over the seam
 
 
 @dataclass(frozen=True, eq=False)

@@ -30,6 +30,7 @@ TOES = {
     "r": ("RTOE", "R.Toe", "R.Toe.Tip", "R_Toe", "RMT2", "RMTH2", "RFM2", "RD2M", "RSMH"),
     "l": ("LTOE", "L.Toe", "L.Toe.Tip", "L_Toe", "LMT2", "LMTH2", "LFM2", "LD2M", "LSMH"),
 }
+Timed = Mapping[str, tuple[tuple[float, str], ...]]  # side -> time [s] and what placed it
 GROUND = ("events", "force")  # what saw the ground, the person who marked the file first
 ORDER = (*GROUND, *SEEN_LATE)
 ONE_EVENT_S = MOST_OFFSET_S  # nearer than this two detectors speak of one event of a foot
@@ -50,8 +51,8 @@ class StepEvents:
     contacts: Mapping[str, Values]  # side -> times, as these detectors place them [s]
     foot_offs: Mapping[str, Values]  # side -> times, alike [s]
     # side -> time [s] and `events` or `force`; no contacts where the detector sees the ground itself
-    ground_contacts: Mapping[str, tuple[tuple[float, str], ...]]
-    ground_offs: Mapping[str, tuple[tuple[float, str], ...]]
+    ground_contacts: Timed
+    ground_offs: Timed
     findings: tuple[Finding, ...] = ()  # events that contradict the plates, heels that contradict the events
 
     def later_s(self, kind: str) -> Values:
@@ -80,7 +81,7 @@ class StepEvents:
             found[side] = tuple(sorted([*seen, *((float(at), by) for at in alone)]))
         return found
 
-    def _of(self, kind: str) -> tuple[Mapping[str, Values], Mapping[str, tuple[tuple[float, str], ...]]]:
+    def _of(self, kind: str) -> tuple[Mapping[str, Values], Timed]:
         return (self.contacts, self.ground_contacts) if kind == "contacts" else (self.foot_offs, self.ground_offs)
 
 

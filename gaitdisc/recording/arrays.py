@@ -28,6 +28,12 @@ def read_only(values: ArrayLike, dtype: Any = float) -> NDArray[Any]:
     return view
 
 
+def freeze(noun: object, *names: str) -> None:
+    """Make fields of a frozen dataclass read-only arrays of floats."""
+    for name in names:
+        object.__setattr__(noun, name, read_only(getattr(noun, name)))
+
+
 def real_array(values: Any) -> Values:
     """Array of floats; complex numbers are refused, of which numpy would keep the real part."""
     array = np.asarray(values)
@@ -57,8 +63,7 @@ def mean_where_known(values: Values) -> Values:
     """
     known = np.isfinite(values)
     count = known.sum(axis=0)
-    total = np.where(known, values, 0.0).sum(axis=0)
-    return np.where(count > 0, total / np.maximum(count, 1), np.nan)
+    return np.where(count > 0, np.where(known, values, 0.0).sum(axis=0) / np.maximum(count, 1), np.nan)
 
 
 def finite_values(values: Values) -> Values:

@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from gaitdisc.errors import ChannelError, SamplingError, ShapeError
-from gaitdisc.recording.arrays import Values, read_only
+from gaitdisc.recording.arrays import Values, freeze, read_only
 from gaitdisc.recording.recording import Source
 
 STEP_TOLERANCE = 0.01  # of the usual step; months are not evenly long in every calendar
@@ -45,7 +45,7 @@ class Axis:
 
     def __post_init__(self) -> None:
         """Refuse an axis that turns back."""
-        object.__setattr__(self, "coordinates", read_only(self.coordinates))
+        freeze(self, "coordinates")
         steps = np.diff(self.coordinates)
         if self.coordinates.ndim != 1 or not len(self.coordinates) or not (np.all(steps > 0) or np.all(steps < 0)):
             raise ShapeError(

@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from gaitdisc.channel import Channel
 from gaitdisc.errors import SamplingError, ShapeError, TrainingError
-from gaitdisc.recording.arrays import Values, mean_rate, read_only
+from gaitdisc.recording.arrays import Values, freeze, mean_rate, read_only
 
 RELATIVE_FLOOR = 1e-9  # a column that varies by less than this of its size is constant
 ABSOLUTE_FLOOR = 1e-12  # deg, m, V and their rates: rounding, never a signal
@@ -27,8 +27,7 @@ class Scale:
 
     def __post_init__(self) -> None:
         """Freeze the numbers."""
-        object.__setattr__(self, "mean", read_only(self.mean))
-        object.__setattr__(self, "sd", read_only(self.sd))
+        freeze(self, "mean", "sd")
 
     @property
     def constant(self) -> NDArray[np.bool_]:
@@ -112,8 +111,7 @@ class Samples:
                     f"found {np.shape(getattr(self, name))}",
                     "Give one row per sample and one name per column.",
                 )
-        for name in ("x", "y", "time", "phi"):
-            object.__setattr__(self, name, read_only(getattr(self, name)))
+        freeze(self, "x", "y", "time", "phi")
 
     def __len__(self) -> int:
         return len(self.time)
@@ -238,8 +236,7 @@ class Trajectory:
                 f"found {np.shape(self.phi)}",
                 "Give one value in percent of the stride per sample.",
             )
-        for name in ("time", "x", "xdot", "xddot", "phi"):
-            object.__setattr__(self, name, read_only(getattr(self, name)))
+        freeze(self, "time", "x", "xdot", "xddot", "phi")
         object.__setattr__(self, "usable", read_only(self.usable, bool))
         object.__setattr__(self, "channels", tuple(self.channels))
 

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from gaitdisc.channel import other_side
 from gaitdisc.errors import ChannelError, StrideError
 from gaitdisc.recording import Finding, Recording, Trial
-from gaitdisc.recording.arrays import Span, Values, finite_values, read_only, runs
+from gaitdisc.recording.arrays import Span, Values, finite_values, freeze, runs
 from gaitdisc.signals.direction import Direction, marker_position, pelvis_position
 
 DETECTORS = ("force", "markers", "angles", "events", "oscillator")
@@ -61,7 +61,8 @@ class Contacts:
 
     def __post_init__(self) -> None:
         """Check order and words once."""
-        time = read_only(self.time)
+        freeze(self, "time", "foot_off")
+        time = self.time
         if self.side not in ("r", "l") or self.detector not in DETECTORS:
             raise StrideError(
                 "contacts must have side 'r' or 'l' and a known detector",
@@ -74,8 +75,6 @@ class Contacts:
                 f"side {self.side!r}, detector {self.detector}: shape {time.shape}; times are missing or out of order",
                 "Sort the events of the file, or choose another detector.",
             )
-        object.__setattr__(self, "time", time)
-        object.__setattr__(self, "foot_off", read_only(self.foot_off))
 
     def __len__(self) -> int:
         return len(self.time)
