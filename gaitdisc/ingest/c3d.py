@@ -114,7 +114,7 @@ class C3DReader:
         first = parameters.field("ACTUAL_START_FIELD") or max(header.first_frame, 1)
         events, more = file_events(parameters, layout.frames, rate_hz, first)
         analog_channels = analog_labels(parameters, layout.channels)
-        all_labels = [text for one in analog_channels for text in (one.label, one.description)]
+        all_labels = [text for channel in analog_channels for text in (channel.label, channel.description)]
         all_labels += point_names(parameters, layout.points)
         findings += [*seen, *more, *labels.unused(all_labels, header.file)]
         source = Source(header.file, sha256.result(), reader)
@@ -126,8 +126,8 @@ class C3DReader:
             used = [not is_ignored(channel) for channel in columns]
             if any(used):
                 times = analog_times if key in ANALOG_STREAMS else point_times
-                own = values if all(used) else values[:, used]
-                recordings[key] = Recording(times, own, tuple(itertools.compress(columns, used)), source=source)
+                rows = values if all(used) else values[:, used]
+                recordings[key] = Recording(times, rows, tuple(itertools.compress(columns, used)), source=source)
         recordings |= file_segments(path, header, parameters, source)
         return Trial(path.stem, recordings, events, tuple(findings), surfaces=surfaces)
 
@@ -140,15 +140,15 @@ class C3DReader:
         if "said" not in answer:
             return answer["reader"], arrays, []
         # on one line, without the folder, which may name a person
-        said = " ".join(answer["said"].replace(str(path), path.name).split())[:200].rstrip(".")
+        failure = " ".join(answer["said"].replace(str(path), path.name).split())[:200].rstrip(".")
         if not counts_agree(header, parameters, layout):
             raise ReadError(
                 f"{header.file} states {layout.frames} frames, {layout.points} points and {layout.channels} analog "
                 "channels, which no reader finds",
-                f"ezc3d: {said}; the header and the parameters contradict each other",
+                f"ezc3d: {failure}; the header and the parameters contradict each other",
                 "Export the trial again, or repair it in the software that wrote it.",
             )
-        what = f"decoded without ezc3d, which failed: {said}"
+        what = f"decoded without ezc3d, which failed: {failure}"
         spoils = "nothing; the counts agree with the header"
         note = Finding("note", "second reader", header.file, what, spoils)
         return f"gaitdisc {__version__}", [*read_frames(path, header, parameters, layout)], [note]

@@ -89,10 +89,10 @@ def house_kinetics(
 def _by_plates(values: Values, channels: tuple[Channel, ...], plates_n: Values) -> Evidence | None:
     """Ratio of a plate's force to a foot's reaction force, where it is the same over a step."""
     for side in "LR":
-        own = [i for i, c in enumerate(channels) if _REACTION.fullmatch(c.name) and c.name[0] == side]
-        if len(own) != 3 or len(values) != len(plates_n):
+        columns = [i for i, c in enumerate(channels) if _REACTION.fullmatch(c.name) and c.name[0] == side]
+        if len(columns) != 3 or len(values) != len(plates_n):
             continue
-        foot = np.linalg.norm(values[:, own], axis=1)
+        foot = np.linalg.norm(values[:, columns], axis=1)
         for place, plate in enumerate(plates_n.T, 1):
             both = (foot > LOADED_PER_KG) & (plate > LOADED_N)
             if both.sum() < 10:
@@ -110,8 +110,8 @@ def _by_plates(values: Values, channels: tuple[Channel, ...], plates_n: Values) 
 
 
 def _by_size(values: Values, channels: tuple[Channel, ...], wanted: re.Pattern[str], quantity: str) -> Evidence:
-    own = [i for i, c in enumerate(channels) if wanted.fullmatch(c.name) and c.unit in _PER_KG]
-    sizes = finite_values(np.abs(values[:, own]))
+    columns = [i for i, c in enumerate(channels) if wanted.fullmatch(c.name) and c.unit in _PER_KG]
+    sizes = finite_values(np.abs(values[:, columns]))
     most = float(np.quantile(sizes, 0.995)) if sizes.size else 0.0
     if most == 0:
         return Evidence(None)

@@ -114,19 +114,19 @@ def _frames(header: C3DHeader, parameters: C3DParameters) -> tuple[int, ...]:
 
 def _analog(header: C3DHeader, parameters: C3DParameters) -> tuple[tuple[int, int], ...]:
     """(channels, samples a frame) as the header and as the parameters say."""
-    found = []
+    counts = []
     samples = header.samples_per_frame
     if header.analog_values and samples and header.analog_values % samples == 0:
-        found.append((header.analog_values // samples, samples))
+        counts.append((header.analog_values // samples, samples))
     used = parameters.count("ANALOG", "USED")
     rate, frame_rate = parameters.number("ANALOG", "RATE"), parameters.number("POINT", "RATE") or header.rate_hz
     if used and rate and frame_rate and 0 < rate / frame_rate < _SATURATED:
-        found.append((used, samples if abs(rate / frame_rate - samples) < 1 and samples else round(rate / frame_rate)))
+        counts.append((used, samples if abs(rate / frame_rate - samples) < 1 and samples else round(rate / frame_rate)))
     elif used and samples:
-        found.append((used, samples))
-    if not header.analog_values or used == 0 or not found:
-        found.append((0, 0))
-    return _distinct(*found)
+        counts.append((used, samples))
+    if not header.analog_values or used == 0 or not counts:
+        counts.append((0, 0))
+    return _distinct(*counts)
 
 
 def _word_bytes(header: C3DHeader, parameters: C3DParameters) -> int:
@@ -187,8 +187,8 @@ def check_common_scales(header: C3DHeader, parameters: C3DParameters) -> None:
             stated.append((f"{group}:{name}", float(numbers[0])))
     for name, scale in stated:
         if not np.isfinite(scale) or scale == 0:
-            found = f"{name} of {header.file} is {scale:g}"
-            raise ReadError("the scales of a C3D file must be finite and not 0", found, _REMEDY)
+            stated_scale = f"{name} of {header.file} is {scale:g}"
+            raise ReadError("the scales of a C3D file must be finite and not 0", stated_scale, _REMEDY)
 
 
 def list_unscaled(parameters: C3DParameters, channels: int) -> tuple[frozenset[int], list[Finding]]:
@@ -217,7 +217,7 @@ def counts_agree(header: C3DHeader, parameters: C3DParameters, layout: C3DLayout
         ("POINT", "RATE", header.rate_hz),
         ("ANALOG", "RATE", header.rate_hz * samples),
     )
-    agree = all(parameters.number(group, name) in (None, own) for group, name, own in stated)
+    agree = all(parameters.number(group, name) in (None, in_header) for group, name, in_header in stated)
     counts = layout.frames, layout.points, layout.channels * layout.samples_per_frame
     used = (parameters.number("ANALOG", "USED") or 0.0) * samples
     return agree and counts == (frames, header.points, header.analog_values) and used == header.analog_values

@@ -175,8 +175,8 @@ def _model_part(
             mapped = labels.name(f"{name_in_file}.{axis}")
             known = name_channel(mapped) if mapped else vocabulary().named(label)
             name = known.name if known is not None else label
-            own = re.match(r"([LR])[A-Z]", plain)
-            side = known.side if known is not None else own[1].lower() if own else ""
+            sided = re.match(r"([LR])[A-Z]", plain)
+            side = known.side if known is not None else sided[1].lower() if sided else ""
             channels.append(Channel(name, quantity, inner, side))
     most = float(np.max(np.abs(values), initial=0.0, where=np.isfinite(values)))
     if kind.group == "ANGLES" and unit == "deg" and 0 < most < 3.2:

@@ -94,12 +94,12 @@ class ReaderProcess:
         code = self._stop()
         thread.join(5)
         if late:
-            said = f"it did not finish within {request.clock_s:.3g} s"
+            failure = f"it did not finish within {request.clock_s:.3g} s"
         elif code == -getattr(signal, "SIGXCPU", np.inf):
-            said = f"it did not finish within {request.limit_s:.3g} s of processor time"
+            failure = f"it did not finish within {request.limit_s:.3g} s of processor time"
         else:
-            said = f"it crashed (exit code {code})"
-        return {"said": said}, []
+            failure = f"it crashed (exit code {code})"
+        return {"said": failure}, []
 
     def close(self) -> None:
         """End the process."""

@@ -63,11 +63,11 @@ def read_c3d(path: str, *promised: int) -> tuple[dict[str, Any], Any]:
     """Points and analog values of a C3D file, or what was found in place of the promised counts of the header."""
     points, analog, file = read_with_ezc3d(path)
     channels, samples = analog.shape if analog.size else (0, 0)
-    found = (len(points), points.shape[1] // 3, channels, samples)
+    counts = (len(points), points.shape[1] // 3, channels, samples)
     # A file without points has no frames of points to count.
-    if found[1:] != promised[1:] or (promised[1] and found[0] != promised[0]):
-        said = f"it finds {found[0]} frames of {found[1]} points and {samples} samples of {channels} analog channels"
-        return {"said": said}, ()
+    if counts[1:] != promised[1:] or (promised[1] and counts[0] != promised[0]):
+        words = f"it finds {counts[0]} frames of {counts[1]} points and {samples} samples of {channels} analog channels"
+        return {"said": words}, ()
     shapes = [(promised[0] if promised[1] else 0, 3 * promised[1]), (samples, channels)]
     return {"reader": f"ezc3d {version('ezc3d')}", "shapes": shapes}, (points, analog.T, file)
 
@@ -78,7 +78,7 @@ def read_arrays(path: str, name: str) -> tuple[dict[str, Any], Any]:
     if is_packed:
         with zipfile.ZipFile(path) as packed:
             if not name:
-                claims = {one.filename.removesuffix(".npy"): one.file_size for one in packed.infolist()}
+                claims = {member.filename.removesuffix(".npy"): member.file_size for member in packed.infolist()}
                 return {"claims": claims, "shapes": []}, ()
             with packed.open(f"{name}.npy") as member:
                 held = np.lib.format.read_array(member, allow_pickle=False)
@@ -118,10 +118,10 @@ def _tree(held: Any, arrays: list[NDArray[Any]]) -> Any:
         return type(held).__name__
     if held.dtype.names:
         names = held.dtype.names
-        each = [{"fields": {name: _tree(one[name], arrays) for name in names}} for one in held.ravel(order="F")]
-        return each[0] if len(each) == 1 else {"cells": each}
+        structs = [{"fields": {name: _tree(cell[name], arrays) for name in names}} for cell in held.ravel(order="F")]
+        return structs[0] if len(structs) == 1 else {"cells": structs}
     if held.dtype.kind == "O":
-        return {"cells": [_tree(one, arrays) for one in held.ravel(order="F")]}
+        return {"cells": [_tree(cell, arrays) for cell in held.ravel(order="F")]}
     if held.dtype.kind not in "biuf":
         words = {"U": "text", "S": "text", "c": "complex numbers, which a recording cannot contain"}
         return words.get(held.dtype.kind, f"an array of {held.dtype}")
