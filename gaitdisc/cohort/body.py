@@ -12,10 +12,10 @@ from __future__ import annotations
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
 from gaitdisc.cohort.person import FOOT_KG, SHANK_KG
 from gaitdisc.compiled import compiled
+from gaitdisc.recording.arrays import Values
 
 GRAVITY = 9.81
 
@@ -118,16 +118,14 @@ def _foot(leg, c3, s3):
     return -leg.foot_forward_m * s3 + leg.foot_down_m * c3, leg.foot_forward_m * c3 + leg.foot_down_m * s3
 
 
-def ankle_place(leg: Leg, psi: NDArray[np.float64]) -> NDArray[np.float64]:
+def ankle_place(leg: Leg, psi: Values) -> Values:
     """Where the ankle is from the hip, forwards and upwards (time, 2) [m]; psi (time, 3) [rad]: thigh, shank, foot."""
     x = leg.thigh_m * np.sin(psi[:, 0]) + leg.shank_m * np.sin(psi[:, 1])
     y = -leg.thigh_m * np.cos(psi[:, 0]) - leg.shank_m * np.cos(psi[:, 1])
     return np.column_stack([x, y])
 
 
-def joint_moments(
-    leg: Leg, psi: NDArray[np.float64], hip: NDArray[np.float64], ground: NDArray[np.float64], step_s: float
-) -> NDArray[np.float64]:
+def joint_moments(leg: Leg, psi: Values, hip: Values, ground: Values, step_s: float) -> Values:
     """Net joint moments of a periodic motion, by inverse dynamics.
 
     psi (phase, 3) [rad]: one whole cycle, evenly spaced, without its end
@@ -155,7 +153,7 @@ def _inverse_dynamics(leg, psi, rate, speedup, hip, ground):
     return found
 
 
-def cycle_rate(cycle: NDArray[np.float64], step: float, order: int = 1) -> NDArray[np.float64]:
+def cycle_rate(cycle: Values, step: float, order: int = 1) -> Values:
     """Derivative of one whole cycle (phase, ...) without its end, even, exact for the harmonics that it holds.
 
     >>> turn = np.arange(64) * 2 * np.pi / 64

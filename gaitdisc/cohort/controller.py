@@ -12,7 +12,6 @@ from __future__ import annotations
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
 from gaitdisc.cohort.body import GRAVITY, ankle_place, cycle_rate, joint_moments, make_leg
 from gaitdisc.cohort.habit import activity
@@ -31,6 +30,7 @@ from gaitdisc.cohort.leg_path import (
 )
 from gaitdisc.cohort.muscles import MOST, capacities, cycle_activation, cycle_excitation, find_strength
 from gaitdisc.cohort.person import FOOT_KG, GROUPS, SHANK_KG, STIFFNESS, Person, Recruitment, Spring
+from gaitdisc.recording.arrays import Values
 
 LAG_S = 0.030  # of what the muscles leave of the moments
 SMOOTH = 40  # scale of the harmonics of what the muscles leave
@@ -61,7 +61,7 @@ class Columns(NamedTuple):
 COLUMNS = Columns()
 
 
-def learnt_table(person: Person, side: int, drifted: float = 0.0) -> NDArray[np.float64]:
+def learnt_table(person: Person, side: int, drifted: float = 0.0) -> Values:
     """What one leg of a person has learnt.
 
     person: with the spring that the commands are adapted to, if any
@@ -103,12 +103,12 @@ def learnt_table(person: Person, side: int, drifted: float = 0.0) -> NDArray[np.
     return np.ascontiguousarray(np.vstack([table, table[:1]]))
 
 
-def spring_moment(spring: Spring, person: Person, psi: NDArray[np.float64]) -> NDArray[np.float64]:
+def spring_moment(spring: Spring, person: Person, psi: Values) -> Values:
     """Moment of a spring on the ankle [N m]; psi (phase, 3) [rad]: thigh, shank, foot."""
     return spring.moment(np.degrees(psi[:, 2] - psi[:, 1]), person.engaged_deg)
 
 
-def habitual_activation(person: Person, side: int, phase: NDArray[np.float64]) -> NDArray[np.float64]:
+def habitual_activation(person: Person, side: int, phase: Values) -> Values:
     """Activation (phase, group) that a person's synergies give each muscle, before what the moments demand."""
     habit = person.style.recruitment
     bursts = [
@@ -121,19 +121,17 @@ def habitual_activation(person: Person, side: int, phase: NDArray[np.float64]) -
     return np.minimum(habit.rest + own, MOST)
 
 
-def _nearest(
-    activation: NDArray[np.float64], recruitment: Recruitment, step_s: float
-) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+def _nearest(activation: Values, recruitment: Recruitment, step_s: float) -> tuple[Values, Values]:
     """Excitation and activation that come nearest to an activation which need not be possible."""
     excitation = cycle_excitation(_smooth(activation, TAPER), recruitment.rest, step_s)
     return excitation, cycle_activation(excitation, step_s, 3)
 
 
-def _by_joint(psi: NDArray[np.float64]) -> NDArray[np.float64]:
+def _by_joint(psi: Values) -> Values:
     return np.column_stack([psi[:, 0], psi[:, 0] - psi[:, 1], psi[:, 2] - psi[:, 1]])
 
 
-def _smooth(cycle: NDArray[np.float64], harmonics: int) -> NDArray[np.float64]:
+def _smooth(cycle: Values, harmonics: int) -> Values:
     spectrum = np.fft.rfft(cycle, axis=0)
     spectrum *= np.exp(-((np.arange(len(spectrum)) / harmonics) ** 2))[:, None]
     return np.fft.irfft(spectrum, len(cycle), axis=0)
@@ -144,13 +142,7 @@ STEPS, HALVINGS = 60, 20
 NEARLY = 1e-7  # of the largest moment
 
 
-def share(
-    wanted: NDArray[np.float64],
-    capacity: NDArray[np.float64],
-    habit: NDArray[np.float64],
-    least: NDArray[np.float64],
-    dear: NDArray[np.float64],
-) -> NDArray[np.float64]:
+def share(wanted: Values, capacity: Values, habit: Values, least: Values, dear: Values) -> Values:
     """Activations (phase, muscle) nearest to `habit` that give moments (phase, joint); `dear` is each muscle's cost.
 
     Static optimisation around a habit, for all phases of a stride at once. At every phase the activations a minimise

@@ -8,7 +8,6 @@ from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.ndimage import gaussian_filter1d
 
 from gaitdisc.cohort.cohort import make_walks, the_twelve
@@ -20,6 +19,7 @@ from gaitdisc.ingest.storage import write_storage
 from gaitdisc.ingest.study import STATIC, Conditions, Models, Participant, PlannedTrial, Study
 from gaitdisc.ingest.study_file import write_study
 from gaitdisc.recording import Trial
+from gaitdisc.recording.arrays import Values
 from gaitdisc.whole_file import write_whole
 
 WALK_S = 60.0
@@ -109,7 +109,7 @@ def stiff_knee(trial: Trial, side: str) -> Trial:
     """Same walk, the knee of one side bending less in swing."""
     knee = f"knee_angle_{side}"
 
-    def bent(angle: NDArray[np.float64]) -> NDArray[np.float64]:
+    def bent(angle: Values) -> Values:
         return np.minimum(angle, STIFF_ABOVE_DEG + STIFF_SHARE * (angle - STIFF_ABOVE_DEG))
 
     return _with_angle(trial, knee, bent)
@@ -137,7 +137,7 @@ def plant(trial: Trial, what: str, side: str) -> Trial:
     return PLANTED[what](trial, side)
 
 
-def _with_angle(trial: Trial, name: str, change: Callable[[NDArray[np.float64]], NDArray[np.float64]]) -> Trial:
+def _with_angle(trial: Trial, name: str, change: Callable[[Values], Values]) -> Trial:
     kinematics = trial.stream("kinematics")
     values = np.array(kinematics.values)
     values[:, kinematics.index(name)] = change(kinematics[name])

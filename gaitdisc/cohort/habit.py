@@ -24,7 +24,8 @@ from functools import cache
 from pathlib import Path
 
 import numpy as np
-from numpy.typing import NDArray
+
+from gaitdisc.recording.arrays import Values
 
 TABLE = Path(__file__).with_name("habit.csv")
 STANCE = 0.60  # share of the stride over which the sine series of the ground forces extend
@@ -54,7 +55,7 @@ class Curve:
     mean: float  # mean over the stride; 0 for a stance sine
     terms: tuple[float, ...]  # cosine1, sine1, cosine2, ... or the amplitudes of 1, 2, ... half waves
 
-    def at(self, phase: NDArray[np.float64]) -> NDArray[np.float64]:
+    def at(self, phase: Values) -> Values:
         """Value at phases of the stride.
 
         phase , any shape [share of a stride]: 0 at contact
@@ -87,14 +88,7 @@ def habitual(name: str, speed: float) -> Curve:
     return Curve(low.basis, mixed[0], tuple(mixed[1:]))
 
 
-def activity(
-    muscle: str,
-    phase: NDArray[np.float64],
-    speed: float,
-    delay: NDArray[np.float64],
-    weight: NDArray[np.float64],
-    width: float = 1.0,
-) -> NDArray[np.float64]:
+def activity(muscle: str, phase: Values, speed: float, delay: Values, weight: Values, width: float = 1.0) -> Values:
     """Activation that a person's synergies give a muscle; delay [share of a stride] and weight are each synergy's."""
     bursts = []
     for synergy, centre, half_width, height in BURSTS[muscle]:

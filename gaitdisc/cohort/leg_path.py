@@ -11,11 +11,11 @@ from __future__ import annotations
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
 from gaitdisc.cohort.body import GRAVITY, Leg, ankle_place, cycle_rate
 from gaitdisc.cohort.habit import STANCE, Curve, habitual
 from gaitdisc.cohort.person import HARMONICS, JOINTS, STIFFNESS, Person
+from gaitdisc.recording.arrays import Values
 
 # centre of pressure from the ankle, as a share of the foot's length, over the stance: from the heel's edge to the great
 # toe, fast over the heel, slow under the forefoot (general knowledge), moved by up to 2 cm so that the moments of the
@@ -38,7 +38,7 @@ class Belt(NamedTuple):
     turn_damping: float = 3.0  # [N m s/rad]
 
 
-def gate(phase: NDArray[np.float64]) -> NDArray[np.float64]:
+def gate(phase: Values) -> Values:
     """How much of a foot is on the belt by share of the stride since contact: 0 in swing, 1 in mid-stance.
 
     >>> gate(np.array([0.0, 0.3, 0.7])).tolist()
@@ -50,7 +50,7 @@ def gate(phase: NDArray[np.float64]) -> NDArray[np.float64]:
     return np.where(share < 1.0, opening * closing, 0.0)
 
 
-def habitual_force(phase: NDArray[np.float64], speed: float) -> NDArray[np.float64]:
+def habitual_force(phase: Values, speed: float) -> Values:
     """Ground force along the habit, of body weight 1.
 
     Over a stride both feet carry the body's weight and push as much as they brake, as steady walking demands; the
@@ -67,7 +67,7 @@ def habitual_force(phase: NDArray[np.float64], speed: float) -> NDArray[np.float
     return np.column_stack([along, up])
 
 
-def pressure_centre(phase: NDArray[np.float64], sole_m: float) -> NDArray[np.float64]:
+def pressure_centre(phase: Values, sole_m: float) -> Values:
     """Centre of pressure along the foot from the ankle [m], by share of the stride; in swing it means nothing."""
     from scipy.interpolate import PchipInterpolator
 
@@ -88,7 +88,7 @@ RELUCTANCE = 1.5  # power of a harmonic's order that makes it dear: swing needs 
 LEAN_DEG = {0: 0.6, 3: -0.7}
 
 
-def map_phase(person: Person, phase: NDArray[np.float64]) -> NDArray[np.float64]:
+def map_phase(person: Person, phase: Values) -> Values:
     """Phase of the published curves at a phase of the person's own stride.
 
     Contact stays contact; the middle of the stride comes later, by as much as puts the end of the stance where the
@@ -105,7 +105,7 @@ def map_phase(person: Person, phase: NDArray[np.float64]) -> NDArray[np.float64]
     return phase - 0.5 * delay * (1 - np.cos(2 * np.pi * phase))
 
 
-def habit_angles(person: Person, side: int, phase: NDArray[np.float64], drifted: float = 0.0) -> NDArray[np.float64]:
+def habit_angles(person: Person, side: int, phase: Values, drifted: float = 0.0) -> Values:
     """Joint angles of a person's habit, before the belt has its say.
 
     phase (phase,) [share of a stride]: 0 at contact; the curves follow the person's own stance (`map_phase`)
@@ -128,14 +128,14 @@ def habit_angles(person: Person, side: int, phase: NDArray[np.float64], drifted:
     return mean + (curves - mean) * style.size + own
 
 
-def thigh_shank_foot(angles: NDArray[np.float64]) -> NDArray[np.float64]:
+def thigh_shank_foot(angles: Values) -> Values:
     """Absolute angles of the segments (phase, 3) [rad] from angles (phase, joint) [deg] in the order of `JOINTS`."""
     thigh = angles[:, 0]
     shank = thigh - angles[:, 3]
     return np.radians(np.column_stack([thigh, shank, shank + angles[:, 4]]))
 
 
-def hip_motion(person: Person, phase: NDArray[np.float64]) -> NDArray[np.float64]:
+def hip_motion(person: Person, phase: Values) -> Values:
     """Velocity of a hip on the treadmill, along the habit.
 
     The body's centre moves as the ground forces of both feet accelerate it (2.8 cm up and down, 1.6 cm to and fro in a
@@ -156,7 +156,7 @@ def hip_motion(person: Person, phase: NDArray[np.float64]) -> NDArray[np.float64
     return centre + cycle_rate(offset, person.stride_s / len(phase))
 
 
-def belt_held(person: Person, leg: Leg, psi: NDArray[np.float64], hip_rate: NDArray[np.float64]) -> NDArray[np.float64]:
+def belt_held(person: Person, leg: Leg, psi: Values, hip_rate: Values) -> Values:
     """Habit whose foot moves with the belt while it stands.
 
     The published curves, with the pelvis that the ground forces move, carry the foot at 0.93 to 1.1 of the belt's
@@ -198,7 +198,7 @@ def belt_held(person: Person, leg: Leg, psi: NDArray[np.float64], hip_rate: NDAr
     return found
 
 
-def contact_path(leg: Leg, psi: NDArray[np.float64], pressure: NDArray[np.float64]) -> NDArray[np.float64]:
+def contact_path(leg: Leg, psi: Values, pressure: Values) -> Values:
     """Rate by phase of the foot's point under the pressure, from the hip.
 
     psi (phase, 3) [rad]: one whole cycle
@@ -209,7 +209,7 @@ def contact_path(leg: Leg, psi: NDArray[np.float64], pressure: NDArray[np.float6
     return by_phase(ankle_place(leg, psi)) + turning * lever[:, ::-1] * (-1.0, 1.0)
 
 
-def pressure_point(leg: Leg, foot: NDArray[np.float64], pressure: NDArray[np.float64]) -> NDArray[np.float64]:
+def pressure_point(leg: Leg, foot: Values, pressure: Values) -> Values:
     """Point under the pressure, from the ankle, in the laboratory's directions.
 
     foot (phase,) [rad]: absolute angle of the foot
@@ -220,6 +220,6 @@ def pressure_point(leg: Leg, foot: NDArray[np.float64], pressure: NDArray[np.flo
     return np.column_stack([pressure * c + leg.ankle_m * s, pressure * s - leg.ankle_m * c])
 
 
-def by_phase(cycle: NDArray[np.float64]) -> NDArray[np.float64]:
+def by_phase(cycle: Values) -> Values:
     """Rate by phase of one whole cycle (phase, ...), evenly spaced, without its end."""
     return cycle_rate(cycle, 1 / len(cycle))

@@ -17,7 +17,6 @@ from __future__ import annotations
 from dataclasses import replace
 
 import numpy as np
-from numpy.typing import NDArray
 
 from gaitdisc.channel import Channel
 from gaitdisc.cohort.body import Leg, ankle_place, make_leg
@@ -26,7 +25,7 @@ from gaitdisc.cohort.leg_path import PHASES, hip_motion, map_phase, pressure_cen
 from gaitdisc.cohort.person import Person
 from gaitdisc.cohort.walk import QUICK_HZ, SLOW_HZ, TrueWalk
 from gaitdisc.recording import Recording, Source, Surface, Trial
-from gaitdisc.recording.arrays import runs
+from gaitdisc.recording.arrays import Values, runs
 
 SIDES = (("r", 1.0), ("l", -1.0))
 ASIS_WIDTH, PELVIS_DEPTH = 0.145, 0.090  # of height
@@ -40,7 +39,7 @@ MOMENT_NM = 0.3  # noise of a belt's moments
 FORCE_N = 2.0
 BELT_M = (2.0, 0.5)  # length, width of a belt
 TO_LABORATORY = np.array([[1.0, 0.0, 0.0], [0.0, 0.0, -1.0], [0.0, 1.0, 0.0]])  # from forwards, up, right
-Segments = dict[str, tuple[NDArray[np.float64], NDArray[np.float64]]]  # origin and rotation over time
+Segments = dict[str, tuple[Values, Values]]  # origin and rotation over time
 # (forwards, down, outwards) of the joint above; down in shares of the segment, the rest in shares of height
 PLACES = {
     "thigh": {
@@ -103,7 +102,7 @@ def _tilt(person: Person) -> float:
     return habitual("pelvis_tilt", person.dimensionless_speed).mean
 
 
-def _pelvis(walk: TrueWalk, leg: Leg) -> NDArray[np.float64]:
+def _pelvis(walk: TrueWalk, leg: Leg) -> Values:
     """Path of the middle of the hips (time, 3), forwards, up and right, so that standing feet press on the belt [m]."""
     person = walk.person
     grid = np.arange(PHASES) / PHASES
@@ -119,7 +118,7 @@ def _pelvis(walk: TrueWalk, leg: Leg) -> NDArray[np.float64]:
     return moved
 
 
-def _pressure_from_hip(walk: TrueWalk, leg: Leg, side: int) -> NDArray[np.float64]:
+def _pressure_from_hip(walk: TrueWalk, leg: Leg, side: int) -> Values:
     """Point under the pressure from the hip (time, 2), forwards and up [m]."""
     psi = thigh_shank_foot(walk.angles[:, side])
     phase = walk.phase[:: round(QUICK_HZ / SLOW_HZ)] + 0.5 * side
@@ -127,7 +126,7 @@ def _pressure_from_hip(walk: TrueWalk, leg: Leg, side: int) -> NDArray[np.float6
     return ankle_place(leg, psi) + pressure_point(leg, psi[:, 2], pressure)
 
 
-def _segments(person: Person, leg: Leg, angles: NDArray[np.float64], hips: NDArray[np.float64]) -> Segments:
+def _segments(person: Person, leg: Leg, angles: Values, hips: Values) -> Segments:
     """Origin (time, 3) and rotation (time, 3, 3) of each segment, in forwards, up, right."""
     pelvis = np.repeat(_rotation(np.array([[-_tilt(person), 0.0, 0.0]])), len(angles), axis=0)
     found = {"pelvis": (hips - pelvis @ _hip(person, 0.0), pelvis)}
@@ -146,13 +145,13 @@ def _segments(person: Person, leg: Leg, angles: NDArray[np.float64], hips: NDArr
     return found
 
 
-def _hip(person: Person, sign: float) -> NDArray[np.float64]:
+def _hip(person: Person, sign: float) -> Values:
     """Hip from the middle of the front spines, by Harrington's regression; sign 0 is the middle of both hips [m]."""
     width, depth = ASIS_WIDTH * person.height_m, PELVIS_DEPTH * person.height_m
     return np.array([-0.24 * depth - 0.0099, -0.30 * width - 0.0109, sign * (0.33 * width + 0.0073)])
 
 
-def _rotation(angles_deg: NDArray[np.float64]) -> NDArray[np.float64]:
+def _rotation(angles_deg: Values) -> Values:
     """Flexion about the proximal z, adduction about the floating axis, rotation about the distal y."""
     (a, b, c), (ca, cb, cc) = np.sin(np.radians(angles_deg.T)), np.cos(np.radians(angles_deg.T))
     rows = [
@@ -167,7 +166,7 @@ def _markers(
     person: Person,
     leg: Leg,
     segments: Segments,
-    bent_deg: NDArray[np.float64],
+    bent_deg: Values,
     rng: np.random.Generator,
     condition: str = "",
 ) -> Recording:
@@ -188,7 +187,7 @@ def _markers(
     )
 
 
-def _places(person: Person, leg: Leg, part: str, side: str) -> dict[str, NDArray[np.float64]]:
+def _places(person: Person, leg: Leg, part: str, side: str) -> dict[str, Values]:
     """Markers of a segment in its frame [m]."""
     height = person.height_m
     if part == "pelvis":
@@ -273,7 +272,7 @@ def overground(belts: Trial, start_s: float, stride_s: float, speed_m_per_s: flo
 class _Step:
     """One step on one belt: its force and its moment about the belt's middle while the foot stands, else zero."""
 
-    def __init__(self, time: NDArray[np.float64], loads: NDArray[np.float64], rows: slice) -> None:
+    def __init__(self, time: Values, loads: Values, rows: slice) -> None:
         stands = np.zeros((len(time), 1))
         stands[rows] = 1.0
         self.force, self.moment = loads[:, :3] * stands, loads[:, 3:] * stands

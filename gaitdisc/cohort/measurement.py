@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import NDArray
 
 from gaitdisc.channel import Channel, vocabulary
 from gaitdisc.cohort.habit import habitual
 from gaitdisc.cohort.person import JOINTS, MUSCLES, Person
 from gaitdisc.cohort.walk import QUICK_HZ, SLOW_HZ, TrueWalk
 from gaitdisc.recording import Recording, Source, Trial
+from gaitdisc.recording.arrays import Values
 
 SIDES = ("r", "l")
 # inverse kinematics: what a single frame wavers by, and what skin and markers sway by below 8 Hz [deg]
@@ -55,7 +55,7 @@ def measure(walk: TrueWalk, name: str, condition: str, emg_late_s: float = 0.0) 
     return Trial(name, recordings, subject=subject, condition=condition)
 
 
-def _angles(rng: np.random.Generator, walk: TrueWalk) -> NDArray[np.float64]:
+def _angles(rng: np.random.Generator, walk: TrueWalk) -> Values:
     from scipy.signal import butter, sosfiltfilt
 
     person = walk.person
@@ -91,8 +91,8 @@ CROSS_TALK = {
 
 
 def electrode_volts(
-    rng: np.random.Generator, excitation: NDArray[np.float64], person: Person, rate_hz: float, late_s: float = 0.0
-) -> NDArray[np.float64]:
+    rng: np.random.Generator, excitation: Values, person: Person, rate_hz: float, late_s: float = 0.0
+) -> Values:
     """Raw EMG (time, channel) of excitations (time, channel), as a converter reads it; `late_s` is a fault [s].
 
     The electrical signal comes before the force: by the electromechanical delay here, and by the activation dynamics of
@@ -117,7 +117,7 @@ def electrode_volts(
     return np.clip(np.round(volts / step), -STEPS, STEPS - 1) * step
 
 
-def heard(sides: int) -> NDArray[np.float64]:
+def heard(sides: int) -> Values:
     """Share of each muscle's amplitude in each electrode (electrode, muscle), legs apart."""
     leg = np.eye(len(MUSCLES))
     for (electrode, muscle), share in CROSS_TALK.items():
@@ -125,5 +125,5 @@ def heard(sides: int) -> NDArray[np.float64]:
     return np.asarray(np.kron(np.eye(sides), leg), dtype=np.float64)
 
 
-def _draw(rng: np.random.Generator, like: NDArray[np.float64]) -> NDArray[np.float64]:
+def _draw(rng: np.random.Generator, like: Values) -> Values:
     return rng.standard_normal(like.shape)

@@ -12,12 +12,12 @@ from __future__ import annotations
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
 from gaitdisc.cohort.body import add_ground_force, bias, inertia, solved
 from gaitdisc.cohort.controller import COLUMNS, LAG_S
 from gaitdisc.cohort.muscles import LEAST, MOST, activate, muscle_moments
 from gaitdisc.compiled import compiled
+from gaitdisc.recording.arrays import Values
 
 STEP_S = 0.0005
 LEAST_LOAD = 0.3  # of the habitual vertical force
@@ -42,22 +42,22 @@ SLOW = 1 + 6 + 4 + 6 + 2 + 2 + 2 + 6
 class Loop(NamedTuple):
     """Feedback and unrest of one person."""
 
-    stiffness: NDArray[np.float64]  # (3,), impedance of hip, knee, ankle about the habit [N m/rad]
-    damping: NDArray[np.float64]  # (3,), of the same [N m s/rad]
+    stiffness: Values  # (3,), impedance of hip, knee, ankle about the habit [N m/rad]
+    damping: Values  # (3,), of the same [N m s/rad]
     # (3,), by which share the impedance of each joint grows under load, its damping by half as much [1]
-    loaded: NDArray[np.float64]
+    loaded: Values
     reflex: float  # gain of the reflex [N m/rad]
     reflex_lag_s: float  # lag of the reflex
-    side_stiffness: NDArray[np.float64]  # (2,), of hip adduction and rotation [N m/rad]
-    side_damping: NDArray[np.float64]  # (2,), of the same [N m s/rad]
-    side_inertia: NDArray[np.float64]  # (2,), of the same [kg m2]
+    side_stiffness: Values  # (2,), of hip adduction and rotation [N m/rad]
+    side_damping: Values  # (2,), of the same [N m s/rad]
+    side_inertia: Values  # (2,), of the same [kg m2]
     hurry: float  # relative pace for each rad that a leg is ahead [1/rad]
-    moment_noise: NDArray[np.float64]  # (5,), standard deviation at hip, knee, ankle, adduction, rotation [N m]
-    muscle_noise: NDArray[np.float64]  # (2,), relative, fast and slow [1]
-    pace_noise: NDArray[np.float64]  # (2,), relative, fast and slow [1]
+    moment_noise: Values  # (5,), standard deviation at hip, knee, ankle, adduction, rotation [N m]
+    muscle_noise: Values  # (2,), relative, fast and slow [1]
+    pace_noise: Values  # (2,), relative, fast and slow [1]
     whole_kg: float
     # (4,), support of the pelvis: stiffness and damping fore-aft, then vertical [N/m, N s/m]
-    pelvis: NDArray[np.float64]
+    pelvis: Values
 
 
 class Worn(NamedTuple):

@@ -18,10 +18,10 @@ from __future__ import annotations
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
 from gaitdisc.cohort.person import GROUPS
 from gaitdisc.compiled import compiled
+from gaitdisc.recording.arrays import Values
 
 RISE_S, FALL_S = 0.015, 0.045  # activation dynamics; Winter (2009) and Zajac (1989) give this order
 FASTEST = 10.0  # fibre lengths a second, at which a muscle gives nothing
@@ -58,18 +58,18 @@ LEAST_GAIN, MOST_GAIN = 0.5, 1.5  # of a moment with the joint's angle
 class Strength(NamedTuple):
     """Muscles of one person's leg, in the units of the equations."""
 
-    reach: NDArray[np.float64]  # (muscle, joint) [N m], moment at full activation, at rest and at zero angle
+    reach: Values  # (muscle, joint) [N m], moment at full activation, at rest and at zero angle
     # (muscle, joint) [s/rad], lengthening, of the fastest shortening, for each rad/s of the joint
-    pace: NDArray[np.float64]
-    bend: NDArray[np.float64]  # (muscle, joint) [1/rad], relative gain of the moment with the joint's angle
+    pace: Values
+    bend: Values  # (muscle, joint) [1/rad], relative gain of the moment with the joint's angle
     # (muscle, joint) [1/(N m)], excitation for a change of the command towards flexion (dorsiflexion), and against it
-    take_up: NDArray[np.float64]
+    take_up: Values
     # (muscle, joint) [1/(N m)], excitation for a change of the command towards flexion (dorsiflexion), and against it
-    take_down: NDArray[np.float64]
+    take_down: Values
     abduction: float  # of gluteus medius [N m]
 
 
-def find_strength(mass_kg: float, strong: NDArray[np.float64] | None = None) -> Strength:
+def find_strength(mass_kg: float, strong: Values | None = None) -> Strength:
     """Muscles of a person's leg; `strong` is how strong each group is against others of that mass.
 
     >>> find_strength(70.0).reach.shape
@@ -147,7 +147,7 @@ def cycle_activation(excitation, step_s, turns):
     return found
 
 
-def cycle_excitation(activation: NDArray[np.float64], rest: NDArray[np.float64], step_s: float) -> NDArray[np.float64]:
+def cycle_excitation(activation: Values, rest: Values, step_s: float) -> Values:
     """Excitation, no less than `rest`, whose activation comes nearest to a periodic one (phase, muscle)."""
     rate = (np.roll(activation, -1, axis=0) - np.roll(activation, 1, axis=0)) / (2 * step_s)
     return np.clip(activation + rate * np.where(rate > 0, RISE_S, FALL_S), rest, MOST)

@@ -5,8 +5,8 @@ from __future__ import annotations
 from dataclasses import dataclass, field, replace
 
 import numpy as np
-from numpy.typing import NDArray
 
+from gaitdisc.recording.arrays import Values
 from gaitdisc.recording.trial import LEG_OF_STATURE
 
 STIFFNESS = 5.0  # N m/deg, Ebers (2023), section 4.2.1
@@ -24,7 +24,7 @@ class Spring:
     stiffness: float = STIFFNESS  # [N m/deg]; 0 is the device without its spring, the Nominal condition
     slack_deg: float = 0.0  # shift of the angle of engagement against the person's own fit [deg]
 
-    def moment(self, ankle_deg: NDArray[np.float64], engaged_deg: float) -> NDArray[np.float64]:
+    def moment(self, ankle_deg: Values, engaged_deg: float) -> Values:
         """Moment on the ankle, towards dorsiflexion [N m].
 
         ankle_deg , any shape [deg]: dorsiflexion
@@ -59,7 +59,7 @@ class Bump:
     half_width: float  # share of the stride; wider than a stride is a constant
     degrees: float  # at the centre
 
-    def at(self, phase: NDArray[np.float64]) -> NDArray[np.float64]:
+    def at(self, phase: Values) -> Values:
         """Change at phases of the stride [deg]."""
         apart = np.abs(np.mod(phase - self.centre + 0.5, 1.0) - 0.5) / self.half_width
         shape = np.cos(0.5 * np.pi * np.minimum(apart, 1.0)) ** 2
@@ -70,10 +70,10 @@ class Bump:
 class Style:
     """How a person's habit differs from the average one."""
 
-    size: NDArray[np.float64]  # (joint,), factor on each curve
-    offset_deg: NDArray[np.float64]  # (side, joint) [deg], constant shift of what is measured: where the markers sit
-    wave_deg: NDArray[np.float64]  # (side, joint, harmonic, 2) [deg], cosine and sine of the first harmonics on top
-    strength: NDArray[np.float64]  # (side, group), how strong each muscle group is, against others of that body mass
+    size: Values  # (joint,), factor on each curve
+    offset_deg: Values  # (side, joint) [deg], constant shift of what is measured: where the markers sit
+    wave_deg: Values  # (side, joint, harmonic, 2) [deg], cosine and sine of the first harmonics on top
+    strength: Values  # (side, group), how strong each muscle group is, against others of that body mass
     recruitment: Recruitment  # how the muscles are habitually used
     bumps: tuple[Bump, ...] = ()  # changes of the habit that make a gait pattern of the clinic
 
@@ -82,12 +82,12 @@ class Style:
 class Recruitment:
     """How a person habitually uses the muscles, before what the moments demand."""
 
-    delay: NDArray[np.float64]  # (side, synergy) [share of a stride], by which each synergy is late
-    weight: NDArray[np.float64]  # (side, group, synergy), factor on each muscle's part in each synergy
-    width: NDArray[np.float64]  # (group,), factor on how long the bursts last
-    rest: NDArray[np.float64]  # (group,), excitation between bursts, of 1 at the largest effort
+    delay: Values  # (side, synergy) [share of a stride], by which each synergy is late
+    weight: Values  # (side, group, synergy), factor on each muscle's part in each synergy
+    width: Values  # (group,), factor on how long the bursts last
+    rest: Values  # (group,), excitation between bursts, of 1 at the largest effort
     # (group,), effort that each muscle costs in static optimisation, against others: what people share out differently
-    dear: NDArray[np.float64]
+    dear: Values
     cocontraction: float  # factor on all habitual activity: what exceeds the demand is co-contraction
 
 
@@ -97,8 +97,8 @@ class Adaptation:
 
     relief: float  # share of the spring's moment that the commands allow for
     # (side, joint, harmonic, 2) [deg], change of the habit, cosine and sine of the first harmonics
-    habit_deg: NDArray[np.float64]
-    effort: NDArray[np.float64]  # (group,), relative change of each muscle's habitual excitation
+    habit_deg: Values
+    effort: Values  # (group,), relative change of each muscle's habitual excitation
 
 
 @dataclass(frozen=True, eq=False)
@@ -121,7 +121,7 @@ class Person:
     style: Style = field(repr=False)
     adaptation: Adaptation = field(repr=False)
     # (side, joint, harmonic, 2) [deg], habit towards which the person wanders slowly, and back
-    drift_deg: NDArray[np.float64] = field(repr=False)
+    drift_deg: Values = field(repr=False)
     unrest: float = 1.0  # factor on all variability from stride to stride
     stance: float = STANCE  # share of the stride that a foot is loaded by more than 20 N
     change_s: float = float("inf")  # time of a change of gait on the device [s]; infinite for those who stay the same
@@ -214,7 +214,7 @@ def _recruitment(rng: np.random.Generator) -> Recruitment:
     return Recruitment(delay, weight, width, rest, dear, cocontraction)
 
 
-def _waves(rng: np.random.Generator, both: float, side: float) -> NDArray[np.float64]:
+def _waves(rng: np.random.Generator, both: float, side: float) -> Values:
     """Harmonics that fall with their order, most of them common to both sides [deg]."""
     fall = 1.0 / np.arange(1.0, HARMONICS + 1)[:, None]
     shape = (len(JOINTS), HARMONICS, 2)

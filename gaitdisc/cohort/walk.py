@@ -5,7 +5,6 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 
 import numpy as np
-from numpy.typing import NDArray
 
 from gaitdisc.cohort.body import make_leg
 from gaitdisc.cohort.controller import learnt_table
@@ -25,6 +24,7 @@ from gaitdisc.cohort.motion import (
 from gaitdisc.cohort.muscles import find_strength
 from gaitdisc.cohort.person import FOOT_KG, GROUPS, MUSCLES, SHANK_KG, Person, Spring
 from gaitdisc.errors import StrideError
+from gaitdisc.recording.arrays import Values
 from gaitdisc.recording.trial import LEG_OF_STATURE
 
 WARM_UP_S = 8.0  # walked before the recording begins
@@ -53,38 +53,38 @@ class TrueWalk:
     person: Person
     device: Spring
     seed: int
-    quick_s: NDArray[np.float64] = field(repr=False)  # (time,) [s], clock at 1000 Hz
-    slow_s: NDArray[np.float64] = field(repr=False)  # (time,) [s], clock at 100 Hz
+    quick_s: Values = field(repr=False)  # (time,) [s], clock at 1000 Hz
+    slow_s: Values = field(repr=False)  # (time,) [s], clock at 100 Hz
     # (quick,) [strides], of the right foot, counted on; a whole number is a contact. The left foot is half a stride off
-    phase: NDArray[np.float64] = field(repr=False)
-    force: NDArray[np.float64] = field(repr=False)  # (quick, 2, 2) [N], side; forwards, upwards
+    phase: Values = field(repr=False)
+    force: Values = field(repr=False)  # (quick, 2, 2) [N], side; forwards, upwards
     # (quick, 2, 9) [1], side; muscle group in the order of `GROUPS`, those with electrodes first
-    excitation: NDArray[np.float64] = field(repr=False)
-    angles: NDArray[np.float64] = field(repr=False)  # (slow, 2, 5) [deg], side; joint in the order of `JOINTS`
+    excitation: Values = field(repr=False)
+    angles: Values = field(repr=False)  # (slow, 2, 5) [deg], side; joint in the order of `JOINTS`
     # (slow, 2, 3) [N m], side; hip and knee towards flexion, ankle towards dorsiflexion, without the device
-    moments: NDArray[np.float64] = field(repr=False)
+    moments: Values = field(repr=False)
     # (slow, 2) [N m], moment of the device on each ankle, towards dorsiflexion
-    spring: NDArray[np.float64] = field(repr=False)
+    spring: Values = field(repr=False)
     # (slow, 2) [m/s], speed forwards of the foot's point under the pressure; minus the belt's speed where the foot
     # stands
-    sole: NDArray[np.float64] = field(repr=False)
-    acceleration: NDArray[np.float64] = field(repr=False)  # (slow, 2, 3) [deg/s2], side; hip, knee, ankle
+    sole: Values = field(repr=False)
+    acceleration: Values = field(repr=False)  # (slow, 2, 3) [deg/s2], side; hip, knee, ankle
     # (slow, 2) [m], forwards, upwards: how far the pelvis is from its habitual path
-    pelvis: NDArray[np.float64] = field(repr=False)
+    pelvis: Values = field(repr=False)
 
-    def contacts(self, side: int = 0) -> NDArray[np.float64]:
+    def contacts(self, side: int = 0) -> Values:
         """Times at which a foot meets the belt, from the phase itself [s]."""
         own = self.phase + 0.5 * side
         return np.interp(np.arange(np.ceil(own[0]), np.floor(own[-1]) + 1), own, self.quick_s)
 
-    def mean_stride(self, values: NDArray[np.float64], side: int = 0) -> NDArray[np.float64]:
+    def mean_stride(self, values: Values, side: int = 0) -> Values:
         """Mean curve over the true phase, 101 points.
 
         values (slow or quick, ...): a field of this walk
         """
         return self.strides(values, side).mean(axis=0)
 
-    def strides(self, values: NDArray[np.float64], side: int = 0) -> NDArray[np.float64]:
+    def strides(self, values: Values, side: int = 0) -> Values:
         """Each stride on 101 points of its true phase.
 
         values (slow or quick, ...): a field of this walk
@@ -155,7 +155,7 @@ def _loop(person: Person) -> Loop:
     )
 
 
-def _noise(person: Person, device: Spring, duration_s: float, seed: int) -> NDArray[np.float64]:
+def _noise(person: Person, device: Spring, duration_s: float, seed: int) -> Values:
     """Coloured noise of standard deviation 1 at 200 Hz, and in its last channel how far the habit has drifted."""
     from scipy.signal import lfilter
 
@@ -183,9 +183,7 @@ def _noise(person: Person, device: Spring, duration_s: float, seed: int) -> NDAr
     return found
 
 
-def _keep_walk(
-    person: Person, device: Spring, seed: int, quick: NDArray[np.float64], slow: NDArray[np.float64]
-) -> TrueWalk:
+def _keep_walk(person: Person, device: Spring, seed: int, quick: Values, slow: Values) -> TrueWalk:
     quick, slow = quick[round(WARM_UP_S * QUICK_HZ) :], slow[round(WARM_UP_S * SLOW_HZ) :]
     psi = slow[:, 1:7].reshape(-1, 2, 3)
     hips = slow[:, 7:11].reshape(-1, 2, 2)

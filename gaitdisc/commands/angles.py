@@ -30,7 +30,7 @@ def angles(
     """Joint angles from markers or segments, with the package's signs; widths come from the static C3D, if any."""
     from dataclasses import replace
 
-    from gaitdisc.ingest.c3d_kinetics import body_measures_in
+    from gaitdisc.ingest.body_measures import read_body_measures
     from gaitdisc.ingest.reading import read_trial, write_recording
     from gaitdisc.kinematics.motion import move_body, segment_angles
     from gaitdisc.own_files import claim_file
@@ -43,7 +43,7 @@ def angles(
         found, made = segment_angles(walk.stream("segments"))
     else:
         stood = read_trial(static) if static is not None else None
-        measures = body_measures_in(static) if static is not None else BodyMeasures()
+        measures = read_body_measures(static) if static is not None else BodyMeasures()
         if widths is not None:
             knees, ankles = (dict(zip("lr", pair, strict=True)) for pair in (widths[:2], widths[2:]))
             measures = replace(measures, knee_width_m=knees, ankle_width_m=ankles)

@@ -22,7 +22,7 @@ def moments(
     ] = 20.0,
 ) -> None:
     """Joint moments [N m/kg] and powers [W/kg], internal; frames without a known load of the foot are empty."""
-    from gaitdisc.ingest.c3d_kinetics import body_measures_in
+    from gaitdisc.ingest.body_measures import read_body_measures
     from gaitdisc.ingest.reading import read_trial, write_recording
     from gaitdisc.kinematics.motion import move_body
     from gaitdisc.kinetics.body_inertia import Person
@@ -34,7 +34,7 @@ def moments(
 
     claim_file(out)
     walk, stood = read_trial(trial), read_trial(static)
-    standing, measures = stood.stream("markers"), body_measures_in(static)
+    standing, measures = stood.stream("markers"), read_body_measures(static)
     weighed_n = standing_weight_n(stood)
     person = Person(measures.mass_kg if mass is None else mass, sex, measures.height_m, weighed_n)
     weighed = check_weight(weighed_n, person.kg, static.name)

@@ -6,13 +6,13 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
 from gaitdisc.channel import Channel, list_names, nearest_word
 from gaitdisc.comparison.mismatch import Alignment
 from gaitdisc.errors import ChannelError
 from gaitdisc.processing.pooled_cycles import WalkSummary
 from gaitdisc.recording import Finding
+from gaitdisc.recording.arrays import Values, finite_rows
 from gaitdisc.recording.wrapping import find_turn
 
 LEAST_KEPT = 0.5  # of a walk's strides: a channel that would cost more is left out
@@ -32,7 +32,7 @@ class CommonCurves:
     """Strides of two walks or more, complete, on the channels that all have."""
 
     channels: tuple[Channel, ...]  # in the order of the first walk
-    curves: tuple[NDArray[np.float64], ...]  # each (stride, phase, channel) [each channel's unit], one a walk
+    curves: tuple[Values, ...]  # each (stride, phase, channel) [each channel's unit], one a walk
     findings: tuple[Finding, ...]
 
 
@@ -108,12 +108,12 @@ def _list_shared(walks: Sequence[WalkSummary], wanted: Sequence[str], findings: 
     return kept
 
 
-def _whole_strides(walks: Sequence[WalkSummary], channel: Channel) -> list[NDArray[np.float64]]:
+def _whole_strides(walks: Sequence[WalkSummary], channel: Channel) -> list[Values]:
     """Strides of one channel without a gap, (stride, phase) a walk; headings by whole turns near the first walk's."""
     parts = []
     for walk in walks:
         curves = walk.curves[:, :, [one.name for one in walk.channels].index(channel.name)]
-        parts.append(curves[np.isfinite(curves).all(axis=1)])
+        parts.append(finite_rows(curves))
     turn = find_turn(channel)
     if turn is None or not len(parts[0]):
         return parts
@@ -121,9 +121,7 @@ def _whole_strides(walks: Sequence[WalkSummary], channel: Channel) -> list[NDArr
     return [part - turn * np.round((part.mean() - middle) / turn) if len(part) else part for part in parts]
 
 
-def _usable(
-    channel: Channel, parts: list[NDArray[np.float64]], walks: Sequence[WalkSummary], findings: list[Finding]
-) -> bool:
+def _usable(channel: Channel, parts: list[Values], walks: Sequence[WalkSummary], findings: list[Finding]) -> bool:
     for part, walk in zip(parts, walks, strict=True):
         if len(part) <= LEAST_KEPT * len(walk.curves) and len(part) < len(walk.curves):
             what = f"{len(walk.curves) - len(part)} of {len(walk.curves)} strides have gaps and are excluded"
@@ -136,7 +134,7 @@ def _usable(
 
 def _moving(
     shared: list[Channel],
-    by_channel: dict[str, list[NDArray[np.float64]]],
+    by_channel: dict[str, list[Values]],
     walks: Sequence[WalkSummary],
     findings: list[Finding],
 ) -> list[Channel]:
@@ -172,7 +170,7 @@ def _both(walks: Sequence[WalkSummary]) -> str:
     return ", ".join(map(walk_name, walks)) if len(walks) == 2 else f"{len(walks)} walks"
 
 
-def common_shift(first: NDArray[np.float64], second: NDArray[np.float64]) -> Alignment:
+def common_shift(first: Values, second: Values) -> Alignment:
     """By how much later all curves of the first walk together fit those of the second best.
 
     The shift is where the correlation of the curves, mean over the channels, is highest. It is applied where the gap
@@ -208,7 +206,7 @@ def common_shift(first: NDArray[np.float64], second: NDArray[np.float64]) -> Ali
     return Alignment(percent, applied, agreeing, count, largest.tolist())
 
 
-def shift_curves(curves: NDArray[np.float64], percent: float) -> NDArray[np.float64]:
+def shift_curves(curves: Values, percent: float) -> Values:
     """Curves (phase, ...) on 101 points moved later by percent of the closed stride, linearly between points."""
     places = (np.arange(100.0) - percent) % 100.0
     low = np.floor(places).astype(int) % 100
@@ -217,12 +215,12 @@ def shift_curves(curves: NDArray[np.float64], percent: float) -> NDArray[np.floa
     return np.concatenate([moved, moved[:1]])
 
 
-def align(walks: Sequence[NDArray[np.float64]], percent: float) -> list[NDArray[np.float64]]:
+def align(walks: Sequence[Values], percent: float) -> list[Values]:
     """Strides of walks, each complete (stride, phase, channel), moved later by percent of the stride."""
     return [np.moveaxis(shift_curves(np.moveaxis(curves, 1, 0), percent), 0, 1) for curves in walks]
 
 
-def _correlation(first: NDArray[np.float64], second: NDArray[np.float64]) -> NDArray[np.float64]:
+def _correlation(first: Values, second: Values) -> Values:
     """Correlation of two curves over the stride, (channel,); 0 where one does not move."""
     one, other = (curves[:-1] - curves[:-1].mean(axis=0) for curves in (first, second))
     return (one * other).sum(axis=0) / np.maximum(np.sqrt((one**2).sum(axis=0) * (other**2).sum(axis=0)), 1e-12)

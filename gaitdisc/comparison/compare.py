@@ -7,7 +7,6 @@ from dataclasses import asdict, dataclass
 
 import numpy as np
 import pandas as pd
-from numpy.typing import NDArray
 
 from gaitdisc.channel import Channel
 from gaitdisc.comparison.common_curves import CommonCurves, align, common_curves, common_shift, walk_name
@@ -15,6 +14,7 @@ from gaitdisc.comparison.mismatch import CHANNEL_COLUMNS, REGION_COLUMNS, Alignm
 from gaitdisc.errors import ComparisonError
 from gaitdisc.processing.pooled_cycles import WalkSummary
 from gaitdisc.recording import PERCENT
+from gaitdisc.recording.arrays import Values
 from gaitdisc.saved.provenance import provenance_now
 from gaitdisc.statistics.cluster_test import (
     FEWEST_IN_EACH,
@@ -39,8 +39,8 @@ class _Side:
     """One of the two that are compared: a walk, or a condition of all people; curves (phase, channel)."""
 
     name: str
-    mean: NDArray[np.float64]
-    sd: NDArray[np.float64]
+    mean: Values
+    sd: Values
     units: int  # that are exchanged
     strides: int  # that these hold
 
@@ -53,9 +53,9 @@ class _Compared:
     second: _Side
     unit: str
     test: ClusterTest
-    gap: NDArray[np.float64]
+    gap: Values
     alignment: Alignment
-    limits: NDArray[np.float64]
+    limits: Values
 
     def named(self) -> list[Cluster]:
         """Clusters in which the gap reaches the smallest difference that is named."""
@@ -164,7 +164,7 @@ def compare_people(
     return _mismatch(common, compared, walks, plan, smallest)
 
 
-def best_shift(first: NDArray[np.float64], second: NDArray[np.float64]) -> tuple[float, float]:
+def best_shift(first: Values, second: Values) -> tuple[float, float]:
     """By how much later the first closed curve (phase,) fits the second best [% stride, to 10], and the rms gap left.
 
     >>> wave = np.sin(2 * np.pi * PERCENT / 100)
@@ -177,7 +177,7 @@ def best_shift(first: NDArray[np.float64], second: NDArray[np.float64]) -> tuple
     return float(shifts[int(np.argmin(left))]), min(left)
 
 
-def _limits(channels: Sequence[Channel], curves: NDArray[np.float64], smallest: Smallest) -> NDArray[np.float64]:
+def _limits(channels: Sequence[Channel], curves: Values, smallest: Smallest) -> Values:
     reaches = np.ptp(curves, axis=0)
     return np.array([smallest.of(c.unit, float(reach)) for c, reach in zip(channels, reaches, strict=True)])
 
@@ -257,11 +257,11 @@ def _summary(channels: tuple[Channel, ...], compared: _Compared) -> pd.DataFrame
     return pd.DataFrame(rows, columns=pd.Index(CHANNEL_COLUMNS))
 
 
-def _sd(curves: NDArray[np.float64]) -> NDArray[np.float64]:
+def _sd(curves: Values) -> Values:
     return curves.std(axis=0, ddof=1) if len(curves) > 1 else np.full(curves.shape[1:], np.nan)
 
 
-def _rms(values: NDArray[np.float64]) -> float:
+def _rms(values: Values) -> float:
     return float(np.sqrt(np.mean(values**2)))
 
 

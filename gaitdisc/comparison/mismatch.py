@@ -8,12 +8,11 @@ from typing import Any
 
 import numpy as np
 import pandas as pd
-from numpy.typing import NDArray
 
 from gaitdisc.channel import Channel
 from gaitdisc.errors import ShapeError
 from gaitdisc.recording import PERCENT, Finding
-from gaitdisc.recording.arrays import read_only
+from gaitdisc.recording.arrays import Values, read_only
 from gaitdisc.saved.kind import CSV, Kind, Saved, check_columns
 from gaitdisc.saved.provenance import Provenance
 from gaitdisc.words import as_html
@@ -122,7 +121,7 @@ class Mismatch(Saved, file="mismatch.json"):
     first: str
     second: str
     channels: tuple[Channel, ...]
-    curves: Mapping[str, NDArray[np.float64]]
+    curves: Mapping[str, Values]
     regions: pd.DataFrame
     summary: pd.DataFrame
     exchange: Exchange

@@ -72,7 +72,7 @@ def emg_names(channels: list[AnalogLabel]) -> list[str]:
     labels = [re.sub(r"[^a-z0-9]+", "_", channel.plain.lower()).strip("_") for channel in channels]
     labels = ["" if label in _NO_NAME else re.sub(r"^emg_?", "", label) for label in labels]
     bracketed = [re.search(r"\[([\d\s,]+)\]", channel.description) for channel in channels]
-    brackets = ["_".join(re.findall(r"\d+", found[1])) if found else "" for found in bracketed]
+    brackets = ["_".join(re.findall(r"\d+", match[1])) if match else "" for match in bracketed]
     names = []
     for channel, label, bracket in zip(channels, labels, brackets, strict=True):
         if channel.muscle is not None:
@@ -91,29 +91,29 @@ def analog_streams(
 ) -> tuple[Streams, list[Finding]]:
     """Streams `emg`, `signals`, mapped `forces` of rows (sample, channel) in the file's units, without plates."""
     analog = analog_labels(parameters, rows.shape[1])
-    mapped = {one.number: labels.name(f"#{one.number}", one.label, one.plain, one.description) for one in analog}
-    free = [one for one in analog if mapped[one.number] is None and one.number - 1 not in plate_channels]
-    emg = [one for one in free if one.is_emg]
-    others = [one for one in free if not one.is_emg]
+    mapped = {c.number: labels.name(f"#{c.number}", c.label, c.plain, c.description) for c in analog}
+    free = [signal for signal in analog if mapped[signal.number] is None and signal.number - 1 not in plate_channels]
+    emg = [signal for signal in free if signal.is_emg]
+    others = [signal for signal in free if not signal.is_emg]
     chosen: list[tuple[str, AnalogLabel, Channel, str]] = []
-    for one in analog:
-        name = mapped[one.number]
+    for signal in analog:
+        name = mapped[signal.number]
         if name is not None:
-            channel, unit = _map_channel(name, one, parameters.file)
+            channel, unit = _map_channel(name, signal, parameters.file)
             stream = find_stream(channel)
-            chosen.append((stream if stream in ("emg", "forces") else "signals", one, channel, unit))
-    for one, name in zip(emg, emg_names(emg), strict=True):
-        unit = parse_unit(one.unit) or "1"
-        side = one.muscle.side if one.muscle is not None else ""
-        chosen.append(("emg", one, Channel(name, "emg", inner_unit(unit), side), unit))
-    for one, name in zip(others, make_unique([one.label for one in others], "analog"), strict=True):
-        unit = parse_unit(one.unit) or "1"
-        chosen.append(("signals", one, Channel(name, "signal", inner_unit(unit)), unit))
+            chosen.append((stream if stream in ("emg", "forces") else "signals", signal, channel, unit))
+    for signal, name in zip(emg, emg_names(emg), strict=True):
+        unit = parse_unit(signal.unit) or "1"
+        side = signal.muscle.side if signal.muscle is not None else ""
+        chosen.append(("emg", signal, Channel(name, "emg", inner_unit(unit), side), unit))
+    for signal, name in zip(others, make_unique([signal.label for signal in others], "analog"), strict=True):
+        unit = parse_unit(signal.unit) or "1"
+        chosen.append(("signals", signal, Channel(name, "signal", inner_unit(unit)), unit))
     streams: Streams = {}
     for stream in ("emg", "signals", "forces"):
         group = [entry for entry in chosen if entry[0] == stream]
         if group:
-            columns = [one.number - 1 for _, one, _, _ in group]
+            columns = [signal.number - 1 for _, signal, _, _ in group]
             span = range(columns[0], columns[-1] + 1)  # a slice copies nothing
             values = rows[:, slice(span.start, span.stop) if columns == list(span) else columns]
             for column, (_, _, channel, unit) in enumerate(group):
@@ -123,24 +123,24 @@ def analog_streams(
     return streams, _doubts(emg, others, parameters.file)
 
 
-def _map_channel(text: str, one: AnalogLabel, file: str) -> tuple[Channel, str]:
+def _map_channel(text: str, signal: AnalogLabel, file: str) -> tuple[Channel, str]:
     name, stated = split_unit(text)
     known = vocabulary().named(name)
     channel = known if known is not None else name_channel(name)
-    unit = parse_unit(stated if stated is not None else one.unit)
+    unit = parse_unit(stated if stated is not None else signal.unit)
     if unit is None and channel.quantity == "signal":
         return channel, channel.unit
     if unit is None:
         raise UnitError(
-            f"analog channel #{one.number} is mapped to {name!r} and must have a unit",
-            f"{file} says {(stated if stated is not None else one.unit)!r}",
+            f"analog channel #{signal.number} is mapped to {name!r} and must have a unit",
+            f"{file} says {(stated if stated is not None else signal.unit)!r}",
             f"Write the unit in the study's [channels]: '{name} [{channel.unit}]'.",
         )
     if channel.quantity == "signal" or (channel.quantity == "emg" and unit == "1"):
         channel = replace(channel, unit=inner_unit(unit))
     if inner_unit(unit) != channel.unit:
         raise UnitError(
-            f"analog channel #{one.number} is mapped to {channel.name!r}, whose unit is {channel.unit}",
+            f"analog channel #{signal.number} is mapped to {channel.name!r}, whose unit is {channel.unit}",
             f"{file} gives it in {unit}",
             "Map another channel, or write the true unit in the study's [channels]: 'name [unit]'.",
         )
@@ -149,22 +149,22 @@ def _map_channel(text: str, one: AnalogLabel, file: str) -> tuple[Channel, str]:
 
 def _doubts(emg: list[AnalogLabel], others: list[AnalogLabel], file: str) -> list[Finding]:
     findings = []
-    unknown = [one for one in (*emg, *others) if parse_unit(one.unit) is None]
+    unknown = [signal for signal in (*emg, *others) if parse_unit(signal.unit) is None]
     if unknown:
         what = (
             f"{len(unknown)} analog channels have no known unit ({_list_labels(unknown)}); their numbers are unchanged"
         )
         findings.append(Finding("note", "unit", file, what, "amplitudes of these channels; correct ANALOG:UNITS"))
-    muscles = [one.muscle.name for one in emg if one.muscle is not None]
+    muscles = [signal.muscle.name for signal in emg if signal.muscle is not None]
     doubled = sorted({name for name in muscles if muscles.count(name) > 1})
     if doubled:
         what = f"several channels are called {', '.join(doubled)}; they are numbered"
         findings.append(Finding("warning", "equal muscles", file, what, "this muscle; name it in [channels]"))
-    nameless = [one for one in emg if one.muscle is None]
+    nameless = [signal for signal in emg if signal.muscle is None]
     if nameless:
         what = f"{len(nameless)} EMG channels do not name a known muscle ({_list_labels(nameless)})"
         findings.append(Finding("note", "nameless EMG", file, what, "nothing; name them in [channels] as '#<n>'"))
-    voltages = [one for one in others if (parse_unit(one.unit) or "") in ("V", "mV", "uV")]
+    voltages = [signal for signal in others if (parse_unit(signal.unit) or "") in ("V", "mV", "uV")]
     if voltages:
         what = f"{len(voltages)} voltages are not recognised as EMG and remain signals ({_list_labels(voltages)})"
         findings.append(Finding("note", "voltages", file, what, "nothing unless they are EMG; map them in [channels]"))
@@ -172,5 +172,5 @@ def _doubts(emg: list[AnalogLabel], others: list[AnalogLabel], file: str) -> lis
 
 
 def _list_labels(channels: list[AnalogLabel]) -> str:
-    shown = ", ".join(f"#{one.number} {one.label}".strip() for one in channels[:4])
+    shown = ", ".join(f"#{signal.number} {signal.label}".strip() for signal in channels[:4])
     return shown + (", ..." if len(channels) > 4 else "")

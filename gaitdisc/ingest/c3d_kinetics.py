@@ -1,20 +1,17 @@
-"""Forces, moments and powers of a model in a C3D file, per kg or not; and the person's mass, lengths and widths."""
+"""Forces, moments and powers of a model in a C3D file: per kg or not, of the muscles or of the load."""
 
 from __future__ import annotations
 
 import re
-from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from pathlib import Path
 
 import numpy as np
 
 from gaitdisc.channel import Channel
-from gaitdisc.ingest.c3d_parameters import C3DParameters, read_c3d_header, read_c3d_parameters
 from gaitdisc.ingest.stated_units import LEG_MOMENT
 from gaitdisc.recording import Finding
-from gaitdisc.recording.arrays import Values
-from gaitdisc.recording.trial import LENGTHS_M, MASS_KG, BodyMeasures
+from gaitdisc.recording.arrays import Values, finite_values
+from gaitdisc.recording.trial import MASS_KG
 
 Kinetics = tuple[Values, tuple[Channel, ...]]
 
@@ -30,14 +27,6 @@ _REACTION = re.compile(r"[LR]GroundReactionForce\.[xyz]")
 _NORMALISED = re.compile(r"[LR]NormalisedGRF\.[xyz]")
 _ANKLE = re.compile(r"ankle_angle_[rl]_moment")
 _OF_GROUND = re.compile(r"[LR]?Ground")
-GROUPS = ("PROCESSING", "SUBJECTS", "SUBJECT")
-OF_THE_BODY = {
-    "height_m": ("HEIGHT", "BODYHEIGHT"),
-    "inter_asis_m": ("INTERASISDISTANCE", "ASISDISTANCE"),
-    "marker_diameter_m": ("MARKERDIAMETER",),
-}
-OF_A_SIDE = {"leg_length_m": ("LEGLENGTH",), "knee_width_m": ("KNEEWIDTH",), "ankle_width_m": ("ANKLEWIDTH",)}
-FACTORS = (1e-3, 1.0, 1e-2)  # mm, as Nexus writes; m; cm: the first that makes it a length of a person
 
 
 @dataclass(frozen=True)
@@ -48,15 +37,6 @@ class Evidence:
     words: str = ""
     certain: bool = False  # whether plates and reaction forces were compared
     mass_kg: float | None = None  # plate over reaction force, where both saw one step
-
-
-def body_mass(parameters: C3DParameters) -> float | None:
-    """Body mass that the file states [kg], or None."""
-    for group, name in (("PROCESSING", "BODYMASS"), ("SUBJECTS", "BODYMASS"), ("SUBJECT", "WEIGHT")):
-        mass = parameters.number(group, name)
-        if mass is not None and MASS_KG.hold(mass):
-            return mass
-    return None
 
 
 def house_kinetics(
@@ -109,10 +89,10 @@ def house_kinetics(
 def _by_plates(values: Values, channels: tuple[Channel, ...], plates_n: Values) -> Evidence | None:
     """Ratio of a plate's force to a foot's reaction force, where it is the same over a step."""
     for side in "LR":
-        own = [i for i, c in enumerate(channels) if _REACTION.fullmatch(c.name) and c.name[0] == side]
-        if len(own) != 3 or len(values) != len(plates_n):
+        columns = [i for i, c in enumerate(channels) if _REACTION.fullmatch(c.name) and c.name[0] == side]
+        if len(columns) != 3 or len(values) != len(plates_n):
             continue
-        foot = np.linalg.norm(values[:, own], axis=1)
+        foot = np.linalg.norm(values[:, columns], axis=1)
         for place, plate in enumerate(plates_n.T, 1):
             both = (foot > LOADED_PER_KG) & (plate > LOADED_N)
             if both.sum() < 10:
@@ -130,9 +110,8 @@ def _by_plates(values: Values, channels: tuple[Channel, ...], plates_n: Values) 
 
 
 def _by_size(values: Values, channels: tuple[Channel, ...], wanted: re.Pattern[str], quantity: str) -> Evidence:
-    own = [i for i, c in enumerate(channels) if wanted.fullmatch(c.name) and c.unit in _PER_KG]
-    sizes = np.abs(values[:, own])
-    sizes = sizes[np.isfinite(sizes)]
+    columns = [i for i, c in enumerate(channels) if wanted.fullmatch(c.name) and c.unit in _PER_KG]
+    sizes = finite_values(np.abs(values[:, columns]))
     most = float(np.quantile(sizes, 0.995)) if sizes.size else 0.0
     if most == 0:
         return Evidence(None)
@@ -143,66 +122,29 @@ def _by_size(values: Values, channels: tuple[Channel, ...], wanted: re.Pattern[s
 
 
 def _internal(kinetics: Kinetics, file: str) -> tuple[Kinetics, list[Finding]]:
+    """Joint moments positive towards the positive angle, by the sign that the ankle's has at push-off."""
     values, channels = kinetics
     joints = [i for i, c in enumerate(channels) if c.quantity == "moment" and not _OF_GROUND.match(c.name)]
     if not joints:
         return kinetics, []
-    sense, words = _push_off(values, channels)
+    ankles = [i for i in joints if _ANKLE.fullmatch(channels[i].name) and channels[i].unit in PUSH_OFF]
+    moments = finite_values(values[:, ankles])
     how = "joint moments are internal (of the muscles), positive towards the positive angle"
-    if sense < 0:
-        what = f"{words}: plantarflexion is already negative; {how}"
-        return kinetics, [Finding("note", "moment sign", file, what, "")]
+    words, why = "no ankle moment shows the sign", "; interpreted as in Plug-in Gait"
+    spoils = "the sign of joint moments if the file comes from another model"
+    if moments.size:
+        unit = channels[ankles[0]].unit
+        low, high = np.quantile(moments, [0.005, 0.995])
+        words = f"ankle moments range from {low:.2f} to {high:.2f} {unit}"
+        up, down = moments[moments > 0].sum(), -moments[moments < 0].sum()
+        if high > PUSH_OFF[unit] and up > ONE_SIDED * down:
+            why, spoils = ": positive is plantarflexion", ""
+        elif -low > PUSH_OFF[unit] and down > ONE_SIDED * up:
+            what = f"{words}: plantarflexion is already negative; {how}"
+            return kinetics, [Finding("note", "moment sign", file, what, "")]
+        else:
+            words += ", without a push-off"
     signs = np.ones(len(channels))
     signs[joints] = -1.0
-    why = words + ": positive is plantarflexion" if sense else f"{words}; interpreted as in Plug-in Gait"
-    what = f"{why}; the sign of {len(joints)} joint moments is reversed, {how}"
-    spoils = "" if sense else "the sign of joint moments if the file comes from another model"
+    what = f"{words}{why}; the sign of {len(joints)} joint moments is reversed, {how}"
     return (values * signs, channels), [Finding("note", "moment sign", file, what, spoils)]
-
-
-def _push_off(values: Values, channels: tuple[Channel, ...]) -> tuple[int, str]:
-    """+1 where the ankle's moment is positive at push-off, -1 where it is negative, 0 where none is seen."""
-    ankles = [i for i, c in enumerate(channels) if _ANKLE.fullmatch(c.name) and c.unit in PUSH_OFF]
-    moments = values[:, ankles]
-    moments = moments[np.isfinite(moments)]
-    if not moments.size:
-        return 0, "no ankle moment shows the sign"
-    unit = channels[ankles[0]].unit
-    low, high = np.quantile(moments, [0.005, 0.995])
-    words = f"ankle moments range from {low:.2f} to {high:.2f} {unit}"
-    up, down = moments[moments > 0].sum(), -moments[moments < 0].sum()
-    if high > PUSH_OFF[unit] and up > ONE_SIDED * down:
-        return 1, words
-    if -low > PUSH_OFF[unit] and down > ONE_SIDED * up:
-        return -1, words
-    return 0, f"{words}, without a push-off"
-
-
-def read_body_measures(path: Path | str) -> BodyMeasures:
-    """Measures of the person in PROCESSING, SUBJECTS or SUBJECT; none where absent, zero, or not in mm, m or cm."""
-    return find_body_measures(read_c3d_parameters(path, read_c3d_header(path)))
-
-
-def body_measures_in(path: Path) -> BodyMeasures:
-    """Measures of the person in a file, if it is a C3D file; no other kind has any."""
-    return read_body_measures(path) if path.suffix.lower() == ".c3d" else BodyMeasures()
-
-
-def find_body_measures(parameters: C3DParameters) -> BodyMeasures:
-    """Measures of the person that stand in parameters."""
-    whole = {name: _length(parameters, name, keys) for name, keys in OF_THE_BODY.items()}
-    sided = {}
-    for name, keys in OF_A_SIDE.items():
-        lengths = {side: _length(parameters, name, [f"{side.upper()}{key}" for key in keys]) for side in "lr"}
-        sided[name] = {side: length for side, length in lengths.items() if length is not None}
-    return BodyMeasures(body_mass(parameters), **whole, **sided, source=parameters.file)
-
-
-def _length(parameters: C3DParameters, name: str, keys: Sequence[str]) -> float | None:
-    for group in GROUPS:
-        for key in keys:
-            number = parameters.number(group, key)
-            for factor in FACTORS:
-                if number is not None and LENGTHS_M[name].hold(number * factor):
-                    return round(number * factor, 9)
-    return None

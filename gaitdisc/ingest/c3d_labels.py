@@ -35,9 +35,9 @@ def without_prefix(label: str) -> str:
 def list_people_names(parameters: C3DParameters) -> tuple[str, ...]:
     """Names that the file gives its subjects, so that they can be removed wherever they stand."""
     places = (("SUBJECTS", "NAMES"), ("SUBJECTS", "LABEL_PREFIXES"), ("SUBJECT", "NAME"), ("EVENT", "SUBJECTS"))
-    found = [text.strip(" :") for place in places for text in parameters.texts(*place)]
-    found += [label.rpartition(":")[0] for label in parameters.texts("POINT", "LABELS")]
-    return tuple(sorted((name for name in dict.fromkeys(found) if len(name) > 1), key=len, reverse=True))
+    names = [text.strip(" :") for place in places for text in parameters.texts(*place)]
+    names += [label.rpartition(":")[0] for label in parameters.texts("POINT", "LABELS")]
+    return tuple(sorted((name for name in dict.fromkeys(names) if len(name) > 1), key=len, reverse=True))
 
 
 def make_unique(labels: Sequence[str], word: str) -> list[str]:
@@ -97,22 +97,23 @@ class LabelMap:
     def unused(self, labels: Iterable[str], file: str) -> list[Finding]:
         """Findings for the keys that no channel of the file goes by."""
         labels = tuple(labels)
-        found = []
+        findings = []
         for key in self._names:
             if not self._used[key]:
                 hint = hint_nearest(key, labels)
                 what = f"the study maps {key!r} to {self._names[key]!r}; the file does not have this label{hint}"
-                found.append(Finding("warning", "label not found", file, what, "everything that needs this channel"))
-        return found
+                spoils = "everything that needs this channel"
+                findings.append(Finding("warning", "label not found", file, what, spoils))
+        return findings
 
 
 def event_kind(label: str, context: str) -> tuple[str, str]:
     """What an event is (`Foot Strike`, `Right Foot Off`, or Qualisys' `LHS`, `RTO`) and on which side."""
     side = {"l": "l", "r": "r"}.get(context.strip().lower()[:1], "")
     word = re.sub(r"[\s_.-]+", " ", label.strip().lower())
-    found = re.fullmatch(r"(left|right|l|r) ?(.+)", word)
-    if found and found[2] in _CONTACT | _OFF:
-        side, word = side or found[1][0], found[2]
+    match = re.fullmatch(r"(left|right|l|r) ?(.+)", word)
+    if match and match[2] in _CONTACT | _OFF:
+        side, word = side or match[1][0], match[2]
     if word in _CONTACT:
         return INITIAL_CONTACT, side
     if word in _OFF:

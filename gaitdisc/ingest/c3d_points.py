@@ -175,8 +175,8 @@ def _model_part(
             mapped = labels.name(f"{name_in_file}.{axis}")
             known = name_channel(mapped) if mapped else vocabulary().named(label)
             name = known.name if known is not None else label
-            own = re.match(r"([LR])[A-Z]", plain)
-            side = known.side if known is not None else own[1].lower() if own else ""
+            sided = re.match(r"([LR])[A-Z]", plain)
+            side = known.side if known is not None else sided[1].lower() if sided else ""
             channels.append(Channel(name, quantity, inner, side))
     most = float(np.max(np.abs(values), initial=0.0, where=np.isfinite(values)))
     if kind.group == "ANGLES" and unit == "deg" and 0 < most < 3.2:
@@ -192,8 +192,8 @@ def _columns(points: list[int]) -> slice | NDArray[np.intp]:
     return (3 * np.array(points, dtype=np.intp)[:, None] + np.arange(3)).ravel()
 
 
-def file_segments(path: Path, header: C3DHeader, parameters: C3DParameters, source: Source) -> Recording | None:
-    """Origin [m] and axes of each segment, `<segment>.x` to `.z` and `<segment>.r11` to `.r33`; None without any.
+def file_segments(path: Path, header: C3DHeader, parameters: C3DParameters, source: Source) -> dict[str, Recording]:
+    """Stream `segments`, if any: origin [m] and axes of each, `<segment>.x` to `.z` and `<segment>.r11` to `.r33`.
 
     Axes are as the file has them, the columns of `r`, in the laboratory's frame.
 
@@ -202,7 +202,7 @@ def file_segments(path: Path, header: C3DHeader, parameters: C3DParameters, sour
     used = parameters.count("ROTATION", "USED") or 0
     start = parameters.count("ROTATION", "DATA_START") or 0
     if not used or not start:
-        return None
+        return {}
     ratio = parameters.count("ROTATION", "RATIO") or 1
     frames = (parameters.count("POINT", "FRAMES") or header.frames) * ratio
     size = 4 * NUMBERS * used * frames
@@ -213,9 +213,7 @@ def file_segments(path: Path, header: C3DHeader, parameters: C3DParameters, sour
             f"{max(header.size - first, 0)} of {size} bytes follow block {start}",
             "Export the trial again. This copy is incomplete.",
         )
-    with path.open("rb") as file:
-        file.seek(first)
-        raw = file.read(size)
+    raw = np.memmap(path, np.uint8, "r", first, (size,)).tobytes()
     cells = decoded(raw, 4, header.processor).astype(float).reshape(frames, used, NUMBERS)
     poses = cells[:, :, :16].reshape(frames, used, 4, 4).swapaxes(2, 3)
     poses[cells[:, :, 16] < 0] = np.nan
@@ -228,4 +226,5 @@ def file_segments(path: Path, header: C3DHeader, parameters: C3DParameters, sour
         columns += [convert(poses[:, place, :3, 3], unit, "m"), poses[:, place, :3, :3].reshape(frames, 9)]
         channels += [Channel(f"{name}.{axis}", "translation", "m") for axis in AXES]
         channels += [Channel(f"{name}.{cell}", "signal", "1") for cell in CELLS]
-    return Recording(np.arange(frames) / rate_hz, np.hstack(columns), tuple(channels), source=source)
+    time = np.arange(frames) / rate_hz
+    return {"segments": Recording(time, np.hstack(columns), tuple(channels), source=source)}

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from gaitdisc.errors import ReadError, SamplingError
 from gaitdisc.recording import Finding
-from gaitdisc.recording.arrays import Values
+from gaitdisc.recording.arrays import Values, mean_rate, mean_step
 
 MISSING = ("", "nan", "NaN", "NAN", "-nan", "-nan(ind)", "nan(ind)", "1.#QNAN", "-1.#IND", "1.#IND")
 _NUMBER = re.compile(r"[-+]?\d*(?:[.,](\d*))?(?:[eEdD]([-+]?\d+))?")
@@ -203,13 +203,13 @@ def even_time(time: Values, digit_s: float, file: str, lines: NDArray[np.intp] |
             f"{place(row + 1)} has t = {time[row + 1]:.10g} s after {time[row]:.10g} s",
             "Remove the duplicate or misplaced rows, or export the trial again.",
         )
-    step = (time[-1] - time[0]) / (len(time) - 1)
+    step = mean_step(time)
     even = time[0] + step * np.arange(len(time))
     if np.abs(time - even).max() <= ALREADY_EVEN * step:
         return time
     _check_rounding(time, digit_s, file, place)
     # a whole number of samples a second where the digits allow one, else from first to last time
-    rate = round((len(time) - 1) / (time[-1] - time[0]))
+    rate = round(mean_rate(time))
     whole = time[0] + np.arange(len(time)) / rate if rate > 0 else even
     return whole if np.abs(time - whole).max() <= 1.01 * digit_s else even
 

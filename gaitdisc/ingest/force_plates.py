@@ -16,7 +16,7 @@ from gaitdisc.recording import Finding, Surface
 from gaitdisc.recording.arrays import Values
 from gaitdisc.units import convert, inner_unit, parse_unit
 
-LEAST_LOAD_N = 20.0  # below it a centre of pressure is noise divided by noise
+LEAST_LOAD_N = 20.0  # below it a foot counts as off a plate, and a centre of pressure is noise divided by noise
 CLEAR_LOAD_N = 100.0  # what a drifting plate does not show, and a foot does
 STRAY = 0.05  # share of the loaded samples that may lie beside a plate
 BESIDE_M = 0.05  # a centre of pressure farther outside of the plate than this is wrong

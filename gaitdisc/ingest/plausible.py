@@ -17,7 +17,7 @@ from numpy.typing import NDArray
 from gaitdisc.channel import Channel, schema_folder, vocabulary
 from gaitdisc.errors import ReadError
 from gaitdisc.recording import Finding, Recording
-from gaitdisc.recording.arrays import Values, runs, spans_s
+from gaitdisc.recording.arrays import Values, finite_rows, finite_values, runs, spans_s
 
 JOINTS = ("angle", "translation")
 CHANCE = 1e-6  # of a stretch that repeats one value, with the channel's own share of repeated samples; no false one in
@@ -154,7 +154,7 @@ def _frozen(x: Values) -> NDArray[np.bool_]:
         return marks
     step = move[move > 0]
     grid = float(step.min())
-    coarse = grid > 1e-6 * float(np.nanmax(np.ptp(x[np.isfinite(x).all(axis=1)], axis=0)))
+    coarse = grid > 1e-6 * float(np.nanmax(np.ptp(finite_rows(x), axis=0)))
     quantised = coarse and bool(np.mean(np.abs(step / grid - np.rint(step / grid)) < 0.1) > 0.9)
     spans = runs(same)
     for start, end in spans:
@@ -223,7 +223,7 @@ def with_flexion_positive(streams: Mapping[str, Recording]) -> tuple[dict[str, R
     knees = [
         c.name for c in kinematics.channels if _KNEE.fullmatch(c.name) and (c.quantity, c.unit) == ("angle", "deg")
     ]
-    finite = {name: kinematics[name][np.isfinite(kinematics[name])] for name in knees}
+    finite = {name: finite_values(kinematics[name]) for name in knees}
     reaches = {
         name: tuple(np.quantile(values, [0.01, 0.99]).tolist()) if len(values) >= FEWEST else (0.0, 0.0)
         for name, values in finite.items()

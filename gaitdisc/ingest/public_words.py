@@ -20,6 +20,7 @@ from typing import TYPE_CHECKING, TypeVar
 
 from gaitdisc.channel import schema_folder
 from gaitdisc.errors import GaitdiscError
+from gaitdisc.ingest.columns import split_unit
 from gaitdisc.recording import Finding, Recording, Trial
 
 if TYPE_CHECKING:
@@ -125,7 +126,7 @@ def list_words(study: Study, participant: Participant, named: Iterable[str] = ()
     said += [trial.leave_out for trial in participant.trials]
     said += [trial.condition for each in study.participants for trial in each.trials]
     said += [*study.models.angles, *study.models.emg, *study.models.outputs]
-    said += study.channel_names
+    said += [split_unit(name)[0] for name in study.channels.values()]
     words = frozenset(word for text in said for word in _WORD.findall(text))
     files = {name: said for trial in participant.trials for name, said in _files(participant, trial).items()}
     return PublicWords(words, files)

@@ -31,7 +31,7 @@ class ReadRequest:
     """One file for one reader."""
 
     path: str
-    reader: str  # "ezc3d", "c3d", "arrays" or "hdf5 text"
+    reader: str  # "ezc3d", "arrays" or "hdf5 text"
     wanted: tuple[int | str, ...]  # what the reader takes: see the functions of reader_worker.py
     limit_s: float  # processor time after which the reader is stopped; by the clock it is given `CLOCK` times as long
     cap_bytes: int  # address space that the reader may take, where the system can cap it
@@ -94,12 +94,12 @@ class ReaderProcess:
         code = self._stop()
         thread.join(5)
         if late:
-            said = f"it did not finish within {request.clock_s:.3g} s"
+            failure = f"it did not finish within {request.clock_s:.3g} s"
         elif code == -getattr(signal, "SIGXCPU", np.inf):
-            said = f"it did not finish within {request.limit_s:.3g} s of processor time"
+            failure = f"it did not finish within {request.limit_s:.3g} s of processor time"
         else:
-            said = f"it crashed (exit code {code})"
-        return {"said": said}, []
+            failure = f"it crashed (exit code {code})"
+        return {"said": failure}, []
 
     def close(self) -> None:
         """End the process."""
@@ -111,7 +111,7 @@ class ReaderProcess:
             self._stop()
         if self._process is None:
             environment = os.environ | dict.fromkeys(("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS"), "1")
-            # -P: the folder of this package must not hide the library c3d behind our module of that name.
+            # -P: no module of this folder may hide a library's
             self._process = subprocess.Popen(
                 [sys.executable, "-P", str(WORKER)],
                 stdin=subprocess.PIPE,

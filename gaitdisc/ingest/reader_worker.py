@@ -28,10 +28,12 @@ from typing import IO, Any
 import numpy as np
 from numpy.typing import NDArray
 
+from gaitdisc.recording.arrays import Values
+
 ROWS_AT_ONCE = 16384
 
 
-def points_in_rows(points: NDArray[np.float64], residuals: NDArray[np.float64]) -> NDArray[np.float64]:
+def points_in_rows(points: Values, residuals: Values) -> Values:
     """Points (3 or 4, point, frame) of ezc3d as (frame, 3 * point), NaN where the residual is negative.
 
     >>> points_in_rows(np.ones((4, 1, 2)), np.array([[0.0, -1.0]]))
@@ -44,7 +46,7 @@ def points_in_rows(points: NDArray[np.float64], residuals: NDArray[np.float64]) 
     return rows.reshape(frames, 3 * count)
 
 
-def read_with_ezc3d(path: str) -> tuple[NDArray[np.float64], NDArray[np.float64], object]:
+def read_with_ezc3d(path: str) -> tuple[Values, Values, object]:
     """Points (frame, 3 * point) and analog values (channel, sample) as ezc3d reads them, in the file's units.
 
     The file itself comes with them: to take its frames apart takes ezc3d a tenth of the time of reading, which can
@@ -57,38 +59,17 @@ def read_with_ezc3d(path: str) -> tuple[NDArray[np.float64], NDArray[np.float64]
     return points_in_rows(points, residuals[0]), analog[0], file
 
 
-def read_with_c3d(path: str) -> tuple[NDArray[np.float64], NDArray[np.float64], object]:
-    """Points (frame, 3 * point) and analog values (channel, sample) as the pure-Python reader c3d sees them."""
-    import c3d
-
-    with Path(path).open("rb") as handle:
-        reader = c3d.Reader(handle)
-        frames = [(points, analog) for _, points, analog in reader.read_frames(check_nan=False)]
-    if not frames:
-        return np.empty((0, 0)), np.empty((0, 0)), None
-    points = np.stack([points for points, _ in frames]).astype(float)
-    rows = points[:, :, :3]
-    rows[points[:, :, 3] < 0] = np.nan
-    analog = [analog for _, analog in frames]
-    joined = np.concatenate(analog, axis=1) if analog[0].size else np.empty((0, 0))
-    return rows.reshape(len(frames), -1), joined, None
-
-
-READERS = {"ezc3d": read_with_ezc3d, "c3d": read_with_c3d}
-
-
-def read_c3d(reader: str, path: str, *promised: int) -> tuple[dict[str, Any], Any]:
+def read_c3d(path: str, *promised: int) -> tuple[dict[str, Any], Any]:
     """Points and analog values of a C3D file, or what was found in place of the promised counts of the header."""
-    points, analog, file = READERS[reader](path)
+    points, analog, file = read_with_ezc3d(path)
     channels, samples = analog.shape if analog.size else (0, 0)
-    found = (len(points), points.shape[1] // 3, channels, samples)
+    counts = (len(points), points.shape[1] // 3, channels, samples)
     # A file without points has no frames of points to count.
-    if found[1:] != promised[1:] or (promised[1] and found[0] != promised[0]):
-        frames, count, channels, samples = found
-        said = f"it finds {frames} frames of {count} points and {samples} samples of {channels} analog channels"
-        return {"said": said}, ()
+    if counts[1:] != promised[1:] or (promised[1] and counts[0] != promised[0]):
+        words = f"it finds {counts[0]} frames of {counts[1]} points and {samples} samples of {channels} analog channels"
+        return {"said": words}, ()
     shapes = [(promised[0] if promised[1] else 0, 3 * promised[1]), (samples, channels)]
-    return {"reader": f"{reader} {version(reader)}", "shapes": shapes}, (points, analog.T, file)
+    return {"reader": f"ezc3d {version('ezc3d')}", "shapes": shapes}, (points, analog.T, file)
 
 
 def read_arrays(path: str, name: str) -> tuple[dict[str, Any], Any]:
@@ -97,7 +78,7 @@ def read_arrays(path: str, name: str) -> tuple[dict[str, Any], Any]:
     if is_packed:
         with zipfile.ZipFile(path) as packed:
             if not name:
-                claims = {one.filename.removesuffix(".npy"): one.file_size for one in packed.infolist()}
+                claims = {member.filename.removesuffix(".npy"): member.file_size for member in packed.infolist()}
                 return {"claims": claims, "shapes": []}, ()
             with packed.open(f"{name}.npy") as member:
                 held = np.lib.format.read_array(member, allow_pickle=False)
@@ -137,10 +118,10 @@ def _tree(held: Any, arrays: list[NDArray[Any]]) -> Any:
         return type(held).__name__
     if held.dtype.names:
         names = held.dtype.names
-        each = [{"fields": {name: _tree(one[name], arrays) for name in names}} for one in held.ravel(order="F")]
-        return each[0] if len(each) == 1 else {"cells": each}
+        structs = [{"fields": {name: _tree(cell[name], arrays) for name in names}} for cell in held.ravel(order="F")]
+        return structs[0] if len(structs) == 1 else {"cells": structs}
     if held.dtype.kind == "O":
-        return {"cells": [_tree(one, arrays) for one in held.ravel(order="F")]}
+        return {"cells": [_tree(cell, arrays) for cell in held.ravel(order="F")]}
     if held.dtype.kind not in "biuf":
         words = {"U": "text", "S": "text", "c": "complex numbers, which a recording cannot contain"}
         return words.get(held.dtype.kind, f"an array of {held.dtype}")
@@ -156,15 +137,15 @@ def read_hdf5_text(path: str, name: str, attribute: str) -> tuple[dict[str, Any]
     return {"text": text.decode("utf-8", "replace") if isinstance(text, bytes) else str(text), "shapes": []}, ()
 
 
+READERS = {"ezc3d": read_c3d, "arrays": read_arrays, "hdf5 text": read_hdf5_text}
+
+
 def answer(request: dict[str, Any]) -> tuple[dict[str, Any], Any]:
     """Answer a request (`path`, `reader`, `wanted`): what the file holds and its arrays, or what the reader said."""
-    reader = request["reader"]
     try:
         with warnings.catch_warnings():
             warnings.simplefilter("ignore")
-            if reader in READERS:
-                return read_c3d(reader, request["path"], *request["wanted"])
-            return {"arrays": read_arrays, "hdf5 text": read_hdf5_text}[reader](request["path"], *request["wanted"])
+            return READERS[request["reader"]](request["path"], *request["wanted"])
     except MemoryError:
         return {"said": "it exceeded the memory limit for a file of this size"}, ()
     except Exception as error:  # whatever a reader raises is its opinion of the file

@@ -10,7 +10,7 @@ import numpy as np
 
 from gaitdisc.errors import UnitError
 from gaitdisc.recording import Finding, Recording
-from gaitdisc.recording.arrays import Values, runs
+from gaitdisc.recording.arrays import Values, finite_values, runs
 
 FULL_TURN = 2 * math.pi  # a joint angle beyond this cannot be in radians
 WALKING_RAD = (0.35, 2.5)  # range of hip flexion or of the knee in a moving trial, in radians (20 to 143 deg)
@@ -40,7 +40,7 @@ def plausible_unit(
     most = _largest(values[:, bounded])
     moving = [i for i in joints if re.match(r"hip_flexion|knee_angle", names[i])]
     # without the twentieth at either end, where a fit may have lost its markers
-    columns = [column[np.isfinite(column)] for column in values[:, moving or joints].T]
+    columns = [finite_values(column) for column in values[:, moving or joints].T]
     reach = max((float(np.ptp(np.percentile(column, PERCENTILES))) for column in columns if column.size), default=0.0)
     long_enough = time[-1] - time[0] >= SHORTEST_S and len(time) >= FEWEST
     beyond = most > FULL_TURN
@@ -94,8 +94,7 @@ def find_copied_unit(name: str, values: Values, angles: dict[str, Values]) -> st
 
 
 def _largest(values: Values) -> float:
-    finite = values[np.isfinite(values)]
-    return float(np.abs(finite).max()) if finite.size else 0.0
+    return float(np.abs(finite_values(values)).max(initial=0.0))
 
 
 def _refuse_undecided(file: str, why: str) -> UnitError:
@@ -109,7 +108,7 @@ def _refuse_undecided(file: str, why: str) -> UnitError:
 def distance_from_origin(places: Values) -> float:
     """99th percentile of marker coordinates (frame, coordinate) of some thousand frames; NaN without any."""
     some = places[:: max(len(places) // 1000, 1)]
-    finite = np.abs(some[np.isfinite(some)])
+    finite = np.abs(finite_values(some))
     return float(np.quantile(finite, 0.99)) if finite.size else float("nan")
 
 
@@ -136,7 +135,7 @@ def per_kg_findings(streams: Mapping[str, Recording]) -> list[Finding]:
         recording = streams[key]
         meant = [c.name for c in recording.channels if (c.quantity, c.unit) == (quantity, unit)]
         meant = [name for name in meant if key == "forces" or LEG_MOMENT.fullmatch(name)]
-        sizes = {name: np.abs(recording[name][np.isfinite(recording[name])]) for name in meant}
+        sizes = {name: np.abs(finite_values(recording[name])) for name in meant}
         peaks = {name: float(np.quantile(size, 0.999)) if size.size else 0.0 for name, size in sizes.items()}
         most = max(peaks, key=lambda name: peaks[name], default="")
         walks = recording.duration_s >= STANCE_S[0]

@@ -11,7 +11,6 @@ from pydantic import ConfigDict, Field, PrivateAttr, model_validator
 
 from gaitdisc.channel import did_you_mean
 from gaitdisc.errors import SchemaError
-from gaitdisc.ingest.columns import split_unit
 from gaitdisc.ingest.study_settings import (
     Filters,
     HeldOut,
@@ -194,11 +193,6 @@ class Study(StudyPart):
         study = self.model_copy()
         study._folder = Path(folder)
         return study
-
-    @property
-    def channel_names(self) -> tuple[str, ...]:
-        """Names that labels of files stand for, without their units."""
-        return tuple(split_unit(name)[0] for name in self.channels.values())
 
     def path_of(self, file: str) -> Path:
         """Return where a file of the study lies."""

@@ -16,6 +16,7 @@ from gaitdisc.ingest.columns import Column, map_label, sort_trial, split_unit
 from gaitdisc.ingest.raw_file import read_raw
 from gaitdisc.ingest.stated_units import distance_from_origin, refuse_other_unit
 from gaitdisc.recording import Finding, Trial
+from gaitdisc.recording.arrays import mean_step
 from gaitdisc.units import inner_unit, parse_unit
 
 _KEYS = ("DataRate", "NumFrames", "NumMarkers", "Units")
@@ -54,7 +55,7 @@ def read_trc(path: Path | str, channels: Mapping[str, str] | None = None) -> Tri
     findings = check_counts(cells, lines, raw.name, *claims)
     digit = cells.printed_digit(1)
     time = even_time(cells.values[:, 1], digit, raw.name, cells.lines)
-    step = (time[-1] - time[0]) / (len(time) - 1)
+    step = mean_step(time)
     allowed = RATE_TOLERANCE / header.rate_hz + digit / (len(time) - 1)
     if abs(step - 1 / header.rate_hz) > allowed:
         raise SamplingError(

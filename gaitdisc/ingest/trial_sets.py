@@ -7,7 +7,7 @@ from contextlib import suppress
 from dataclasses import dataclass
 
 from gaitdisc.errors import GaitdiscError
-from gaitdisc.ingest.c3d_kinetics import body_measures_in
+from gaitdisc.ingest.body_measures import read_body_measures
 from gaitdisc.ingest.study import FUNCTIONAL, STATIC, UNKNOWN, Participant, PlannedTrial, Study
 from gaitdisc.regular_file import file_sha256
 
@@ -121,7 +121,7 @@ def differing_body(study: Study, participant: Participant) -> str:
     for trial in (one for one in participant.trials if one.condition != UNKNOWN and not one.leave_out):
         for file in trial.files:
             with suppress(OSError, GaitdiscError):  # reading says why
-                body = body_measures_in(study.path_of(file))
+                body = read_body_measures(study.path_of(file))
                 measures = {f"leg length ({side})": length for side, length in body.leg_length_m.items()}
                 measures |= {"body mass": None if participant.mass_kg else body.mass_kg}
                 measures |= {"stature": None if participant.height_m else body.height_m}

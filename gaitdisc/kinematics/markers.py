@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from gaitdisc.errors import ChannelError, ShapeError, StrideError
 from gaitdisc.recording import Recording
-from gaitdisc.recording.arrays import Values
+from gaitdisc.recording.arrays import Values, finite_rows
 
 STILL_S = 0.5
 STEP_S = 0.1
@@ -93,8 +93,7 @@ def up_axis(pelvis: Values, feet: Values, file: str = "") -> Values:
     >>> up_axis(np.array([[1.0, 2.0, 0.9]]), np.array([[1.0, 2.1, 0.1]]))
     array([0., 0., 1.])
     """
-    lines = pelvis - feet
-    lines = lines[np.isfinite(lines).all(axis=1)]
+    lines = finite_rows(pelvis - feet)
     if not len(lines):
         raise ShapeError(
             "the upward direction needs a frame with markers of the pelvis and of a foot",

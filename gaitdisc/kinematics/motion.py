@@ -42,7 +42,7 @@ from gaitdisc.kinematics.segment_poses import (
     place_markers,
 )
 from gaitdisc.recording import Finding, Recording
-from gaitdisc.recording.arrays import Values, spans_s
+from gaitdisc.recording.arrays import Values, finite_values, spans_s
 from gaitdisc.recording.trial import BodyMeasures
 
 ANOTHER_SHAPE_M = 0.01  # median; with their own static trials six people have up to 5.5 mm, with others 12.5 or more
@@ -209,7 +209,7 @@ def _rolled_foot(side: str, angles: Recording, poses: Mapping[str, Pose], file: 
     shank, foot = (poses[f"{part}_{side}"].rotation for part in ("shank", "foot"))
     line = np.degrees(np.arcsin(np.clip(np.einsum("fi,fi->f", foot[:, :, 0], shank[:, :, 1]), -1.0, 1.0)))
     apart = angles[f"ankle_angle_{side}"] - line
-    known = apart[np.isfinite(apart)]
+    known = finite_values(apart)
     most = float(np.percentile(np.abs(known - np.median(known)), 95)) if len(known) else 0.0
     what = f"ankle_angle_{side} lies more than {most:.0f} deg from the line heel to toe in 5 % of the frames: the foot "
     what += "rolls about that line, which the markers of a foot show poorly"

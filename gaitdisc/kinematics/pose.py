@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from gaitdisc.errors import ShapeError
-from gaitdisc.recording.arrays import Values, read_only
+from gaitdisc.recording.arrays import Values, freeze
 
 PARTS = ("pelvis", "thigh", "shank", "foot")
 SEGMENTS = ("pelvis", "thigh_l", "thigh_r", "shank_l", "shank_r", "foot_l", "foot_r")
@@ -41,7 +41,8 @@ class Pose:
 
     def __post_init__(self) -> None:
         """Check shapes and that every known matrix is a rotation, once."""
-        origin, rotation = read_only(self.origin), read_only(self.rotation)
+        freeze(self, "origin", "rotation")
+        origin, rotation = self.origin, self.rotation
         if origin.ndim != 2 or origin.shape[1] != 3 or rotation.shape != (len(origin), 3, 3):
             raise ShapeError(
                 "a pose must have an origin of shape (frame, 3) and a rotation of shape (frame, 3, 3)",
@@ -60,8 +61,6 @@ class Pose:
                 f"axes deviate from right angles and length 1 by up to {stretch[first]:.3g}",
                 "Give the columns as x forward, y up, z to the right of the person.",
             )
-        object.__setattr__(self, "origin", origin)
-        object.__setattr__(self, "rotation", rotation)
 
     def __len__(self) -> int:
         return len(self.origin)

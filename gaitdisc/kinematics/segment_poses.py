@@ -71,7 +71,7 @@ def hold_together(
         for segment, turn in turns.items():  # the one about the normal of the plane that is nearest
             inside = np.swapaxes(plane, 1, 2) @ turn
             angle = np.arctan2(inside[:, 1, 0] - inside[:, 0, 1], inside[:, 0, 0] + inside[:, 1, 1])
-            turns[segment] = _turn(angle[:, None] * plane[:, :, 2]) @ plane
+            turns[segment] = Rotation.from_rotvec(angle[:, None] * plane[:, :, 2]).as_matrix() @ plane
     allowed = _allow_steps(len(origin), plane)
     moving: NDArray[np.intp] = np.arange(len(origin))
     for _ in range(ROUNDS):
@@ -87,7 +87,7 @@ def hold_together(
         origin[moving] += step[:, :3]
         for segment in SEGMENTS:
             for above in reversed(_chain(segment)):  # what is nearest turns first, the pelvis last
-                some[segment] = _turn(step[:, _columns(above)]) @ some[segment]
+                some[segment] = Rotation.from_rotvec(step[:, _columns(above)]).as_matrix() @ some[segment]
             turns[segment][moving] = some[segment]
         moving = moving[np.abs(step).max(axis=1) > SETTLED]
         if not len(moving):
@@ -201,17 +201,6 @@ def levers_m(normal: Values, allowed: Values) -> Turns:
 
 def _among(normal: Values, allowed: Values) -> Values:
     return np.swapaxes(allowed, 1, 2) @ normal @ allowed
-
-
-def _turn(vectors: Values) -> Values:
-    """Rotations about vectors by their length [rad] (Rodrigues)."""
-    angle = np.linalg.norm(vectors, axis=1)
-    axis = vectors / np.maximum(angle, 1e-300)[:, None]
-    cross = np.zeros((len(vectors), 3, 3))
-    cross[:, 0, 1], cross[:, 0, 2], cross[:, 1, 2] = -axis[:, 2], axis[:, 1], -axis[:, 0]
-    cross -= np.swapaxes(cross, 1, 2)
-    sine, cosine = np.sin(angle)[:, None, None], np.cos(angle)[:, None, None]
-    return np.eye(3) + sine * cross + (1 - cosine) * (cross @ cross)
 
 
 def hold_in_gaps(

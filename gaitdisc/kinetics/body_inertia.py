@@ -13,7 +13,7 @@ from gaitdisc.channel import schema_folder
 from gaitdisc.errors import SchemaError, ShapeError, UnitError
 from gaitdisc.kinematics.pose import Pose
 from gaitdisc.kinetics.newton_euler import RigidBody
-from gaitdisc.recording.arrays import Values
+from gaitdisc.recording.arrays import Values, finite_values
 from gaitdisc.recording.trial import MASS_KG
 
 TABLES = ("dumas2007", "deleva1996")
@@ -152,8 +152,7 @@ def segment_lengths(poses: Mapping[str, Pose], side: str) -> dict[str, float]:
                 f"there are {', '.join(poses) or 'none'}",
                 "Provide the markers of the entire leg.",
             )
-        length = np.linalg.norm(ends[0].origin - ends[1].origin, axis=1)
-        length = length[np.isfinite(length)]
+        length = finite_values(np.linalg.norm(ends[0].origin - ends[1].origin, axis=1))
         if not len(length):
             raise ShapeError(
                 f"the length of {segment}_{side} needs a frame with both of its joint centres",

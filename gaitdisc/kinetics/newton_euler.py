@@ -17,7 +17,7 @@ from gaitdisc.errors import ShapeError
 from gaitdisc.kinematics.pose import Pose
 from gaitdisc.kinetics.platform import Wrench
 from gaitdisc.recording import Recording
-from gaitdisc.recording.arrays import Values
+from gaitdisc.recording.arrays import Values, mean_rate
 from gaitdisc.signals.butterworth import low_pass
 from gaitdisc.signals.derivatives import derivative
 
@@ -77,7 +77,7 @@ def segment_motion(pose: Pose, rate_hz: float) -> SegmentMotion:
 def segment_motions(poses: Mapping[str, Pose], time: Values, cutoff_hz: float) -> dict[str, SegmentMotion]:
     """SegmentMotion of several segments on even times, filtered alike."""
     found = {}
-    rate_hz = (len(time) - 1) / float(time[-1] - time[0]) if len(time) > 1 else np.nan
+    rate_hz = mean_rate(time) if len(time) > 1 else np.nan
     for name, pose in poses.items():
         if len(pose) != len(time):
             raise ShapeError(

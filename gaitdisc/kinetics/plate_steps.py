@@ -13,7 +13,7 @@ from gaitdisc.errors import ShapeError
 from gaitdisc.kinetics.newton_euler import GRAVITY
 from gaitdisc.kinetics.platform import Platform, Wrench
 from gaitdisc.recording import Finding, Recording
-from gaitdisc.recording.arrays import Span, Values, read_only, runs
+from gaitdisc.recording.arrays import Span, Values, finite_values, freeze, mean_rate, runs
 from gaitdisc.signals.derivatives import derivative
 from gaitdisc.signals.direction import marker_position
 
@@ -39,19 +39,18 @@ class FootPath:
 
     def __post_init__(self) -> None:
         """Check shapes once."""
-        heel, toe, time = read_only(self.heel), read_only(self.toe), read_only(self.time)
+        freeze(self, "heel", "toe", "time")
+        heel, toe, time = self.heel, self.toe, self.time
         if heel.shape != (len(time), 3) or toe.shape != heel.shape:
             raise ShapeError(
                 "heel and toe of a foot must have shape (frame, 3)",
                 f"their shapes are {heel.shape} and {toe.shape}, with {len(time)} times",
                 "Use the markers of one recording.",
             )
-        for name, value in (("heel", heel), ("toe", toe), ("time", time)):
-            object.__setattr__(self, name, value)
 
     def swings(self) -> list[Span]:
         """Spans [s] in which heel and toes go forwards, where the foot is fastest, too fast to bear load."""
-        rate_hz = (len(self.time) - 1) / float(self.time[-1] - self.time[0])
+        rate_hz = mean_rate(self.time)
         heel, toe = (derivative(part, rate_hz) for part in (self.heel, self.toe))
         speed = np.nan_to_num(np.linalg.norm(heel + toe, axis=1))
         fastest = int(np.argmax(speed))
@@ -64,7 +63,7 @@ class FootPath:
 
     def still(self, part: Values) -> NDArray[np.bool_]:
         """Frames (frame,) in which a part (frame, 3) [m], `heel` or `toe`, hardly moves."""
-        rate_hz = (len(self.time) - 1) / float(self.time[-1] - self.time[0])
+        rate_hz = mean_rate(self.time)
         with np.errstate(invalid="ignore"):
             return np.linalg.norm(derivative(part, rate_hz), axis=1) < STILL_M_PER_S
 
@@ -240,8 +239,7 @@ def _edge(foot: FootPath, platform: Platform) -> str:
         return ""
     for name, part in (("the heel is", foot.heel), ("the toes are", foot.toe)):
         frames = platform.span.holds(foot.time) & foot.still(part)
-        outside = platform.surface.outside(part)[frames]
-        outside = outside[np.isfinite(outside)]
+        outside = finite_values(platform.surface.outside(part)[frames])
         if len(outside) and np.median(outside) > BEYOND_EDGE_M:
             return f"{name} {100 * np.median(outside):.0f} cm beyond its edge"
     pressure = platform.pressure_centre()[platform.load_n > CLEAR_LOAD * platform.load_n.max()]

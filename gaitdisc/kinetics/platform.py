@@ -11,12 +11,12 @@ from numpy.typing import NDArray
 
 from gaitdisc.channel import Channel
 from gaitdisc.errors import ChannelError, ReadError, ShapeError, UnitError
+from gaitdisc.ingest.c3d_points import AXES
+from gaitdisc.ingest.force_plates import CLEAR_LOAD_N, LEAST_LOAD_N
 from gaitdisc.recording import Recording, Surface, Trial
-from gaitdisc.recording.arrays import Span, Values, read_only
+from gaitdisc.recording.arrays import Span, Values, freeze, mean_rate
 from gaitdisc.signals.butterworth import low_pass
 from gaitdisc.signals.contacts import loaded
-
-LEAST_LOAD_N = 20.0  # below it a foot counts as off a platform, and a centre of pressure is noise divided by noise
 
 
 @dataclass(frozen=True, eq=False)
@@ -32,15 +32,14 @@ class Wrench:
 
     def __post_init__(self) -> None:
         """Check shapes once."""
-        force, moment = read_only(self.force), read_only(self.moment)
+        freeze(self, "force", "moment")
+        force, moment = self.force, self.moment
         if force.ndim != 2 or force.shape[1] != 3 or moment.shape != force.shape:
             raise ShapeError(
                 "a wrench must have a force and a moment of shape (sample, 3)",
                 f"their shapes are {force.shape} and {moment.shape}",
                 "Put samples first, the laboratory's axes second.",
             )
-        object.__setattr__(self, "force", force)
-        object.__setattr__(self, "moment", moment)
 
     @classmethod
     def at(cls, point: Values, force: Values, moment: Values | float = 0.0) -> Wrench:
@@ -75,8 +74,6 @@ class Wrench:
         return centre
 
 
-AXES = "xyz"
-CLEAR_LOAD_N = 100.0  # what a drifting plate does not show, and a foot does
 _PLATE = re.compile(r"(plate_\d+)_f[xyz]")
 _SIDED = re.compile(r"ground_force_(\w+?)_v[xyz]")
 
@@ -96,7 +93,7 @@ class Platform:
     @property
     def rate_hz(self) -> float:
         """Samples a second."""
-        return (len(self.time) - 1) / float(self.time[-1] - self.time[0])
+        return mean_rate(self.time)
 
     @property
     def span(self) -> Span:

@@ -6,7 +6,7 @@ from collections.abc import Sequence
 from dataclasses import replace
 from pathlib import Path
 
-from gaitdisc.ingest.c3d_kinetics import body_measures_in
+from gaitdisc.ingest.body_measures import read_body_measures
 from gaitdisc.ingest.reading import read_trial
 from gaitdisc.kinematics.motion import move_body
 from gaitdisc.kinetics.body_inertia import Person
@@ -124,4 +124,4 @@ def _standing(static: Trial | Path | str) -> tuple[Trial, BodyMeasures]:
     """Return the static trial and the measures in its file."""
     if isinstance(static, Trial):
         return static, BodyMeasures()
-    return read_trial(static), body_measures_in(Path(static))
+    return read_trial(static), read_body_measures(Path(static))

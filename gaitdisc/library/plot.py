@@ -14,6 +14,7 @@ from gaitdisc.channel import find_side, hint_nearest
 from gaitdisc.errors import ChannelError, ShapeError
 from gaitdisc.library.walks import make_recording
 from gaitdisc.recording import Recording, Strides
+from gaitdisc.recording.arrays import finite_rows
 from gaitdisc.report.panels import axes_or_new
 
 if TYPE_CHECKING:
@@ -104,8 +105,7 @@ def cycles(recording: Recording | pd.DataFrame, strides: Strides, channel: str, 
 
     _refuse_other(strides, "Strides", "gaitdisc.cycles")
     one = make_recording(recording).selected([channel])
-    every = strides.normalised(one)[:, :, 0]
-    every = every[np.isfinite(every).all(axis=1)]
+    every = finite_rows(strides.normalised(one)[:, :, 0])
     axes = axes_or_new(ax)
     if len(every):
         sd = every.std(axis=0, ddof=1) if len(every) > 1 else np.zeros(every.shape[1])

@@ -19,6 +19,7 @@ from gaitdisc.errors import ShapeError, SimulationError, UnitError
 from gaitdisc.ingest.table import has_times
 from gaitdisc.library.walks import make_recording
 from gaitdisc.recording import Recording, Source
+from gaitdisc.recording.arrays import mean_rate
 from gaitdisc.recording.strides import interpolate
 from gaitdisc.simulation.compiled_simulation import Drive, Rows
 from gaitdisc.simulation.evaluating import Points, evaluate_many
@@ -125,7 +126,7 @@ def _run(
 ) -> tuple[NDArray[np.float64], dict[str, NDArray[np.float64]]]:
     """States (time, state) and observed channels (time,)."""
     machine = compile_simulation(simulation)
-    drive = Drive.of([driven], _rate(time), float(time[0]))
+    drive = Drive.of([driven], mean_rate(time), float(time[0]))
     rows = Rows(np.zeros(1, np.int64), np.zeros(1, np.int64), start[None])
     states, ok = machine.run(drive, rows, len(time) - 1)
     if not ok.all():
@@ -141,7 +142,7 @@ def _run_by(
     start: NDArray[np.float64],
 ) -> tuple[NDArray[np.float64], dict[str, NDArray[np.float64]]]:
     """States (time, state) by an engine's own integrator, and observed channels (time,)."""
-    count, rate = len(engine.coordinates), _rate(time)
+    count, rate = len(engine.coordinates), mean_rate(time)
     q, v = start[None, :count], start[None, count:]
     driven = replace_inputs(simulation, time, driven, rate)
     held = engine.along(np.repeat(q, 2, axis=0), np.zeros((2, count)), driven[:2], rate).at(np.zeros(1, np.intp))
@@ -156,10 +157,6 @@ def _run_by(
     channels, expressions = zip(*simulation.observations, strict=True)
     seen = evaluate_many(replace(simulation, model=""), expressions, Points(time, states, driven, rate=rate))
     return states, dict(zip(channels, seen, strict=True))
-
-
-def _rate(time: NDArray[np.float64]) -> float:
-    return (len(time) - 1) / float(time[-1] - time[0])
 
 
 def _driven(simulation: Simulation, time: NDArray[np.float64], inputs: Any) -> NDArray[np.float64]:

@@ -5,20 +5,18 @@ from __future__ import annotations
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
 from gaitdisc.compiled import compiled
 from gaitdisc.models.shred import Shred
 from gaitdisc.models.trained_network import TrainedNetwork
-
-Array = NDArray[np.float64]
+from gaitdisc.recording.arrays import Values
 
 
 class Linear(NamedTuple):
     """A linear layer: what is read times `weights` (input, output), and `offsets` (output,)."""
 
-    weights: Array
-    offsets: Array
+    weights: Values
+    offsets: Values
 
 
 class CarriedWindows:
@@ -58,7 +56,7 @@ class CarriedWindows:
         self._silent = np.zeros(spacing, int)  # readings of a phase since one that was known
         self._phase = 0
 
-    def update(self, reading: NDArray[np.float64]) -> NDArray[np.float64]:
+    def update(self, reading: Values) -> Values:
         """Outputs (output,) of the window that ends with a reading (sensor,), one sample on; NaN until it is whole."""
         read = (reading - self._mean) / self._sd
         if self._masked:
@@ -80,7 +78,7 @@ class CarriedWindows:
 
 
 @compiled(error_model="numpy")
-def gru_step(read: Array, states: Array, of_input: Linear, of_state: Linear) -> Array:
+def gru_step(read: Values, states: Values, of_input: Linear, of_state: Linear) -> Values:
     """States of a layer of gated recurrent units after one more reading, (window, node).
 
     read (window, input): what each window reads now
@@ -107,7 +105,7 @@ def gru_step(read: Array, states: Array, of_input: Linear, of_state: Linear) -> 
 
 
 @compiled(error_model="numpy")
-def lstm_step(read: Array, states: Array, cells: Array, of_input: Linear, of_state: Linear) -> tuple[Array, Array]:
+def lstm_step(read: Values, states: Values, cells: Values, of_input: Linear, of_state: Linear) -> tuple[Values, Values]:
     """States and cells of a layer of long short-term memory after one more reading, each (window, node).
 
     read (window, input): what each window reads now
@@ -136,7 +134,7 @@ def lstm_step(read: Array, states: Array, cells: Array, of_input: Linear, of_sta
 
 
 @compiled(error_model="numpy")
-def decoded(features: Array, first: Linear, second: Linear, readout: Linear) -> Array:
+def decoded(features: Values, first: Linear, second: Linear, readout: Linear) -> Values:
     """Scaled outputs of a shallow decoder for one sample, (output,).
 
     features (node,): what the first of the two rectified layers reads

@@ -8,14 +8,13 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, cast
 
-import numpy as np
 import torch
-from numpy.typing import NDArray
 from torch import Tensor, nn
 
 from gaitdisc.errors import TrainingError
 from gaitdisc.models.feedforward import FeedForward
 from gaitdisc.models.training_settings import ScaledSamples, Schedule, TrainingSettings
+from gaitdisc.recording.arrays import Values
 
 if TYPE_CHECKING:
     from gaitdisc.models.fused_steps import FusedSteps
@@ -49,7 +48,7 @@ class TorchSteps:
         groups = [{"params": matrices, "weight_decay": schedule.decay}, {"params": others, "weight_decay": 0.0}]
         self._adam = torch.optim.AdamW(groups, fused=True)
 
-    def epoch(self, order: Tensor, rates: NDArray[np.float64]) -> None:
+    def epoch(self, order: Tensor, rates: Values) -> None:
         """Step through all samples once, in an order (sample,), at the learning rate of each step (step,)."""
         self._network.train()
         x, y = (values[order.to(values.device)] for values in self._part)

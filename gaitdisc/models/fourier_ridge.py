@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 
 from gaitdisc.errors import TrainingError
 from gaitdisc.recording import Samples, Scale, fit_scale
+from gaitdisc.recording.arrays import Values
 
 PENALTIES = tuple(10.0**power for power in range(-8, 2))
 WIDTHS = (0.5, 1.0, 2.0, 4.0)  # of the kernel, in typical distances between two samples
@@ -26,13 +27,13 @@ class FourierRidge:
     x_scale: Scale
     y_scale: Scale
     # (input, feature), of the cosines, for scaled inputs; no feature makes it plain ridge regression
-    frequencies: NDArray[np.float64]
-    phases: NDArray[np.float64]  # (feature,) [rad], of the cosines
-    weights: NDArray[np.float64]  # (input + feature, output), for scaled inputs, cosines, and scaled outputs
-    offset: NDArray[np.float64]  # (output,), of the scaled outputs
+    frequencies: Values
+    phases: Values  # (feature,) [rad], of the cosines
+    weights: Values  # (input + feature, output), for scaled inputs, cosines, and scaled outputs
+    offset: Values  # (output,), of the scaled outputs
     penalty: float  # per sample, as chosen on the check part
 
-    def __call__(self, x: NDArray[np.float64]) -> NDArray[np.float64]:
+    def __call__(self, x: Values) -> Values:
         """Outputs (sample, output) for inputs (sample, input); NaN where an input is NaN."""
         scaled = self.x_scale.scaled(np.asarray(x, float))
         parts = [scaled[row : row + ROWS_AT_ONCE] for row in range(0, max(len(scaled), 1), ROWS_AT_ONCE)]
@@ -85,9 +86,7 @@ def fit_fourier_ridge(training: Samples, check: Samples, features: int = 0, seed
 Part = tuple[NDArray[np.float32], NDArray[np.float32]]
 
 
-def _solved(
-    part: Part, checked: Part, frequencies: NDArray[np.float64], phases: NDArray[np.float64]
-) -> tuple[float, float, NDArray[np.float64], NDArray[np.float64]]:
+def _solved(part: Part, checked: Part, frequencies: Values, phases: Values) -> tuple[float, float, Values, Values]:
     """Penalty, mean squared error on the check part, weights and offset."""
     from scipy.linalg import cho_factor, cho_solve
 
@@ -108,9 +107,7 @@ def _solved(
     return best
 
 
-def _squares(
-    part: Part, frequencies: NDArray[np.float64], phases: NDArray[np.float64]
-) -> tuple[NDArray[np.float64], NDArray[np.float64], NDArray[np.float64]]:
+def _squares(part: Part, frequencies: Values, phases: Values) -> tuple[Values, Values, Values]:
     """Mean products of the columns about their means, of columns and outputs, and the means of the columns."""
     count = part[0].shape[1] + len(phases)
     squares, products, total = np.zeros((count, count)), np.zeros((count, part[1].shape[1])), np.zeros(count)
@@ -125,7 +122,7 @@ def _squares(
     return squares / n - np.outer(mean, mean), products / n, mean
 
 
-def _columns(x: NDArray, frequencies: NDArray[np.float64], phases: NDArray[np.float64]) -> NDArray:
+def _columns(x: NDArray, frequencies: Values, phases: Values) -> NDArray:
     """Scaled inputs and cosines, in the precision of the inputs."""
     if not len(phases):
         return x

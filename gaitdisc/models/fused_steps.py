@@ -13,6 +13,7 @@ from torch import Tensor, nn
 from gaitdisc.compiled import compiled
 from gaitdisc.models.feedforward import FeedForward
 from gaitdisc.models.training_settings import ScaledSamples, Schedule
+from gaitdisc.recording.arrays import Values
 
 F32 = np.float32
 LOG2_E = F32(1.4426950408889634)
@@ -278,7 +279,7 @@ class FusedSteps:
         self._moments = np.zeros((2, self._weights.size), np.float32)
         self._done = 0
 
-    def epoch(self, order: Tensor, rates: NDArray[np.float64]) -> None:
+    def epoch(self, order: Tensor, rates: Values) -> None:
         """Step through all samples once, as `TorchSteps.epoch`."""
         number = self._done + 1 + np.arange(len(rates))
         self._done += len(rates)

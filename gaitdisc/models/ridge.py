@@ -5,10 +5,10 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
 from gaitdisc.errors import TrainingError
 from gaitdisc.recording import Samples, Scale, fit_scale
+from gaitdisc.recording.arrays import Values
 
 PENALTIES = tuple(10.0**power for power in range(-7, 2))
 PHASE = "phi"
@@ -26,13 +26,13 @@ class Ridge:
     # sines and cosines of 1 to so many cycles a stride, beside the inputs; 0 where `phi` is not among them
     harmonics: int
     scale: Scale  # of inputs and harmonics in the training part
-    weights: NDArray[np.float64]  # (column, output) [each output's unit], for scaled columns
-    offset: NDArray[np.float64]  # (output,) [each output's unit], mean of each output in the training part
+    weights: Values  # (column, output) [each output's unit], for scaled columns
+    offset: Values  # (output,) [each output's unit], mean of each output in the training part
     penalty: float  # per sample, as chosen on the inner block
     n_training: int  # samples of the whole training part
     n_inner: int  # samples of its inner block
 
-    def __call__(self, x: NDArray[np.float64]) -> NDArray[np.float64]:
+    def __call__(self, x: Values) -> Values:
         """Outputs (sample, output) for inputs (sample, input)."""
         return self.scale.scaled(_columns(x, self.inputs, self.harmonics)) @ self.weights + self.offset
 
@@ -72,7 +72,7 @@ def fit_ridge(samples: Samples, harmonics: int = 8, inner_share: float = 0.15) -
     return Ridge(samples.inputs, samples.outputs, harmonics, scale, weights, offset, penalty, len(samples), len(inner))
 
 
-def _solved(samples: Samples, harmonics: int, penalty: float) -> tuple[Scale, NDArray[np.float64], NDArray[np.float64]]:
+def _solved(samples: Samples, harmonics: int, penalty: float) -> tuple[Scale, Values, Values]:
     columns = _columns(samples.x, samples.inputs, harmonics)
     scale = fit_scale(columns)
     scaled, offset = scale.scaled(columns), samples.y.mean(axis=0)
@@ -80,7 +80,7 @@ def _solved(samples: Samples, harmonics: int, penalty: float) -> tuple[Scale, ND
     return scale, np.linalg.solve(normal, scaled.T @ (samples.y - offset) / len(scaled)), offset
 
 
-def _columns(x: NDArray[np.float64], inputs: tuple[str, ...], harmonics: int) -> NDArray[np.float64]:
+def _columns(x: Values, inputs: tuple[str, ...], harmonics: int) -> Values:
     if not harmonics:
         return x
     turns = np.deg2rad(3.6 * x[:, inputs.index(PHASE), None]) * np.arange(1, harmonics + 1)

@@ -15,6 +15,7 @@ from threadpoolctl import threadpool_limits
 from torch import nn
 
 from gaitdisc.recording import Scale
+from gaitdisc.recording.arrays import Values
 
 
 @dataclass(frozen=True, eq=False)
@@ -36,19 +37,19 @@ class TrainedNetwork:
         """Copy of every weight, by the name it has in the torch module."""
         return {name: tensor.detach().cpu().numpy().copy() for name, tensor in self.network.state_dict().items()}
 
-    def __call__(self, x: NDArray[np.float64]) -> NDArray[np.float64]:
+    def __call__(self, x: Values) -> Values:
         """Outputs (sample, output) for inputs (sample, input); NaN where an input is NaN."""
         return self.y_scale.unscaled(self._run(self.network, self.x_scale.scaled(np.asarray(x, float))))
 
-    def latent(self, x: NDArray[np.float64]) -> NDArray[np.float64]:
+    def latent(self, x: Values) -> Values:
         """Latent state (sample, node) of a recurrent network for inputs (sample, input)."""
         return self._run(getattr(self.network, "latent"), self.x_scale.scaled(np.asarray(x, float)))  # noqa: B009
 
-    def decoded(self, latent: NDArray[np.float64]) -> NDArray[np.float64]:
+    def decoded(self, latent: Values) -> Values:
         """Outputs (sample, output) that a recurrent network decodes from latent states (sample, node)."""
         return self.y_scale.unscaled(self._run(getattr(self.network, "decoder"), latent))  # noqa: B009
 
-    def _run(self, part: Callable[[torch.Tensor], torch.Tensor], values: NDArray[np.float64]) -> NDArray[np.float64]:
+    def _run(self, part: Callable[[torch.Tensor], torch.Tensor], values: Values) -> Values:
         self.network.eval()
         with torch.no_grad(), torch_threads(1):
             return part(torch.from_numpy(values.astype(np.float32))).double().numpy()

@@ -11,18 +11,15 @@ from typing import Any, cast
 
 import numpy as np
 import torch
-from numpy.typing import NDArray
 from torch import Tensor, nn
 
 from gaitdisc.errors import TrainingError
 from gaitdisc.models.descent import Descent, descend
+from gaitdisc.models.ridge import LEAST_BEFORE_INNER, LEAST_SAMPLES, SEAM_S
 from gaitdisc.models.trained_network import TrainedNetwork, pin_threads
 from gaitdisc.models.training_settings import ScaledSamples, TrainingSettings, make_schedule
 from gaitdisc.recording import Samples, Scale, fit_scale
-
-LEAST_SAMPLES = 50
-LEAST_BEFORE_INNER = 20
-SEAM_S = 0.3  # as Trajectory.split: zero-lag filters look ahead over the seam
+from gaitdisc.recording.arrays import Values
 
 
 @dataclass(frozen=True, eq=False)
@@ -209,23 +206,23 @@ def choose_penalty(network: nn.Module, part: ScaledSamples, check: ScaledSamples
 class _Squares:
     """Means and mean products of features and outputs: all that ridge regression needs, whatever the penalty."""
 
-    h_mean: NDArray[np.float64]
-    y_mean: NDArray[np.float64]
-    h_h: NDArray[np.float64]
-    h_y: NDArray[np.float64]
+    h_mean: Values
+    y_mean: Values
+    h_h: Values
+    h_y: Values
 
-    def solved(self, penalty: float) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    def solved(self, penalty: float) -> tuple[Values, Values]:
         """Weights (output, node) and offset (output,)."""
         weights = np.asarray(np.linalg.solve(self.h_h + penalty * np.eye(len(self.h_h)), self.h_y).T, float)
         return weights, self.y_mean - weights @ self.h_mean
 
 
-def _squares(h: NDArray[np.float64], y: NDArray[np.float64]) -> _Squares:
+def _squares(h: Values, y: Values) -> _Squares:
     h_mean, y_mean = np.asarray(h.mean(axis=0), float), np.asarray(y.mean(axis=0), float)
     h, y = h - h_mean, y - y_mean
     return _Squares(h_mean, y_mean, h.T @ h / len(h), h.T @ y / len(h))
 
 
-def _features(network: nn.Module, x: Tensor) -> NDArray[np.float64]:
+def _features(network: nn.Module, x: Tensor) -> Values:
     with torch.no_grad():
         return cast(Any, network).features(x).cpu().double().numpy()

@@ -7,9 +7,9 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
 from gaitdisc.errors import TrainingError
+from gaitdisc.recording.arrays import Values
 
 if TYPE_CHECKING:
     from torch import Tensor
@@ -77,7 +77,7 @@ class Schedule:
     """Every step of a descent, whatever computes it."""
 
     # (epoch, step of the epoch), learning rate, from the first one to 0 along a cosine, or the same in all
-    rates: NDArray[np.float64]
+    rates: Values
     decay: float  # decoupled decay of weight matrices, times the learning rate each step
     batch: int
 
@@ -121,6 +121,6 @@ def count_epochs(samples: int, settings: TrainingSettings) -> int:
     return max(settings.epochs, math.ceil(LEAST_STEPS / math.ceil(samples / settings.batch)))
 
 
-def _cosine(first: float, epochs: int, steps: int) -> NDArray[np.float64]:
+def _cosine(first: float, epochs: int, steps: int) -> Values:
     angle = np.pi * np.arange(epochs * steps) / (epochs * steps)
     return (first * (1 + np.cos(angle)) / 2).reshape(epochs, steps)

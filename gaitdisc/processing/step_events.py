@@ -22,7 +22,7 @@ from gaitdisc.processing.contact_choice import (
     walking_markers,
 )
 from gaitdisc.recording import Finding, Recording, Trial
-from gaitdisc.recording.arrays import Values
+from gaitdisc.recording.arrays import Values, finite_rows
 from gaitdisc.signals.contact_movement import angle_foot_off, marker_foot_off, stance_windows
 from gaitdisc.signals.direction import LEAST_SPEED, PATH_S, Direction, pelvis_position
 
@@ -30,6 +30,7 @@ TOES = {
     "r": ("RTOE", "R.Toe", "R.Toe.Tip", "R_Toe", "RMT2", "RMTH2", "RFM2", "RD2M", "RSMH"),
     "l": ("LTOE", "L.Toe", "L.Toe.Tip", "L_Toe", "LMT2", "LMTH2", "LFM2", "LD2M", "LSMH"),
 }
+Timed = Mapping[str, tuple[tuple[float, str], ...]]  # side -> time [s] and what placed it
 GROUND = ("events", "force")  # what saw the ground, the person who marked the file first
 ORDER = (*GROUND, *SEEN_LATE)
 ONE_EVENT_S = MOST_OFFSET_S  # nearer than this two detectors speak of one event of a foot
@@ -50,8 +51,8 @@ class StepEvents:
     contacts: Mapping[str, Values]  # side -> times, as these detectors place them [s]
     foot_offs: Mapping[str, Values]  # side -> times, alike [s]
     # side -> time [s] and `events` or `force`; no contacts where the detector sees the ground itself
-    ground_contacts: Mapping[str, tuple[tuple[float, str], ...]]
-    ground_offs: Mapping[str, tuple[tuple[float, str], ...]]
+    ground_contacts: Timed
+    ground_offs: Timed
     findings: tuple[Finding, ...] = ()  # events that contradict the plates, heels that contradict the events
 
     def later_s(self, kind: str) -> Values:
@@ -80,7 +81,7 @@ class StepEvents:
             found[side] = tuple(sorted([*seen, *((float(at), by) for at in alone)]))
         return found
 
-    def _of(self, kind: str) -> tuple[Mapping[str, Values], Mapping[str, tuple[tuple[float, str], ...]]]:
+    def _of(self, kind: str) -> tuple[Mapping[str, Values], Timed]:
         return (self.contacts, self.ground_contacts) if kind == "contacts" else (self.foot_offs, self.ground_offs)
 
 
@@ -169,7 +170,7 @@ def _stepping(trial: Trial) -> tuple[Values, NDArray[np.bool_]] | None:
         heels, pelvis = {}, []
     if markers is not None and heels:
         centre, half = pelvis_position(markers, pelvis), round(PATH_S / 2 * markers.rate_hz)
-        known = centre[np.isfinite(centre).all(axis=1)]
+        known = finite_rows(centre)
         if len(centre) > 2 * half and len(known) and np.linalg.norm(np.ptp(known, axis=0)) >= BELT_M:
             metres = np.linalg.norm(centre[2 * half :] - centre[: -2 * half], axis=1)
             return markers.time, np.pad(metres, half, mode="edge") >= LEAST_SPEED * PATH_S
@@ -193,8 +194,7 @@ def over_ground(trial: Trial) -> bool:
     kinematics = trial.streams.get("kinematics")
     path = [] if kinematics is None else [n for n in ("pelvis_tx", "pelvis_tz") if n in kinematics.names]
     if kinematics is not None and path:
-        places = kinematics.selected(path).values
-        places = places[np.isfinite(places).all(axis=1)]
+        places = finite_rows(kinematics.selected(path).values)
         away = float(np.linalg.norm(np.ptp(places, axis=0))) if len(places) else 0.0
         return away / kinematics.duration_s >= LEAST_PATH_M_PER_S
     return max((recording.duration_s for recording in trial.streams.values()), default=0.0) <= NO_WALKWAY_S

@@ -15,9 +15,10 @@ from gaitdisc.kinematics.markers import PATH_S, STRAIGHT_DEG
 from gaitdisc.kinematics.pose import clinical_angles, make_rotation
 from gaitdisc.kinetics.plate_steps import PlateStep
 from gaitdisc.processing.process import is_raw, make_envelope
-from gaitdisc.processing.step_events import trial_markers
+from gaitdisc.processing.step_events import Timed, trial_markers
+from gaitdisc.processing.walk_pair import FORCE_HZ
 from gaitdisc.recording import Cycle, Finding, Recording, Trial
-from gaitdisc.recording.arrays import Span, Values, runs
+from gaitdisc.recording.arrays import Span, Values, finite_values, runs
 from gaitdisc.recording.strides import NAN, interpolate
 from gaitdisc.recording.wrapping import unwrap
 from gaitdisc.signals.butterworth import low_pass
@@ -32,8 +33,6 @@ LONGEST_STANCE = 0.8  # of a stride: a plate that is loaded for longer carried t
 SHORTEST_STRIDE_M = 0.1  # below it the line of a stride has no direction
 SAME_START_S = 0.1  # by which the start that a study gives of a cycle may differ
 EDGE_S = 0.06  # by which markers and a plate may differ about one event
-Timed = Mapping[str, tuple[tuple[float, str], ...]]
-FORCE_HZ = 20.0
 LEGS = ("hip_", "knee_", "ankle_", "subtalar_")
 LOADED_PERCENT = 10.0  # of body weight: the foot is on the plate
 # Plug-in Gait: tilt positive forwards, obliquity positive with the named side up, rotation with it forwards.
@@ -106,7 +105,7 @@ def plate_loadings(trial: Trial, rise_n: float = RISE_N) -> PlateLoadings:
     belts = frozenset(channel.side for channel in forces.channels if channel.side)
     spans = []
     for force in () if belts else forces.values.T:
-        known = force[np.isfinite(force)]
+        known = finite_values(force)
         upward = -force if len(known) and -known.min() > known.max() else force
         found = loaded(upward, forces.rate_hz, rise_n)
         spans += [Span(float(forces.time[a]), float(forces.time[b - 1])) for a, b in found if a > 0 and b < len(force)]

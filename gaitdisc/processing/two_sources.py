@@ -21,7 +21,7 @@ from gaitdisc.kinematics.marker_set import NEEDED, read_marker_sets
 from gaitdisc.kinematics.markers import marker_labels, marker_places
 from gaitdisc.kinematics.pose import hip_of_spines
 from gaitdisc.recording import Finding, Recording, Trial
-from gaitdisc.recording.arrays import Values
+from gaitdisc.recording.arrays import Values, finite_values
 from gaitdisc.recording.strides import interpolate
 
 KIND = "contradicted"
@@ -232,7 +232,7 @@ def _find_turned_moments(moments: Recording, source: Recording) -> Contradiction
 
 def _range(values: Values) -> float:
     """From the 5th to the 95th percentile, without frames in which a fit lost its markers."""
-    known = values[np.isfinite(values)]
+    known = finite_values(values)
     return float(np.ptp(np.quantile(known, [0.05, 0.95]))) if len(known) >= FEWEST else 0.0
 
 

@@ -13,6 +13,7 @@ from gaitdisc.reconstruction.state_errors import stride_numbers
 from gaitdisc.reconstruction.window_model import STATIC, OfOne, ScaledModel, WindowModel
 from gaitdisc.reconstruction.windows import SEAM_S, present, stacked
 from gaitdisc.recording import Samples
+from gaitdisc.recording.arrays import Values
 
 PENALTIES = tuple(10.0**power for power in np.arange(-3.0, 2.5, 0.5))
 USUAL_PENALTY = 0.1  # where no other person is there to rehearse on
@@ -26,13 +27,13 @@ class Corrected(OfOne):
     model: ScaledModel
     # (column,), of readings and reconstructed states in the calibration strides, each scaled as in the model's
     # training part
-    mean: NDArray[np.float64]
+    mean: Values
     # (column, state) [each state's unit], zero is the model of the population with the mean error of these strides
     # taken off
-    weights: NDArray[np.float64]
-    offset: NDArray[np.float64]  # (state,) [each state's unit], mean error in the calibration strides
+    weights: Values
+    offset: Values  # (state,) [each state's unit], mean error in the calibration strides
 
-    def __call__(self, x: NDArray[np.float64]) -> NDArray[np.float64]:
+    def __call__(self, x: Values) -> Values:
         """States (window, state) of the person, each in its unit."""
         states = self.model(x)
         return states + (_columns(self.model, x, states) - self.mean) @ self.weights + self.offset
@@ -80,7 +81,7 @@ class Rehearsal:
     """A calibration that was tried on another person."""
 
     penalty: float  # one of `PENALTIES`, with which that person was reconstructed best
-    missed: NDArray[np.float64]  # (window, state) [each state's unit], errors on that person's further strides
+    missed: Values  # (window, state) [each state's unit], errors on that person's further strides
 
 
 def rehearse(done: WindowModel, trials: Sequence[Samples], count: int) -> Rehearsal:
@@ -105,6 +106,6 @@ def _calibrated(done: WindowModel, strides: Samples, penalties: Sequence[float])
     return [replace(done, model=model, n_fitted=len(strides)) for model in found]
 
 
-def _columns(model: ScaledModel, x: NDArray[np.float64], states: NDArray[np.float64]) -> NDArray[np.float64]:
+def _columns(model: ScaledModel, x: Values, states: Values) -> Values:
     readings = np.nan_to_num(model.x_scale.scaled(x))  # a missing one counts as the mean
     return np.hstack([readings, STATES_WEIGHT * model.y_scale.scaled(states)])

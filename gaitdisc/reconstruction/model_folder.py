@@ -10,7 +10,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
 from gaitdisc.channel import Channel
 from gaitdisc.errors import SamplingError, SchemaError, ShapeError, UnitError
@@ -32,7 +32,7 @@ from gaitdisc.reconstruction.window_model import (
 )
 from gaitdisc.reconstruction.windows import Lags, cut_windows, fill_readings, refuse_unknown_way
 from gaitdisc.recording import Recording, Scale
-from gaitdisc.recording.arrays import real_array
+from gaitdisc.recording.arrays import Values, real_array
 from gaitdisc.saved.unit_folder import DamagedError, check_files, file_sha256, read_sealed, seal_text
 from gaitdisc.whole_file import find_written, whole_file, write_together, write_whole
 
@@ -53,7 +53,7 @@ class SensingModel:
     reconstructor: WindowModel
     channels: tuple[Channel, ...]  # of the sensors, then of the states
     # (state,) [each state's unit], half width of the 90 % interval, from the windows that the model was chosen by
-    half_widths: NDArray[np.float64]
+    half_widths: Values
 
     def __call__(self, recording: Recording, missing: str = "none") -> Recording:
         """States of a new recording that has the sensors, in their units and at the model's rate.
@@ -209,7 +209,7 @@ class Stream:
         self._missing = missing
         self._stands = reconstructor.sensor_means
 
-    def update(self, reading: ArrayLike) -> NDArray[np.float64]:
+    def update(self, reading: ArrayLike) -> Values:
         """States at the time of a new reading, (state,) [each state's unit].
 
         NaN until the history is full, and while it holds a missing reading that the model needs: unless the stream was
@@ -242,7 +242,7 @@ class _LastReadings:
         self._readings = np.full((lags.reach + 1, len(what.sensors)), np.nan)
         self._rows = np.arange(lags.count) * lags.spacing
 
-    def update(self, reading: NDArray[np.float64]) -> NDArray[np.float64]:
+    def update(self, reading: Values) -> Values:
         self._readings[:-1] = self._readings[1:]
         self._readings[-1] = reading
         return self._model(self._readings[self._rows].reshape(1, -1))[0]

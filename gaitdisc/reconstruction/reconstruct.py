@@ -27,6 +27,7 @@ from gaitdisc.reconstruction.state_errors import (
 from gaitdisc.reconstruction.window_model import KINDS, WITHOUT_NETWORK, Sensing, WindowModel, fit_reconstructor
 from gaitdisc.reconstruction.windows import PERSON_OUT, Parts, stacked
 from gaitdisc.recording import Samples
+from gaitdisc.recording.arrays import Values, finite_rows
 from gaitdisc.statistics.r2 import r2
 
 PERSISTENCE, PHASE_AVERAGE = FLOORS
@@ -37,7 +38,7 @@ BASELINES = {
 POINTS, LEAST_FILLED = 100, 0.5
 
 
-def persistence(trials: Sequence[Samples], ahead_s: float) -> NDArray[np.float64]:
+def persistence(trials: Sequence[Samples], ahead_s: float) -> Values:
     """States as they were `ahead_s` before, (window, state); NaN where that time has no window.
 
     trials: windows of each trial, in order of time; time and y are those of the state that is forecast
@@ -60,10 +61,10 @@ def persistence(trials: Sequence[Samples], ahead_s: float) -> NDArray[np.float64
 class PhaseAverage:
     """The mean stride of a fitted part, as a forecast."""
 
-    curve: NDArray[np.float64]  # (phase, state) [each state's unit], mean in each percent of the stride
+    curve: Values  # (phase, state) [each state's unit], mean in each percent of the stride
     stride_s: float  # mean duration of a stride [s]
 
-    def forecast(self, trials: Sequence[Samples], ahead_s: float) -> NDArray[np.float64]:
+    def forecast(self, trials: Sequence[Samples], ahead_s: float) -> Values:
         """States (window, state) `ahead_s` [s] after the last reading, at the expected phase; NaN before a contact.
 
         Phase is the time since the last known contact by the mean duration of a stride: percent stride is known later.
@@ -106,7 +107,7 @@ def phase_average(trials: Sequence[Samples]) -> PhaseAverage:
     return PhaseAverage(curve, float(np.median(durations)))
 
 
-def contact_times(trial: Samples) -> NDArray[np.float64]:
+def contact_times(trial: Samples) -> Values:
     """Contacts by percent stride, in order [s].
 
     >>> t = np.arange(0.0, 3.0, 0.1)
@@ -195,14 +196,14 @@ class _Prediction:
     """States that one model reconstructs in the test part, its errors on the check part, and its interval."""
 
     model: str
-    states: NDArray[np.float64]
-    missed: NDArray[np.float64]
-    half_widths: NDArray[np.float64]
+    states: Values
+    missed: Values
+    half_widths: Values
     n_fitted: int = 0
     seconds: float = 0.0
 
 
-Fitted = tuple[WindowModel, NDArray[np.float64]]  # and the half widths of its interval
+Fitted = tuple[WindowModel, Values]  # and the half widths of its interval
 
 
 def _fitted(parts: Parts, what: Sensing, fits: Fits) -> tuple[list[Fitted], list[_Prediction], NDArray[np.bool_]]:
@@ -232,8 +233,7 @@ def _baselines(parts: Parts, what: Sensing) -> list[_Prediction]:
     known = [trial for trial in (*parts.training, *parts.check) if len(trial)]
     found = []
     for name, forecast in ((PERSISTENCE, persistence), (PHASE_AVERAGE, phase_average(parts.training).forecast)):
-        missed = forecast(known, ahead_s) - stacked(known).y
-        missed = missed[np.isfinite(missed).all(axis=1)]
+        missed = finite_rows(forecast(known, ahead_s) - stacked(known).y)
         found.append(_Prediction(name, forecast(parts.test, ahead_s), missed, half_widths(missed)))
     return found
 
@@ -256,7 +256,7 @@ FEWEST = 3  # people of whom one can be left out, one chosen by, one fitted
 STANDARD = "delay ridge"  # stands in for the others in how far the checked people are from typical
 
 
-def cross_errors(kind: str, what: Sensing, parts: Parts, seed: int = 0) -> NDArray[np.float64]:
+def cross_errors(kind: str, what: Sensing, parts: Parts, seed: int = 0) -> Values:
     """Errors (window, state) on everybody fitted or checked, in five groups, each by a model of the others."""
     people = group_people((*parts.check, *parts.training))
     names = list(people)
@@ -270,9 +270,7 @@ def cross_errors(kind: str, what: Sensing, parts: Parts, seed: int = 0) -> NDArr
     return np.concatenate(errors)
 
 
-def cross_widths(
-    kind: str, what: Sensing, parts: Parts, missed: NDArray[np.float64], seed: int = 0
-) -> NDArray[np.float64]:
+def cross_widths(kind: str, what: Sensing, parts: Parts, missed: Values, seed: int = 0) -> Values:
     """Half width of the 90 % interval for a person whom a model has not seen, (state,) [each state's unit].
 
     One checked person may be reconstructed better or worse than most (and is all there is where there are fewer than

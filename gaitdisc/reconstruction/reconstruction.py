@@ -8,10 +8,10 @@ from typing import NamedTuple
 
 import numpy as np
 import pandas as pd
-from numpy.typing import NDArray
 
 from gaitdisc.channel import Channel
 from gaitdisc.recording import Finding
+from gaitdisc.recording.arrays import Values
 from gaitdisc.saved.kind import CSV, Kind, Saved
 from gaitdisc.saved.provenance import Provenance, Refusal
 from gaitdisc.words import as_html
@@ -131,7 +131,7 @@ class OverPeople(NamedTuple):
     half_width: float
 
 
-def mean_over_people(values: NDArray[np.float64]) -> OverPeople:
+def mean_over_people(values: Values) -> OverPeople:
     """Mean, standard deviation, half of Student's 95 % interval of (participant,); the latter two from three people.
 
     >>> [round(each, 3) for each in mean_over_people(np.array([1.0, 2.0, 3.0]))]

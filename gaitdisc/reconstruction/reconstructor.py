@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, TypeAlias, Union
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
 from gaitdisc.channel import Channel
 from gaitdisc.errors import SamplingError, ShapeError, TrainingError
@@ -18,7 +18,7 @@ from gaitdisc.reconstruction.state_errors import half_widths
 from gaitdisc.reconstruction.window_model import Sensing, fit_reconstructor
 from gaitdisc.reconstruction.windows import SEAM_S, Lags, cut_windows, stacked
 from gaitdisc.recording import Recording, Samples
-from gaitdisc.recording.arrays import real_array
+from gaitdisc.recording.arrays import Values, mean_rate, real_array
 from gaitdisc.saved.kind import Kind, Saved
 from gaitdisc.statistics.r2 import r2
 
@@ -143,7 +143,7 @@ class Reconstructor(Saved, file="model.json"):
         self._model = SensingModel(done, _signals((*sensors, *targets)), half_widths(done(check) - check.y))
         return self
 
-    def predict(self, x: Readings) -> NDArray[np.float64]:
+    def predict(self, x: Readings) -> Values:
         """Estimate the states of one trial.
 
         Parameters
@@ -245,7 +245,7 @@ class Reconstructor(Saved, file="model.json"):
         return self._model
 
     @property
-    def half_widths(self) -> NDArray[np.float64]:
+    def half_widths(self) -> Values:
         """Half width of the 90 % interval of each state (state,), in its unit."""
         return self.model.half_widths
 
@@ -300,7 +300,7 @@ def _signals(names: tuple[str, ...]) -> tuple[Channel, ...]:
     return tuple(Channel(name, "signal", "1") for name in names)
 
 
-def _array(given: Any, words: str) -> NDArray[np.float64]:
+def _array(given: Any, words: str) -> Values:
     values = real_array(given.values if isinstance(given, Recording) else given)
     if hasattr(given, "to_frame"):  # one column of a DataFrame
         values = values[:, None]
@@ -318,11 +318,11 @@ def _timeless(given: Any, rate_hz: float) -> Any:
     if not hasattr(given, "columns") or not has_times(given):
         return given
     timed = frame_columns(given)
-    _check_rate(rate_hz, (len(timed.time) - 1) / float(timed.time[-1] - timed.time[0]), "table")
+    _check_rate(rate_hz, mean_rate(timed.time), "table")
     return given[[name for name in given.columns if str(name) in timed.labels]]
 
 
-def _times(given: Any) -> NDArray[np.float64] | None:
+def _times(given: Any) -> Values | None:
     """Times of a recording, of a table, or of an index of fractions [s]; an array has none."""
     if isinstance(given, Recording):
         return given.time

@@ -7,7 +7,6 @@ from dataclasses import dataclass, replace
 from functools import partial
 
 import numpy as np
-from numpy.typing import NDArray
 
 from gaitdisc.channel import Channel
 from gaitdisc.errors import ChannelError, GaitdiscError, SamplingError, SchemaError, UnitError
@@ -20,6 +19,7 @@ from gaitdisc.processing.process import ReadWalk, StudyWalks, is_raw
 from gaitdisc.processing.processed_walks import public_trial
 from gaitdisc.processing.walk_pair import FORCE_HZ
 from gaitdisc.recording import Finding, Recording, Strides, Trial
+from gaitdisc.recording.arrays import Values, finite_values
 from gaitdisc.recording.strides import interpolate
 from gaitdisc.saved.provenance import Refusal
 from gaitdisc.signals.butterworth import low_pass
@@ -53,7 +53,7 @@ class SensedWalk:
     """One filtered walk."""
 
     recording: Recording
-    phi: NDArray[np.float64]  # (time,) [% stride], of the study's side
+    phi: Values  # (time,) [% stride], of the study's side
 
 
 @dataclass(frozen=True, eq=False)
@@ -247,8 +247,8 @@ def _moving(walks: Sequence[SensedWalk], sensors: Sequence[str]) -> tuple[tuple[
     return tuple(kept), findings
 
 
-def _still(values: NDArray[np.float64], least: float) -> bool:
-    known = values[np.isfinite(values)]
+def _still(values: Values, least: float) -> bool:
+    known = finite_values(values)
     return not len(known) or float(np.std(known)) < least
 
 

@@ -9,13 +9,13 @@ from itertools import combinations
 
 import numpy as np
 import pandas as pd
-from numpy.typing import NDArray
 
 from gaitdisc.channel import Channel
 from gaitdisc.errors import ChannelError
 from gaitdisc.reconstruction.state_errors import angle_columns
 from gaitdisc.reconstruction.windows import Parts, thin_windows
 from gaitdisc.recording import Samples, fit_scale
+from gaitdisc.recording.arrays import Values
 
 PENALTIES = tuple(10.0**power for power in range(-7, 1))
 WHOLE_SEARCH = 3  # sensors; all sets of up to so many are tried, and beyond it one is added at a time
@@ -64,7 +64,7 @@ def search_sensors(people: Sequence[Parts], channels: Sequence[Channel], most: i
 
 
 Chosen = tuple[int, ...]
-Part = tuple[NDArray[np.float64], NDArray[np.float64], NDArray[np.float64]]  # x x, x y, y y
+Part = tuple[Values, Values, Values]  # x x, x y, y y
 
 
 @dataclass(frozen=True, eq=False)
@@ -74,7 +74,7 @@ class _Products:
     fitted: Part
     checked: Part
     tested: Part
-    weights: NDArray[np.float64]
+    weights: Values
     kept: Chosen
 
 
@@ -91,7 +91,7 @@ def _products(parts: Parts, kept: Chosen, in_deg: bool) -> _Products:
     return _Products(of(training), of(parts.checked()), of(parts.tested()), weights, kept)
 
 
-def _errors(products: _Products, chosen: Chosen) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+def _errors(products: _Products, chosen: Chosen) -> tuple[Values, Values]:
     """Mean squared error of each state that no sensor measures, on the check and on the test part."""
     count = len(products.weights)
     columns = np.flatnonzero(np.isin(np.arange(len(products.fitted[0])) % count, chosen))
@@ -108,6 +108,6 @@ def _errors(products: _Products, chosen: Chosen) -> tuple[NDArray[np.float64], N
     return losses[best], _square(tested, weights[best]) * products.weights[rest]
 
 
-def _square(part: Part, weights: NDArray[np.float64]) -> NDArray[np.float64]:
+def _square(part: Part, weights: Values) -> Values:
     x_x, x_y, y_y = part
     return y_y - 2 * np.sum(weights * x_y, axis=0) + np.sum(weights * (x_x @ weights), axis=0)

@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 from gaitdisc.channel import Channel
 from gaitdisc.errors import SamplingError
 from gaitdisc.recording import Samples
+from gaitdisc.recording.arrays import Values
 from gaitdisc.signals.series import autocorrelation_time
 from gaitdisc.statistics.r2 import r2
 
@@ -26,7 +27,7 @@ class Reconstructed:
 
     windows: Samples
     stride: NDArray[np.int_]  # (window,), number of the stride, -1 outside of strides
-    states: NDArray[np.float64]  # (window, state), reconstructed by a model
+    states: Values  # (window, state), reconstructed by a model
 
     @property
     def strides(self) -> int:
@@ -89,7 +90,7 @@ def angle_columns(channels: Sequence[Channel]) -> list[int]:
     return [k for k, channel in enumerate(channels) if channel.unit == "deg"]
 
 
-def angles_error(tested: Reconstructed, channels: Sequence[Channel], sensors: NDArray[np.float64]) -> dict[str, float]:
+def angles_error(tested: Reconstructed, channels: Sequence[Channel], sensors: Values) -> dict[str, float]:
     """One number for all angles that no sensor (window, sensor) [deg] measures, by each of the three names.
 
     returns: `rmse_deg` over windows and angles, `relative_l2`, `r2` (median of angles), `relative_l2_whole` with the
@@ -127,9 +128,7 @@ def phase_curves(tested: Reconstructed, states: Sequence[str], points: int = 51)
     )
 
 
-def _interval(
-    squares: NDArray[np.float64], stride: NDArray[np.int_], seed: int
-) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+def _interval(squares: Values, stride: NDArray[np.int_], seed: int) -> tuple[Values, Values]:
     """Bounds of the root mean square when whole strides are drawn with replacement."""
     names, index = np.unique(stride, return_inverse=True)
     sums = np.zeros((len(names), squares.shape[1]))
@@ -143,7 +142,7 @@ def _interval(
     return low, high
 
 
-def half_widths(errors: NDArray[np.float64], level: float = INTERVAL_LEVEL) -> NDArray[np.float64]:
+def half_widths(errors: Values, level: float = INTERVAL_LEVEL) -> Values:
     """Half width of the interval of every state: the split conformal quantile of the absolute errors.
 
     With n independent errors, the one of rank (n + 1) `level` covers a further error with a probability of `level`.
@@ -170,7 +169,7 @@ def half_widths(errors: NDArray[np.float64], level: float = INTERVAL_LEVEL) -> N
     return sizes[np.minimum(ranks, n) - 1, np.arange(sizes.shape[1])]
 
 
-def effective_number(errors: NDArray[np.float64]) -> NDArray[np.float64]:
+def effective_number(errors: Values) -> Values:
     """Independent errors that those of every state are worth, (state,): between 1 and their number.
 
     The number of windows by the integrated autocorrelation of the absolute errors, summed up to its first zero.
@@ -185,7 +184,7 @@ def effective_number(errors: NDArray[np.float64]) -> NDArray[np.float64]:
     return np.clip(n / autocorrelation_time(np.abs(errors)), 1.0, n)
 
 
-def coverage(errors: NDArray[np.float64], half: NDArray[np.float64]) -> NDArray[np.float64]:
+def coverage(errors: Values, half: Values) -> Values:
     """Share (state,) of errors (window, state) inside half widths (state,) of `half_widths`, on test windows.
 
     >>> coverage(np.array([[1.0], [-3.0]]), np.array([2.0]))

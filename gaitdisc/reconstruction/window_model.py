@@ -10,12 +10,12 @@ from functools import partial
 from typing import TYPE_CHECKING, Any, Protocol
 
 import numpy as np
-from numpy.typing import NDArray
 
 from gaitdisc.errors import ChannelError, SchemaError, TrainingError
 from gaitdisc.model import Model
 from gaitdisc.reconstruction.windows import Lags, cut_windows, hidden, present, thin_windows
 from gaitdisc.recording import Recording, Samples, Scale
+from gaitdisc.recording.arrays import Values
 
 if TYPE_CHECKING:
     from gaitdisc.models.trained_network import TrainedNetwork
@@ -97,11 +97,11 @@ class Ensemble(OfOne):
         """The first member."""
         return self.members[0]
 
-    def __call__(self, x: NDArray[np.float64]) -> NDArray[np.float64]:
+    def __call__(self, x: Values) -> Values:
         """Mean states (window, state) for inputs (window, input)."""
         return np.mean([member(x) for member in self.members], axis=0)
 
-    def spread(self, x: NDArray[np.float64]) -> NDArray[np.float64]:
+    def spread(self, x: Values) -> Values:
         """Standard deviation among the members, (window, state) [each state's unit]: what all miss is not in it."""
         return np.std([member(x) for member in self.members], axis=0)
 
@@ -120,7 +120,7 @@ class Sensing:
         """From the first reading of a window to the state that is reconstructed from it [s]."""
         return (self.lags.reach + self.lags.ahead) / self.rate_hz
 
-    def windows(self, recording: Recording, phi: NDArray[np.float64], missing: bool = False) -> Samples:
+    def windows(self, recording: Recording, phi: Values, missing: bool = False) -> Samples:
         """Windows of a recording of the same rate and units; phi (time,) [% stride]; missing readings if allowed."""
         return cut_windows(recording, self.sensors, self.states, self.lags, phi, missing)
 
@@ -155,11 +155,11 @@ class WindowModel:
     device: str = "cpu"  # where it was fitted: `cpu` or `cuda`
 
     @property
-    def sensor_means(self) -> NDArray[np.float64]:
+    def sensor_means(self) -> Values:
         """Mean reading of each sensor in the training part, (sensor,) [each sensor's unit]."""
         return self.model.x_scale.mean[-len(self.sensing.sensors) :]
 
-    def __call__(self, windows: Samples) -> NDArray[np.float64]:
+    def __call__(self, windows: Samples) -> Values:
         """States (window, state) reconstructed from windows, each in its unit."""
         seen = present(windows, self.sensing.sensors) if self.kind in STATIC else windows
         return self.model(seen.x)
@@ -241,7 +241,7 @@ def make_network(kind: str, sensors: int) -> Callable[[int, int], Any]:
     return partial(Shred, sensors=sensors, masked=kind == MASKED)
 
 
-def latent_states(done: WindowModel, windows: Samples) -> NDArray[np.float64]:
+def latent_states(done: WindowModel, windows: Samples) -> Values:
     """Latent state of a fitted SHRED at the last reading of each window, (window, node) [1]."""
     from gaitdisc.models.shred import Shred
     from gaitdisc.models.trained_network import TrainedNetwork
@@ -256,7 +256,7 @@ def latent_states(done: WindowModel, windows: Samples) -> NDArray[np.float64]:
     return model.latent(windows.x)
 
 
-def leading(values: NDArray[np.float64], count: int = 3) -> NDArray[np.float64]:
+def leading(values: Values, count: int = 3) -> Values:
     """Return the first principal components in time, each of standard deviation 1, (time, component) [1].
 
     The largest entry of each component's direction is positive, so that its sign does not rest on the decomposition.

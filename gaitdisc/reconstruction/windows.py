@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 
 from gaitdisc.errors import SamplingError, SchemaError, ShapeError
 from gaitdisc.recording import Recording, Samples
+from gaitdisc.recording.arrays import Values
 
 TRAINING, CHECK, TEST, APART = 0, 1, 2, -1
 SHARES = (0.7, 0.1, 0.2)
@@ -58,7 +59,7 @@ def cut_windows(
     sensors: Sequence[str],
     states: Sequence[str],
     lags: Lags,
-    phi: NDArray[np.float64],
+    phi: Values,
     missing: bool = False,
 ) -> Samples:
     """Every window of one recording; none reaches beyond its start, nor over a missing value unless that is allowed.
@@ -205,12 +206,12 @@ def _labels(samples: Samples, rule: str, reach_s: float, rng: np.random.Generato
     return _apart(samples.time, raw, reach_s)
 
 
-def _share(time: NDArray[np.float64]) -> NDArray[np.float64]:
+def _share(time: Values) -> Values:
     """Place of each time between the first and the last, 0 to below 1."""
     return (time - time[0]) / max(time[-1] - time[0], 1e-9) * (1 - 1e-9) if len(time) else time
 
 
-def _apart(time: NDArray[np.float64], raw: NDArray[np.int_], reach_s: float) -> NDArray[np.int_]:
+def _apart(time: Values, raw: NDArray[np.int_], reach_s: float) -> NDArray[np.int_]:
     """Set windows apart whose readings, or the filter's reach before them, lie in another part."""
     borders = time[1:][np.diff(raw) != 0]
     labels = raw.copy()
@@ -232,7 +233,7 @@ MOST_MISSING = 0.6  # of a window's readings, in training
 RUNS = (1, 3, 10)  # readings that go missing in a row, on average
 
 
-def missing_runs(share: NDArray[np.float64], run: NDArray[np.float64], length: int, seed: int = 0) -> NDArray[np.bool_]:
+def missing_runs(share: Values, run: Values, length: int, seed: int = 0) -> NDArray[np.bool_]:
     """Draw which readings are missing, column by column: a Markov chain of two states.
 
     share (column,): readings of the column that are missing, between 0 and below 1
@@ -265,7 +266,7 @@ def with_missing(recording: Recording, sensors: Sequence[str], share: float, run
     return recording.with_values(values)
 
 
-def fill_readings(recording: Recording, sensors: Sequence[str], way: str, means: NDArray[np.float64]) -> Recording:
+def fill_readings(recording: Recording, sensors: Sequence[str], way: str, means: Values) -> Recording:
     """Fill missing readings by a word of `WAYS`, from training means (sensor,); `last` too, before a first reading."""
     refuse_unknown_way(way)
     values = recording.values.copy()

@@ -28,6 +28,12 @@ def read_only(values: ArrayLike, dtype: Any = float) -> NDArray[Any]:
     return view
 
 
+def freeze(noun: object, *names: str) -> None:
+    """Make fields of a frozen dataclass read-only arrays of floats."""
+    for name in names:
+        object.__setattr__(noun, name, read_only(getattr(noun, name)))
+
+
 def real_array(values: Any) -> Values:
     """Array of floats; complex numbers are refused, of which numpy would keep the real part."""
     array = np.asarray(values)
@@ -57,8 +63,27 @@ def mean_where_known(values: Values) -> Values:
     """
     known = np.isfinite(values)
     count = known.sum(axis=0)
-    total = np.where(known, values, 0.0).sum(axis=0)
-    return np.where(count > 0, total / np.maximum(count, 1), np.nan)
+    return np.where(count > 0, np.where(known, values, 0.0).sum(axis=0) / np.maximum(count, 1), np.nan)
+
+
+def finite_values(values: Values) -> Values:
+    """Values that are neither missing nor infinite, in one row."""
+    return values[np.isfinite(values)]
+
+
+def finite_rows(values: Values) -> Values:
+    """Rows without a missing or infinite value."""
+    return values[np.isfinite(values).all(axis=1)]
+
+
+def mean_step(time: Values) -> float:
+    """Mean step of two times or more [s]."""
+    return float((time[-1] - time[0]) / (len(time) - 1))
+
+
+def mean_rate(time: Values) -> float:
+    """Mean number of samples a second of two times or more."""
+    return float((len(time) - 1) / (time[-1] - time[0]))
 
 
 def runs(mask: NDArray[np.bool_]) -> NDArray[np.intp]:
@@ -103,5 +128,5 @@ def spans_s(time: Values, mask: NDArray[np.bool_]) -> tuple[Span, ...]:
     >>> spans_s(np.arange(4.0), np.array([False, True, True, False]))
     (Span(start=1.0, end=3.0),)
     """
-    step = (time[-1] - time[0]) / (len(time) - 1) if len(time) > 1 else 0.0
+    step = mean_step(time) if len(time) > 1 else 0.0
     return tuple(Span(round(float(time[a]), 6), round(float(time[b - 1] + step), 6)) for a, b in runs(mask))

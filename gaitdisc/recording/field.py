@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from gaitdisc.errors import ChannelError, SamplingError, ShapeError
-from gaitdisc.recording.arrays import Values, read_only
+from gaitdisc.recording.arrays import Values, freeze, read_only
 from gaitdisc.recording.recording import Source
 
 STEP_TOLERANCE = 0.01  # of the usual step; months are not evenly long in every calendar
@@ -45,7 +45,7 @@ class Axis:
 
     def __post_init__(self) -> None:
         """Refuse an axis that turns back."""
-        object.__setattr__(self, "coordinates", read_only(self.coordinates))
+        freeze(self, "coordinates")
         steps = np.diff(self.coordinates)
         if self.coordinates.ndim != 1 or not len(self.coordinates) or not (np.all(steps > 0) or np.all(steps < 0)):
             raise ShapeError(
@@ -124,12 +124,6 @@ class Field:
                 f"the values have shape {values.shape}, with {len(self.units)} units",
                 "Put time first, then the points of the mask, then the quantities.",
             )
-        self._refuse_uneven(time)
-        for name, value in (("time", time), ("values", values), ("mask", mask)):
-            object.__setattr__(self, name, value)
-        self._refuse_missing()
-
-    def _refuse_uneven(self, time: Values) -> None:
         steps = np.diff(time)
         usual = float(np.median(steps)) if len(steps) else 1.0
         uneven = (steps <= 0) | (np.abs(steps - usual) > STEP_TOLERANCE * usual)
@@ -141,6 +135,9 @@ class Field:
                 f"{steps[first]:g} {self.time_unit}; the usual step is {usual:g}",
                 "Sort the snapshots, or fill in the missing ones.",
             )
+        for name, value in (("time", time), ("values", values), ("mask", mask)):
+            object.__setattr__(self, name, value)
+        self._refuse_missing()
 
     def _refuse_missing(self) -> None:
         missing = np.count_nonzero(~np.isfinite(self.values))

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from gaitdisc.channel import Channel, nearest_word
 from gaitdisc.errors import ChannelError, SamplingError, ShapeError
-from gaitdisc.recording.arrays import Values, read_only
+from gaitdisc.recording.arrays import Values, mean_rate, mean_step, read_only
 from gaitdisc.words import as_html
 
 if TYPE_CHECKING:
@@ -107,7 +107,17 @@ class Recording:
                 f"{self.source.file or 'the recording'} contains {doubled[0]!r} {names.count(doubled[0])} times",
                 "Give the columns different names in the study's [channels].",
             )
-        _check_steps(time, self.source.file)
+        if len(time) > 1:
+            steps, mean = np.diff(time), mean_step(time)
+            worst = int(np.argmax(np.abs(steps - mean)))
+            if not (mean > 0 and abs(steps[worst] - mean) <= STEP_TOLERANCE * mean):  # also where a time is NaN
+                file = self.source.file or "the recording"
+                raise SamplingError(
+                    "a recording must have a constant sampling rate",
+                    f"{file} has a step of {steps[worst]:.6g} s after sample {worst} (t = {time[worst]:.6g} s); the "
+                    f"mean step is {mean:.6g} s",
+                    "Export it at one rate, or resample it before reading.",
+                )
         for name, value in (("time", time), ("values", values), ("channels", channels)):
             object.__setattr__(self, name, value)
         object.__setattr__(self, "suspect", read_only(suspect, bool))
@@ -122,7 +132,7 @@ class Recording:
         """Sampling rate; NaN for fewer than two samples."""
         if len(self.time) < 2:
             return float("nan")
-        rate = (len(self.time) - 1) / (self.time[-1] - self.time[0])
+        rate = mean_rate(self.time)
         return float(round(rate, 6))
 
     @property
@@ -270,19 +280,3 @@ class Recording:
 def several(names: str | Sequence[str]) -> tuple[str, ...]:
     """Names of which one may be given by itself: a string is one name, and no sequence of letters."""
     return (names,) if isinstance(names, str) else tuple(names)
-
-
-def _check_steps(time: Values, file: str) -> None:
-    if len(time) < 2:
-        return
-    steps = np.diff(time)
-    mean = (time[-1] - time[0]) / (len(time) - 1)
-    worst = int(np.argmax(np.abs(steps - mean)))
-    even = mean > 0 and abs(steps[worst] - mean) <= STEP_TOLERANCE * mean
-    if not even:  # also where a time is NaN
-        raise SamplingError(
-            "a recording must have a constant sampling rate",
-            f"{file or 'the recording'} has a step of {steps[worst]:.6g} s after sample {worst} (t = "
-            f"{time[worst]:.6g} s); the mean step is {mean:.6g} s",
-            "Export it at one rate, or resample it before reading.",
-        )

@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from gaitdisc.channel import Channel
 from gaitdisc.errors import SamplingError, ShapeError, TrainingError
-from gaitdisc.recording.arrays import Values, read_only
+from gaitdisc.recording.arrays import Values, freeze, mean_rate, read_only
 
 RELATIVE_FLOOR = 1e-9  # a column that varies by less than this of its size is constant
 ABSOLUTE_FLOOR = 1e-12  # deg, m, V and their rates: rounding, never a signal
@@ -27,8 +27,7 @@ class Scale:
 
     def __post_init__(self) -> None:
         """Freeze the numbers."""
-        object.__setattr__(self, "mean", read_only(self.mean))
-        object.__setattr__(self, "sd", read_only(self.sd))
+        freeze(self, "mean", "sd")
 
     @property
     def constant(self) -> NDArray[np.bool_]:
@@ -36,17 +35,11 @@ class Scale:
         return ~np.isfinite(self.sd)
 
     def scaled(self, values: Values) -> Values:
-        """Without unit: zero mean and unit standard deviation where the scale comes from.
-
-        values (sample, column) [each column's unit]: in the order of the scale
-        """
+        """Values (sample, column) without unit: zero mean and unit standard deviation where the scale comes from."""
         return (values - self.mean) / self.sd
 
     def unscaled(self, scaled: Values) -> Values:
-        """Back in the columns' units; a constant column gets its constant.
-
-        scaled (sample, column): without unit
-        """
+        """Numbers without unit (sample, column) back in the columns' units; a constant column gets its constant."""
         return scaled * np.where(self.constant, 0.0, self.sd) + self.mean
 
 
@@ -118,8 +111,7 @@ class Samples:
                     f"found {np.shape(getattr(self, name))}",
                     "Give one row per sample and one name per column.",
                 )
-        for name in ("x", "y", "time", "phi"):
-            object.__setattr__(self, name, read_only(getattr(self, name)))
+        freeze(self, "x", "y", "time", "phi")
 
     def __len__(self) -> int:
         return len(self.time)
@@ -244,8 +236,7 @@ class Trajectory:
                 f"found {np.shape(self.phi)}",
                 "Give one value in percent of the stride per sample.",
             )
-        for name in ("time", "x", "xdot", "xddot", "phi"):
-            object.__setattr__(self, name, read_only(getattr(self, name)))
+        freeze(self, "time", "x", "xdot", "xddot", "phi")
         object.__setattr__(self, "usable", read_only(self.usable, bool))
         object.__setattr__(self, "channels", tuple(self.channels))
 
@@ -257,17 +248,14 @@ class Trajectory:
     @property
     def rate_hz(self) -> float:
         """Samples a second."""
-        return float(round((len(self.time) - 1) / (self.time[-1] - self.time[0]), 6))
+        return float(round(mean_rate(self.time), 6))
 
     def columns(self, names: Sequence[str]) -> list[int]:
         """Return the columns of channels."""
         return [self.names.index(name) for name in names]
 
     def rows(self, chosen: slice | NDArray[np.bool_] | NDArray[np.intp]) -> Trajectory:
-        """Trajectory of some samples; usually a contiguous part.
-
-        chosen slice or ndarray: samples to keep
-        """
+        """Trajectory of the chosen samples; usually a contiguous part."""
         parts = {name: getattr(self, name)[chosen] for name in ("time", "x", "xdot", "xddot")}
         return replace(self, phi=self.phi[chosen], usable=self.usable[chosen], **parts)
 

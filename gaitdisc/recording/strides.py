@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from gaitdisc.channel import Channel, vocabulary
 from gaitdisc.errors import ShapeError, StrideError
-from gaitdisc.recording.arrays import Values, read_only
+from gaitdisc.recording.arrays import Values, freeze, mean_step, read_only
 from gaitdisc.recording.recording import Recording
 from gaitdisc.recording.wrapping import find_turn, in_one_turn, unwrap
 from gaitdisc.words import as_html
@@ -68,7 +68,8 @@ class Strides:
 
     def __post_init__(self) -> None:
         """Check order once."""
-        start, end = read_only(self.start), read_only(self.end)
+        freeze(self, "start", "end")
+        start, end = self.start, self.end
         if start.ndim != 1 or start.shape != end.shape:
             raise ShapeError(
                 "strides must have as many ends as starts",
@@ -82,8 +83,6 @@ class Strides:
                 "or has no time",
                 "Check the events, or choose another detector.",
             )
-        object.__setattr__(self, "start", start)
-        object.__setattr__(self, "end", end)
 
     def __len__(self) -> int:
         return len(self.start)
@@ -96,8 +95,7 @@ class Strides:
         rows = [("strides", str(len(self))), ("side", self.side), ("contacts by", self.detector)]
         if len(self):
             lasting = self.duration_s
-            words = f"{lasting.min():.2f} to {lasting.max():.2f} s, mean {lasting.mean():.2f} s"
-            rows.append(("duration", words))
+            rows.append(("duration", f"{lasting.min():.2f} to {lasting.max():.2f} s, mean {lasting.mean():.2f} s"))
         rows += [(f"dropped at {one.start:.2f} s", one.reason) for one in self.dropped[:4]]
         return as_html("Strides", rows)
 
@@ -194,8 +192,7 @@ def interpolate(time: Values, values: Values, points: Values) -> Values:
     """
     if len(time) < 2:  # no step, and nothing between
         return np.full((*points.shape, values.shape[1]), np.nan)
-    step = (time[-1] - time[0]) / (len(time) - 1)
-    place = (points - time[0]) / step
+    place = (points - time[0]) / mean_step(time)
     left = np.clip(np.floor(place + 1e-9).astype(int), 0, len(time) - 1)
     right = np.minimum(left + 1, len(time) - 1)
     share = np.clip(place - left, 0.0, 1.0)[..., None]

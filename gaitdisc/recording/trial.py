@@ -9,7 +9,7 @@ from typing import NamedTuple
 import numpy as np
 
 from gaitdisc.errors import ChannelError, SamplingError, ShapeError, UnitError
-from gaitdisc.recording.arrays import Values, frozen, read_only
+from gaitdisc.recording.arrays import Values, freeze, frozen
 from gaitdisc.recording.finding import Finding
 from gaitdisc.recording.recording import Recording
 from gaitdisc.recording.strides import interpolate
@@ -111,7 +111,8 @@ class Surface:
 
     def __post_init__(self) -> None:
         """Check the corners once."""
-        corners = read_only(self.corners)
+        freeze(self, "corners")
+        corners = self.corners
         sound = corners.shape == (4, 3) and np.isfinite(corners).all()
         if not sound or np.linalg.norm(np.cross(corners[2] - corners[0], corners[3] - corners[1])) < 1e-6:
             raise ShapeError(
@@ -119,7 +120,6 @@ class Surface:
                 f"{self.name} has {np.array2string(corners, precision=3)}",
                 "Correct FORCE_PLATFORM:CORNERS.",
             )
-        object.__setattr__(self, "corners", corners)
 
     @property
     def centre(self) -> Values:
@@ -286,8 +286,7 @@ class Trial:
         values = []
         for r in streams:  # a heading that comes round between two samples is read on the short way
             between = interpolate(r.time, unwrap(r).values, time)
-            unmarked = np.zeros(between.shape, bool)
-            values.append(wrap_recording(replace(r, time=time, values=between, suspect=unmarked), r).values)
+            values.append(wrap_recording(replace(r, time=time, values=between, suspect=None), r).values)
         marks = [interpolate(r.time, np.asarray(r.suspect, float), time) > 0 for r in streams]
         return Recording(
             time,

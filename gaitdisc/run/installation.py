@@ -23,7 +23,6 @@ EXTRAS = {
     "dask": "more than one machine, extra cluster",
     "typst": "PDF of a person's page, extra pdf",
     "openpyxl": "normal data of Polygon, extra xlsx",
-    "c3d": "the second C3D reader",
 }
 
 

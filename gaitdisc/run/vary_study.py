@@ -35,13 +35,12 @@ from gaitdisc.response.vary import (
     fit_without,
     settings_around,
 )
-from gaitdisc.run.run_study import response_settings, run_study
+from gaitdisc.run.run_study import Progress, response_settings, run_study
 from gaitdisc.run.workers import StudyProgress, Workers, compute_units
 from gaitdisc.saved.provenance import Refusal
 from gaitdisc.saved.study_run import save_run
 from gaitdisc.write_lock import write_lock
 
-Progress = Callable[[float], None]
 Unit = TypeVar("Unit")
 
 

@@ -13,13 +13,12 @@ from gaitdisc.channel import list_names
 from gaitdisc.errors import SchemaError
 from gaitdisc.own_files import claim_folder, guard
 from gaitdisc.recording import Finding
+from gaitdisc.recording.arrays import Values
 from gaitdisc.saved.unit_folder import NO_KEY, Arrays, Keyed, load_finding, load_unit, save_unit, with_words
 from gaitdisc.whole_file import write_together
 
 if TYPE_CHECKING:
-    import numpy as np
     import pandas as pd
-    from numpy.typing import NDArray
 
 T = TypeVar("T")
 KINDS = {  # the JSON file of each result that stands alone, and its kind
@@ -50,7 +49,7 @@ class Kind(Generic[T]):
     keys: tuple[str, ...] = ()  # what the JSON file says, in its order: fields, or properties that are not read back
     tables: Mapping[str, CSV] = field(default_factory=dict)  # by field
     arrays: Mapping[str, Callable[[Arrays], Any]] = field(default_factory=dict)  # field -> how it is made of the arrays
-    written: Callable[[T], Mapping[str, NDArray[np.float64]]] | None = None  # all arrays by name
+    written: Callable[[T], Mapping[str, Values]] | None = None  # all arrays by name
     later: bool = True  # whether arrays are read when they are looked at
     keyed: bool = True  # whether the JSON file says what the result was computed from
     reasons: str = ""  # what the keys of `left_away` are called
@@ -176,7 +175,7 @@ def check_columns(noun: object, columns: Mapping[str, Sequence[str]], needing: s
             )
 
 
-def pick_arrays(arrays: Arrays, prefix: str) -> dict[str, NDArray[np.float64]]:
+def pick_arrays(arrays: Arrays, prefix: str) -> dict[str, Values]:
     """Arrays whose names begin with a prefix, by what follows it."""
     return {key.removeprefix(prefix): values for key, values in arrays.items() if key.startswith(prefix)}
 

@@ -18,13 +18,13 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, Generic, NamedTuple, TypeVar
 
 import numpy as np
-from numpy.typing import NDArray
 
 from gaitdisc._version import __version__
 from gaitdisc.channel import list_names, schema_folder
 from gaitdisc.errors import SchemaError
 from gaitdisc.own_files import content_sha256, file_sha256, note_inputs
 from gaitdisc.recording import Finding
+from gaitdisc.recording.arrays import Values
 from gaitdisc.spreadsheet import read_csv, write_csv
 from gaitdisc.whole_file import find_written, whole_file, write_together, write_whole
 
@@ -33,7 +33,7 @@ if TYPE_CHECKING:
 
 T = TypeVar("T")
 Kind = TypeVar("Kind")
-Arrays = Mapping[str, NDArray[np.float64]]
+Arrays = Mapping[str, Values]
 KEPT_FILES = 2  # of which the arrays stay in memory: both walks of one participant
 AGAIN = "Run the command that wrote it again. `gaitdisc run` keeps undamaged parts and computes the others again."
 CHANGED = "changed since it was saved (SHA-256 differs)"
@@ -47,13 +47,13 @@ class DamagedError(SchemaError):
 
 
 @dataclass(frozen=True)
-class StoredArrays(Mapping[str, NDArray[np.float64]]):
+class StoredArrays(Mapping[str, Values]):
     """Arrays of one file by name, read when one of them is used."""
 
     path: Path
     sha256: str  # hash it had when it was saved; empty where there is no file, and no array
 
-    def __getitem__(self, name: str) -> NDArray[np.float64]:
+    def __getitem__(self, name: str) -> Values:
         return self._read()[name]
 
     def __iter__(self) -> Iterator[str]:
@@ -223,7 +223,7 @@ def save_unit(
     name: str,
     data: Mapping[str, Any],
     tables: Mapping[str, pd.DataFrame],
-    arrays: Mapping[str, NDArray[np.float64]],
+    arrays: Mapping[str, Values],
 ) -> None:
     """Write tables (by file name) as CSV and arrays, then the JSON file of their hashes: only then the unit stands."""
     for file, table in tables.items():

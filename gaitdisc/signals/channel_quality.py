@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 from scipy.stats import theilslopes
 
 from gaitdisc.recording import Finding, Recording
-from gaitdisc.recording.arrays import Span, Values, runs, spans_s
+from gaitdisc.recording.arrays import Span, Values, finite_values, runs, spans_s
 from gaitdisc.recording.wrapping import unwrap
 from gaitdisc.signals.contacts import RISE_N, loaded
 from gaitdisc.signals.gaps import gap_findings
@@ -107,7 +107,7 @@ def jumping(x: Values) -> NDArray[np.bool_]:
     [498, 499, 500, 501, 502]
     """
     bend = np.abs(np.diff(x, 2))
-    known = bend[np.isfinite(bend)]
+    known = finite_values(bend)
     marks = np.zeros(len(x), bool)
     if len(known) < 100:
         return marks
@@ -213,7 +213,7 @@ def plateaus(kinematics: Recording) -> list[Plateau]:
         if channel.quantity != "angle":
             continue
         x = kinematics.values[:, column]
-        known = x[np.isfinite(x)]
+        known = finite_values(x)
         if len(known) < 10 or np.subtract(*np.percentile(known, [99, 1])) < FEWEST_REACH_DEG:
             continue
         for sign in (-1.0, 1.0):
@@ -254,7 +254,7 @@ def plateau_marked(kinematics: Recording) -> Recording:
 
 def _dwells(x: Values, rate_hz: float) -> NDArray[np.bool_] | None:
     """Samples on a plateau at the top of x, or None."""
-    known = x[np.isfinite(x)]
+    known = finite_values(x)
     reach = float(known.max() - np.percentile(known, 1))
     top = float(np.percentile(known, 99.5))
     near = np.isfinite(x) & (x >= top - BAND_SHARE * reach)

@@ -19,7 +19,7 @@ from scipy.signal import find_peaks
 
 from gaitdisc.errors import ChannelError, StrideError
 from gaitdisc.recording import Recording
-from gaitdisc.recording.arrays import Span, Values
+from gaitdisc.recording.arrays import Span, Values, mean_step
 from gaitdisc.signals.butterworth import low_pass
 from gaitdisc.signals.contacts import Contacts
 from gaitdisc.signals.direction import Direction, marker_position, pelvis_position, walking_direction
@@ -63,7 +63,7 @@ def marker_contacts(
                 f"{markers.source.file or 'the recording'}: it swings by {swing:.3f} m along the direction of walking",
                 "Check the direction, the marker's name and whether the trial is walking.",
             )
-        step = (markers.time[-1] - markers.time[0]) / (len(markers.time) - 1)
+        step = mean_step(markers.time)
         known = np.where(np.isfinite(ahead), ahead, -np.inf)
         peaks, _ = find_peaks(known, distance=max(1, round(MIN_S / step)))
         swings = [peak for peak in peaks if _prominent(ahead, peak, FEWEST_SWING * swing)]
@@ -78,7 +78,7 @@ def _of_each_step(time: Values, swung: Values, direction: Direction, times: Valu
     """Peaks again, each along one direction: a line that turns moves the peak of a heel that lies beside it."""
     if direction.headings is None:
         return times
-    step = (time[-1] - time[0]) / (len(time) - 1)
+    step = mean_step(time)
     reach = round(MIN_S / 2 / step)
     found = []
     for at in times:

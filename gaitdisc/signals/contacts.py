@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from gaitdisc.channel import other_side
 from gaitdisc.errors import ChannelError, StrideError
 from gaitdisc.recording import Finding, Recording, Trial
-from gaitdisc.recording.arrays import Span, Values, read_only, runs
+from gaitdisc.recording.arrays import Span, Values, finite_values, freeze, runs
 from gaitdisc.signals.direction import Direction, marker_position, pelvis_position
 
 DETECTORS = ("force", "markers", "angles", "events", "oscillator")
@@ -61,7 +61,8 @@ class Contacts:
 
     def __post_init__(self) -> None:
         """Check order and words once."""
-        time = read_only(self.time)
+        freeze(self, "time", "foot_off")
+        time = self.time
         if self.side not in ("r", "l") or self.detector not in DETECTORS:
             raise StrideError(
                 "contacts must have side 'r' or 'l' and a known detector",
@@ -74,8 +75,6 @@ class Contacts:
                 f"side {self.side!r}, detector {self.detector}: shape {time.shape}; times are missing or out of order",
                 "Sort the events of the file, or choose another detector.",
             )
-        object.__setattr__(self, "time", time)
-        object.__setattr__(self, "foot_off", read_only(self.foot_off))
 
     def __len__(self) -> int:
         return len(self.time)
@@ -335,7 +334,7 @@ def plate_contacts(
 
 def _contacts(forces: Recording, name: str, body_weight_n: float | None) -> tuple[Values, Values, str]:
     force, time = forces[name], forces.time
-    known = force[np.isfinite(force)]
+    known = finite_values(force)
     downwards = len(known) > 0 and -known.min() > known.max()
     upward = -force if downwards else force
     rise = find_rise(body_weight_n)

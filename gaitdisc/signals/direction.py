@@ -9,7 +9,7 @@ import numpy as np
 
 from gaitdisc.errors import ChannelError, StrideError
 from gaitdisc.recording import Recording
-from gaitdisc.recording.arrays import Values
+from gaitdisc.recording.arrays import Values, finite_rows, finite_values
 
 FEWEST_SKEW = 0.2
 PATH_S = 1.0  # about a stride: sway from step to step cancels over it
@@ -118,11 +118,9 @@ def _headings(centre: Values, level: list[int], rate_hz: float) -> Values | None
 
 
 def _from_swings(swings: Sequence[Values], up: Values, level: list[int], file: str) -> Direction:
-    centred = np.concatenate([s - np.nanmean(s, axis=0) for s in swings])[:, level]
-    centred = centred[np.isfinite(centred).all(axis=1)]
+    centred = finite_rows(np.concatenate([s - np.nanmean(s, axis=0) for s in swings])[:, level])
     line = np.linalg.eigh(centred.T @ centred)[1][:, -1]
-    velocity = np.concatenate([np.diff(s[:, level] @ line) for s in swings])
-    velocity = velocity[np.isfinite(velocity)]
+    velocity = finite_values(np.concatenate([np.diff(s[:, level] @ line) for s in swings]))
     skew = float(np.mean((velocity - velocity.mean()) ** 3) / velocity.std() ** 3)
     if abs(skew) < FEWEST_SKEW:
         raise StrideError(

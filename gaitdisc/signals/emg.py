@@ -20,7 +20,7 @@ import numpy as np
 from gaitdisc.channel import Channel, other_side
 from gaitdisc.errors import ChannelError, SamplingError
 from gaitdisc.recording import Finding, Recording, Strides
-from gaitdisc.recording.arrays import Values, spans_s
+from gaitdisc.recording.arrays import Values, finite_rows, finite_values, spans_s
 from gaitdisc.recording.trial import Limits
 from gaitdisc.signals.butterworth import high_pass, low_pass
 from gaitdisc.signals.series import robust_sd
@@ -68,8 +68,7 @@ def envelopes(
             "Export the raw EMG at its full rate (usually 1000 Hz). If it is an envelope already, state this in [emg].",
         )
     for column, channel in enumerate(emg.channels):
-        x = emg.values[:, column]
-        x = x[np.isfinite(x)]
+        x = finite_values(emg.values[:, column])
         if len(x) > 100 and x.min() >= 0 and x.std() > 0 and np.median(x) > 0:  # its high-pass would be noise
             raise SamplingError(
                 "raw EMG must oscillate about zero",
@@ -109,7 +108,7 @@ def amplifier_range(emg: Recording, given_v: float | None = None) -> AmplifierRa
     if given_v is not None:
         return AmplifierRange(given_v, "given")
     known = emg.values[:, np.isfinite(emg.values).any(axis=0)]
-    values = np.abs(known[np.isfinite(known).all(axis=1)])
+    values = np.abs(finite_rows(known))
     if not values.size or values.max() == 0:
         return AmplifierRange(USUAL_RANGES_V[0], "assumed: the recording is empty", False)
     top = float(values.max())
@@ -147,7 +146,7 @@ def emg_findings(emg: Recording, range_v: float | None = None) -> list[Finding]:
     findings = []
     for column, channel in enumerate(emg.channels):
         x = emg.values[:, column]
-        known = x[np.isfinite(x)]
+        known = finite_values(x)
         if not len(known):
             continue  # an empty channel is a gap from end to end
         share = float(known.std()) / limit.volts
@@ -223,7 +222,7 @@ def live_channels(emg: Recording) -> tuple[str, ...]:
 
 def _quantisation_step(x: Values) -> float | None:
     """Step between neighbouring values of a channel that uses few of them; None for a filtered one."""
-    known = x[np.isfinite(x)]
+    known = finite_values(x)
     most = float(np.abs(known).max(initial=0.0)) or 1.0
     levels = most * np.unique(np.round(known / most, 7))
     if len(levels) < 10 or len(levels) > len(known) / 4:
@@ -273,8 +272,7 @@ def other_unit_findings(
 
 def stance_over_swing(envelope: Recording, strides: Strides, name: str) -> float:
     """Natural logarithm of a channel's mean in stance over that in swing; NaN without a whole stride."""
-    curves = strides.normalised(envelope.selected([name]))[:, :, 0]
-    curves = curves[np.isfinite(curves).all(axis=1)]
+    curves = finite_rows(strides.normalised(envelope.selected([name]))[:, :, 0])
     if not len(curves):
         return float("nan")
     mean = curves.mean(axis=0)

@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 from scipy.interpolate import CubicSpline
 
 from gaitdisc.recording import PERCENT, Finding, Recording, Strides
-from gaitdisc.recording.arrays import Values, runs, spans_s
+from gaitdisc.recording.arrays import Values, finite_rows, finite_values, runs, spans_s
 from gaitdisc.recording.wrapping import unwrap, wrap_recording
 from gaitdisc.signals.series import robust_sd
 from gaitdisc.words import counted
@@ -47,7 +47,7 @@ def fill_gaps(
         template = None
         if strides is not None:
             curves = strides.normalised(recording.selected([recording.names[column]]))[:, :, 0]
-            whole = curves[np.isfinite(curves).all(axis=1)]
+            whole = finite_rows(curves)
             template = whole.mean(axis=0) if len(whole) >= FEWEST_TEMPLATE_STRIDES else None
         for start, end in runs(missing):
             length_s = (end - start) / rate
@@ -149,7 +149,7 @@ def spikes(recording: Recording) -> NDArray[np.bool_]:
         if channel.quantity in QUANTITIES and known.sum() >= FEWEST_SAMPLES:
             half = max(2, round(HALF_S * recording.rate_hz))
             steps = np.diff(x)
-            size = np.abs(steps[np.isfinite(steps)])
+            size = np.abs(finite_values(steps))
             least = max(
                 LEAST_SHARE * float(np.subtract(*np.percentile(x[known], [99, 1]))), LEAST.get(channel.unit, 0.0)
             )

@@ -13,7 +13,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from gaitdisc.recording.arrays import Values, runs
+from gaitdisc.recording.arrays import Values, finite_values, runs
 
 ORDER, OTHER = 2, 4  # of one pass: the filter that is sought, and a steeper one
 WINDOW = 512  # samples
@@ -123,7 +123,7 @@ def _may_be_filtered(spectrum: Spectrum, trials: Sequence[Values]) -> bool:
     end = float(np.median(spectrum.power[(spectrum.frequency > 0.42) & (spectrum.frequency < 0.48)]))
     if quarter > FALLING * end or end < SPREAD * float(spectrum.power.max()):
         return True
-    steps = np.abs(np.concatenate([np.diff(trial[np.isfinite(trial)]) for trial in trials]))
+    steps = np.abs(np.concatenate([np.diff(finite_values(trial)) for trial in trials]))
     step = float(steps[steps > 0].min()) if (steps > 0).any() else 0.0
     length = 2 * (len(spectrum.frequency) - 1)
     return end < ROUNDED * step**2 / 12 * length * float(np.square(BLACKMAN_HARRIS) @ [1.0, 0.5, 0.5, 0.5])

@@ -9,7 +9,7 @@ import numpy as np
 from gaitdisc.channel import other_side
 from gaitdisc.errors import StrideError
 from gaitdisc.recording import PERCENT, Finding, Recording, Strides
-from gaitdisc.recording.arrays import Values
+from gaitdisc.recording.arrays import Values, finite_rows, finite_values
 from gaitdisc.signals.direction import marker_position, nearest_axis
 
 SWING = (52.0, 92.0)  # % stride between which the knee's peak lies, in walking and running
@@ -40,8 +40,7 @@ def knee_peak_percent(kinematics: Recording, strides: Strides, knee: str) -> flo
 
     kinematics: with the knee's flexion [deg]
     """
-    curves = strides.normalised(kinematics.selected([knee]))[:, :, 0]
-    curves = curves[np.isfinite(curves).all(axis=1)]
+    curves = finite_rows(strides.normalised(kinematics.selected([knee]))[:, :, 0])
     if not len(curves):
         return float("nan")
     mean = np.median(curves, axis=0)
@@ -93,8 +92,7 @@ def marker_side_findings(markers: Recording) -> list[Finding]:
     right_front, left_front, right_back, left_back = (marker_position(markers, name) for name in pelvis)
     ahead = (right_front + left_front - right_back - left_back) / 2
     feet = np.median([marker_position(markers, name) for name in pairs[-1]], axis=0)
-    lines = (right_front + left_front) / 2 - feet
-    lines = lines[np.isfinite(lines).all(axis=1)]
+    lines = finite_rows((right_front + left_front) / 2 - feet)
     if not len(lines):
         return []
     right = np.cross(ahead, nearest_axis(np.median(lines, axis=0)))
@@ -131,7 +129,7 @@ def sway_findings(kinematics: Recording, strides: Sequence[Strides]) -> list[Fin
     for own in strides:
         curves = own.normalised(pelvis)[:, :, 0]
         sway = curves[:, SUPPORT[0]].mean(axis=1) - curves[:, SUPPORT[1]].mean(axis=1)
-        sway = sway[np.isfinite(sway)] * (1.0 if own.side == "r" else -1.0)
+        sway = finite_values(sway) * (1.0 if own.side == "r" else -1.0)
         if len(sway):
             towards[own.side] = sway
     away = [side for side, sway in towards.items() if np.median(sway) <= -SWAY_M and np.mean(sway < 0) >= AGREE]
@@ -177,6 +175,5 @@ def load_findings(kinematics: Recording, forces: Recording) -> list[Finding]:
 
 def _aside(apart: Values, right: Values) -> float:
     """How far to the right one marker is of the other, over the trial [m]."""
-    metres = np.einsum("tx,tx->t", apart, right)
-    metres = metres[np.isfinite(metres)]
+    metres = finite_values(np.einsum("tx,tx->t", apart, right))
     return float(np.median(metres)) if len(metres) else 0.0

@@ -8,7 +8,7 @@ import numpy as np
 
 from gaitdisc.errors import StrideError
 from gaitdisc.recording import DroppedStride, Recording, Strides
-from gaitdisc.recording.arrays import Values, runs
+from gaitdisc.recording.arrays import Values, finite_values, runs
 from gaitdisc.signals.contacts import Contacts
 from gaitdisc.signals.gaps import fill_gaps
 from gaitdisc.signals.series import robust_sd
@@ -145,7 +145,7 @@ def measure_walking(kinematics: Recording, strides: Strides) -> Walking:
         n for n in kinematics.names if n in {f"{j}_{s}" for j in ("hip_flexion", "knee_angle") for s in "rl"}
     ]
     median = float(np.median(strides.duration_s)) if len(strides) else float("nan")
-    known = {name: kinematics[name][np.isfinite(kinematics[name])] for name in hips_and_knees}
+    known = {name: finite_values(kinematics[name]) for name in hips_and_knees}
     known = {name: x for name, x in known.items() if len(x)}
     regularity = float("nan")
     if known and kinematics.duration_s > 4 * median:

@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from gaitdisc.errors import ShapeError
-from gaitdisc.recording.arrays import read_only
+from gaitdisc.recording.arrays import Values, read_only
 from gaitdisc.simulation.program import Program, at_points, compile_program, leaf_columns
 from gaitdisc.simulation.simulation import Simulation
 
@@ -25,9 +25,9 @@ class Drive:
     """
 
     rate: float  # samples a second [Hz]
-    time0: NDArray[np.float64]  # (trial,), time of each trial's first sample [s]
+    time0: Values  # (trial,), time of each trial's first sample [s]
     # (trial, sample, input), in the order of the simulation's inputs; zero beyond a trial's end
-    inputs: NDArray[np.float64]
+    inputs: Values
     samples: NDArray[np.int64]  # (trial,), length of each trial
 
     def __post_init__(self) -> None:
@@ -68,9 +68,9 @@ class Rows:
 
     trial: NDArray[np.int64]  # (row,), number of the trial
     begin: NDArray[np.int64]  # (row,), sample that each starts at
-    starts: NDArray[np.float64]  # (row, state), state there
+    starts: Values  # (row, state), state there
     # (row, parameter) or (parameter,), parameters; the simulation's own where absent
-    values: NDArray[np.float64] | None = None
+    values: Values | None = None
 
 
 @dataclass(frozen=True, eq=False)
@@ -82,13 +82,13 @@ class Compiled:
     inputs: tuple[str, ...]
     parameters: tuple[str, ...]
     observed: tuple[str, ...]
-    defaults: NDArray[np.float64]  # (parameter,), the parameters' own values
+    defaults: Values  # (parameter,), the parameters' own values
     right_hand_side: Program  # derivatives of the states
     observation: Program  # the observed channels
 
     def run(
-        self, drive: Drive, rows: Rows, steps: int, *, substeps: int = SUBSTEPS, past: NDArray[np.float64] | None = None
-    ) -> tuple[NDArray[np.float64], NDArray[np.bool_]]:
+        self, drive: Drive, rows: Rows, steps: int, *, substeps: int = SUBSTEPS, past: Values | None = None
+    ) -> tuple[Values, NDArray[np.bool_]]:
         """States along each row, by Runge-Kutta of order 4.
 
         past (trial, sample, state): measured states, the first ones or all, for delays that reach before a row's
@@ -111,7 +111,7 @@ class Compiled:
             integrate(program, driven, (place, starts, values, seconds), plan, before, (found, ok))
         return found, ok
 
-    def _integrator(self, values: NDArray[np.float64]) -> tuple[int, Callable[..., None]]:  # noqa: ARG002
+    def _integrator(self, values: Values) -> tuple[int, Callable[..., None]]:  # noqa: ARG002
         """Rows that a block has room for, and what integrates them; values (row, parameter): parameters."""
         from gaitdisc.simulation.machine import BLOCK, integrate
 
@@ -120,11 +120,11 @@ class Compiled:
     def rates(
         self,
         t: ArrayLike,
-        x: NDArray[np.float64],
-        u: NDArray[np.float64],
-        values: NDArray[np.float64] | None = None,
-        late: NDArray[np.float64] | None = None,
-    ) -> NDArray[np.float64]:
+        x: Values,
+        u: Values,
+        values: Values | None = None,
+        late: Values | None = None,
+    ) -> Values:
         """Right-hand side at many points.
 
         t (point,) or (): time [s]
@@ -139,16 +139,14 @@ class Compiled:
 
     def _derivatives(
         self,
-        x: NDArray[np.float64],  # noqa: ARG002
-        given: NDArray[np.float64],
-        values: NDArray[np.float64],  # noqa: ARG002
-    ) -> NDArray[np.float64]:
+        x: Values,  # noqa: ARG002
+        given: Values,
+        values: Values,  # noqa: ARG002
+    ) -> Values:
         """Derivatives (point, state) by what the right-hand side gives (point, output)."""
         return given
 
-    def observe(
-        self, drive: Drive, rows: Rows, states: NDArray[np.float64], past: NDArray[np.float64] | None = None
-    ) -> NDArray[np.float64]:
+    def observe(self, drive: Drive, rows: Rows, states: Values, past: Values | None = None) -> Values:
         """Observed channels along rows that were run.
 
         states (row, step, state): from `run`
@@ -185,7 +183,7 @@ class Compiled:
         wraps = np.array([each.wraps for each in self.simulation.inputs], bool)
         return drive.rate, drive.time0, drive.inputs, drive.samples, wraps
 
-    def _before(self, past: NDArray[np.float64] | None) -> NDArray[np.float64]:
+    def _before(self, past: Values | None) -> Values:
         """Past with NaN for the states that it lacks, the last ones: an effect's own were never measured."""
         if past is None:
             return read_only(np.empty((0, 0, 0)))
@@ -194,7 +192,7 @@ class Compiled:
             past = np.pad(past, ((0, 0), (0, 0), (0, lacking)), constant_values=np.nan)
         return read_only(np.ascontiguousarray(past, float))
 
-    def _rows(self, drive: Drive, rows: Rows) -> tuple[NDArray[np.int64], NDArray[np.float64], NDArray[np.float64]]:
+    def _rows(self, drive: Drive, rows: Rows) -> tuple[NDArray[np.int64], Values, Values]:
         starts = np.array(rows.starts, float, order="C", ndmin=2)
         count = len(starts)
         values = self.defaults if rows.values is None else np.asarray(rows.values, float)
@@ -218,7 +216,7 @@ class Compiled:
             )
         return place, starts, np.array(np.broadcast_to(values, (count, len(self.parameters))), order="C")
 
-    def _seconds(self, program: Program, values: NDArray[np.float64]) -> NDArray[np.float64]:
+    def _seconds(self, program: Program, values: Values) -> Values:
         """Seconds of each delay of a program, (row, delay)."""
         if not program.delays:
             return np.empty((len(values), 0))

@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import NDArray
 
 from gaitdisc.errors import SimulationError
+from gaitdisc.recording.arrays import Values
 from gaitdisc.simulation.expression import Name, Tree, delays, names, parse, written
 from gaitdisc.simulation.program import at_points, compile_program
 from gaitdisc.simulation.python_simulation import PythonSimulation
@@ -14,9 +14,7 @@ from gaitdisc.simulation.simulation import Simulation
 LONGEST_S = 86_400.0  # of a delay, where no trial says how long: no trial lasts a day
 
 
-def delay_series(
-    signal: NDArray[np.float64], seconds: NDArray[np.float64], rate: float, wraps: bool = False
-) -> NDArray[np.float64]:
+def delay_series(signal: Values, seconds: Values, rate: float, wraps: bool = False) -> Values:
     """Signal some seconds ago, linear between its samples and held at the first.
 
     signal (sample,): consecutive samples

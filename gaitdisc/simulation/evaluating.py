@@ -7,9 +7,10 @@ from dataclasses import dataclass, field
 from functools import lru_cache
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
 from gaitdisc.errors import SimulationError
+from gaitdisc.recording.arrays import Values
 from gaitdisc.simulation.checking import check_expression
 from gaitdisc.simulation.delays import delay_series
 from gaitdisc.simulation.expression import names as names_in
@@ -23,18 +24,18 @@ class Points:
     """Where expressions are evaluated."""
 
     t: ArrayLike  # (point,), time [s]
-    x: NDArray[np.float64]  # (point, state), states
-    u: NDArray[np.float64]  # (point, input), inputs
+    x: Values  # (point, state), states
+    u: Values  # (point, input), inputs
     # (parameter,) or (point, parameter), parameters; the simulation's own where absent
-    values: NDArray[np.float64] | None = None
+    values: Values | None = None
     # mapping of str to float or (point,), further names, and their values
-    extras: Mapping[str, float | NDArray[np.float64]] = field(default_factory=dict)
+    extras: Mapping[str, float | Values] = field(default_factory=dict)
     # samples a second [Hz] where the points are consecutive samples of one trial, so that delays have a value; 0 where
     # they are not
     rate: float = 0.0
 
 
-def evaluate(simulation: Simulation, expression: str, points: Points) -> NDArray[np.float64]:
+def evaluate(simulation: Simulation, expression: str, points: Points) -> Values:
     """Value of one expression at each point, (point,).
 
     simulation: whose names may stand in it: states, inputs, parameters, ports, definitions, `t`
@@ -49,7 +50,7 @@ def evaluate(simulation: Simulation, expression: str, points: Points) -> NDArray
     return evaluate_many(simulation, [expression], points)[0]
 
 
-def evaluate_many(simulation: Simulation, expressions: Sequence[str], points: Points) -> NDArray[np.float64]:
+def evaluate_many(simulation: Simulation, expressions: Sequence[str], points: Points) -> Values:
     """Value of many expressions at each point, (expression, point); what they share is computed once."""
     compiled = compile_simulation(simulation)
     program = _program_of(simulation, tuple(expressions), tuple(points.extras))

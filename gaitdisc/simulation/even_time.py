@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 from gaitdisc.errors import ReadError, SamplingError
 from gaitdisc.recording import Finding
-from gaitdisc.recording.arrays import runs
+from gaitdisc.recording.arrays import Values, mean_step, runs
 
 SHORTEST = 20  # samples of a trial
 JITTER = 0.1  # of a step: how far a sample may lie from its place on the even time base
@@ -24,9 +24,9 @@ class TrialColumns:
     """What one trial gives before it is checked."""
 
     name: str
-    time: NDArray[np.float64]  # (sample,) [s], as measured
-    inputs: NDArray[np.float64]  # (sample, input), columns that the simulation needs; NaN where a cell is empty
-    observed: NDArray[np.float64]  # (sample, channel), the same of observed channels
+    time: Values  # (sample,) [s], as measured
+    inputs: Values  # (sample, input), columns that the simulation needs; NaN where a cell is empty
+    observed: Values  # (sample, channel), the same of observed channels
 
 
 def on_even_time(
@@ -88,9 +88,9 @@ def _refuse_short(trial: TrialColumns, where: str) -> None:
         )
 
 
-def _places(time: NDArray[np.float64], where: str) -> tuple[float | None, NDArray[np.intp]]:
+def _places(time: Values, where: str) -> tuple[float | None, NDArray[np.intp]]:
     """Rate of a clock that is even but for the digits that it was printed with (else None), and each row's place."""
-    mean = (time[-1] - time[0]) / (len(time) - 1)
+    mean = mean_step(time)
     off = np.abs(time - time[0] - mean * np.arange(len(time)))
     # decimals that the times were printed with, 9 at most
     decimals = (d for d in range(9) if np.all(np.abs(time - np.round(time, d)) < 1e-12 * (1 + np.abs(time))))
@@ -104,9 +104,7 @@ def _places(time: NDArray[np.float64], where: str) -> tuple[float | None, NDArra
     return None, place
 
 
-def _find_even_clock(
-    time: NDArray[np.float64], place: NDArray[np.intp], where: str
-) -> tuple[float, NDArray[np.float64]]:
+def _find_even_clock(time: Values, place: NDArray[np.intp], where: str) -> tuple[float, Values]:
     """Rate of the even clock next to a jittering one, and how far each time lies beside it (sample,) [steps]."""
     slope, first = np.polyfit(place, time, 1)
     off = (time - first) / slope - place
@@ -116,7 +114,7 @@ def _find_even_clock(
     return _round_rate(rate, JITTER * rate / len(time)), off
 
 
-def _uneven(time: NDArray[np.float64], where: str) -> SamplingError:
+def _uneven(time: Values, where: str) -> SamplingError:
     steps = np.diff(time)
     worst = int(np.argmax(np.abs(steps - np.median(steps))))
     return SamplingError(
@@ -127,7 +125,7 @@ def _uneven(time: NDArray[np.float64], where: str) -> SamplingError:
     )
 
 
-def _resample(trial: TrialColumns, time: NDArray[np.float64], inputs: tuple[str, ...]) -> tuple[TrialColumns, str]:
+def _resample(trial: TrialColumns, time: Values, inputs: tuple[str, ...]) -> tuple[TrialColumns, str]:
     """The trial at even times, and how: its samples moved, or its times alone where moving makes the channels rougher.
 
     A jittering clock is one of two things: the samples were taken at these times, or they were taken evenly and marked
@@ -144,9 +142,7 @@ def _resample(trial: TrialColumns, time: NDArray[np.float64], inputs: tuple[str,
     return even, "the samples are evenly spaced and are used with even times"
 
 
-def _along(
-    values: NDArray[np.float64], time: NDArray[np.float64], late_s: NDArray[np.float64], wraps: tuple[bool, ...]
-) -> NDArray[np.float64]:
+def _along(values: Values, time: Values, late_s: Values, wraps: tuple[bool, ...]) -> Values:
     """Columns moved along their own slopes to where an even clock would have taken them (sample, column)."""
     out = values.copy()
     for column, turns in enumerate(wraps):
@@ -158,14 +154,12 @@ def _along(
     return out
 
 
-def _between(
-    at: NDArray[np.float64], known: NDArray[np.bool_], values: NDArray[np.float64], turns: bool
-) -> NDArray[np.float64]:
+def _between(at: Values, known: NDArray[np.bool_], values: Values, turns: bool) -> Values:
     """Values at all places, linear between those that are known; of what wraps at 1 without its wraps."""
     return np.interp(at, at[known], np.unwrap(values[known], period=1.0) if turns else values[known])
 
 
-def _roughness(values: NDArray[np.float64], like: NDArray[np.float64]) -> float:
+def _roughness(values: Values, like: Values) -> float:
     """Sum over the columns of the squared third differences, each over that of another table."""
     sums = [np.nansum(np.diff(one, 3, axis=0) ** 2, axis=0) for one in (values, like)]
     return float(np.sum(sums[0] / np.where(sums[1] > 0, sums[1], 1.0)))

@@ -9,9 +9,9 @@ from functools import cached_property
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from gaitdisc.errors import SimulationError
+from gaitdisc.recording.arrays import Values
 from gaitdisc.recording.recording import several
 from gaitdisc.simulation.expression import LONGEST, written
 from gaitdisc.simulation.parts import Input, Parameter, Port, State, Term
@@ -201,7 +201,7 @@ class _Taken:
             raise _NoNumbersError(f"{self.title} returns {str(found)[:60] if found is None else type(found).__name__}")
         return [float(one) for one in flat(found)]
 
-    def gives(self, found: NDArray[np.float64]) -> bool:
+    def gives(self, found: Values) -> bool:
         """Whether derivatives (point, state) are what it returns, wherever that is a number."""
         there = [number for number, one in enumerate(self.returned) if one and np.all(np.isfinite(one))]
         own = np.array([self.returned[number] for number in there]).reshape(len(there), -1)
@@ -236,7 +236,7 @@ class _Called:
         except Exception:  # whatever a user's function raises of arrays
             return False
 
-    def __call__(self, t: Any, x: Any, u: Any, values: Any, pushes: Any) -> NDArray[np.float64]:
+    def __call__(self, t: Any, x: Any, u: Any, values: Any, pushes: Any) -> Values:
         names = (TIME, *self.taken.signals, *self.taken.numbers, *self.taken.ports)
         own = values[:, : len(self.taken.numbers)]  # parameters of effects come after the function's own
         columns = [t, *x.T, *u.T, *own.T, *pushes.T]

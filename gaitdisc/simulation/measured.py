@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from gaitdisc.errors import ReadError, SamplingError, ShapeError
 from gaitdisc.recording import Finding
-from gaitdisc.recording.arrays import read_only
+from gaitdisc.recording.arrays import Values, finite_values, read_only
 from gaitdisc.simulation.compiled_simulation import Drive
 from gaitdisc.simulation.even_time import SHORTEST, TrialColumns, clock_findings, on_even_time
 from gaitdisc.words import counted
@@ -26,7 +26,7 @@ class Measured:
     """
 
     drive: Drive
-    observed: NDArray[np.float64]  # (trial, sample, channel), measured channels; NaN beyond a trial's end
+    observed: Values  # (trial, sample, channel), measured channels; NaN beyond a trial's end
     trials: tuple[str, ...]
     channels: tuple[str, ...]  # names of the observed channels, in the order of the simulation's observations
     findings: tuple[Finding, ...] = ()  # what a user must know of them
@@ -54,7 +54,7 @@ class Measured:
         """Length of each trial (trial,)."""
         return self.drive.samples
 
-    def time(self, trial: int) -> NDArray[np.float64]:
+    def time(self, trial: int) -> Values:
         """Times of a trial's samples (sample,) [s]."""
         return self.drive.time0[trial] + np.arange(self.samples[trial]) / self.rate
 
@@ -150,7 +150,7 @@ def _constant(
     for kind, names in (("observed", channels), ("inputs", inputs)):
         for column, name in enumerate(names):
             values = [(trial.name, getattr(trial, kind)[:, column]) for trial in trials]
-            still = [trial for trial, one in values if np.ptp(one[np.isfinite(one)]) == 0]
+            still = [trial for trial, one in values if np.ptp(finite_values(one)) == 0]
             if len(still) == len(trials) and kind == "observed":
                 raise ShapeError(
                     f"an observed channel must vary: {name!r}",

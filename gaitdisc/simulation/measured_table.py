@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 from gaitdisc.channel import hint_nearest, nearest_word
 from gaitdisc.errors import ChannelError, GaitdiscError, MissingFileError, ReadError, UnitError
 from gaitdisc.recording import Finding, Recording
+from gaitdisc.recording.arrays import Values
 from gaitdisc.regular_file import LARGEST_TEXT_BYTES, check_regular
 from gaitdisc.simulation.even_time import TrialColumns
 from gaitdisc.simulation.measured import Measured, check_measured
@@ -90,8 +91,8 @@ def gather_recordings(recordings: Sequence[Recording], simulation: Simulation) -
 
 def _columns(
     name: str,
-    time: NDArray[np.float64],
-    numbers: Mapping[str, NDArray[np.float64]],
+    time: Values,
+    numbers: Mapping[str, Values],
     inputs: Sequence[str],
     channels: Sequence[str],
 ) -> TrialColumns:
@@ -188,7 +189,7 @@ def _trials(table: pd.DataFrame, file: str) -> NDArray[np.object_]:
     return table["trial"].astype(str).to_numpy(object)
 
 
-def _numbers(table: pd.DataFrame, name: str, trial: NDArray[np.object_], file: str) -> NDArray[np.float64]:
+def _numbers(table: pd.DataFrame, name: str, trial: NDArray[np.object_], file: str) -> Values:
     import pandas as pd
 
     if pd.api.types.is_datetime64_any_dtype(table[name]) or pd.api.types.is_timedelta64_dtype(table[name]):
@@ -210,7 +211,7 @@ def _numbers(table: pd.DataFrame, name: str, trial: NDArray[np.object_], file: s
     return values
 
 
-def _refuse_timeless(time: NDArray[np.float64], trial: NDArray[np.object_], file: str) -> None:
+def _refuse_timeless(time: Values, trial: NDArray[np.object_], file: str) -> None:
     bad = np.flatnonzero(~np.isfinite(time))
     if bad.size:
         raise ReadError(
@@ -245,7 +246,7 @@ def _report_left_out(
 
 def _convert(
     recording: Recording, name: str, simulation: Simulation, file: str, findings: dict[str, Finding]
-) -> NDArray[np.float64]:
+) -> Values:
     """Channel in the simulation's unit."""
     channel = recording.channels[recording.names.index(name)]
     units = {part.name: part.unit for part in (*simulation.states, *simulation.inputs)}

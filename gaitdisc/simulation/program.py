@@ -12,6 +12,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from gaitdisc.errors import SimulationError
+from gaitdisc.recording.arrays import Values
 from gaitdisc.simulation.expression import Name, Number, Operation, Tree, written
 
 CODES = {
@@ -29,7 +30,7 @@ class Program:
 
     leaves: tuple[str, ...]  # names whose values the first registers hold, in order
     delays: tuple[tuple[str, Tree], ...]  # tuple of (str, tree), signal and seconds of what the next registers hold
-    constants: NDArray[np.float64]  # (constant,), what the registers after those hold
+    constants: Values  # (constant,), what the registers after those hold
     code: NDArray[np.int64]  # (operation, 4), operation, register (or output) written, registers read
     setup: int  # how many operations at the head depend on parameters alone
     registers: int
@@ -216,9 +217,7 @@ class _Order:
         self.code += [(CODES["store"], output, self._register[node], self._register[node]) for output in outputs]
 
 
-def leaf_columns(
-    t: ArrayLike, x: NDArray[np.float64], u: NDArray[np.float64], values: NDArray[np.float64]
-) -> list[NDArray[np.float64]]:
+def leaf_columns(t: ArrayLike, x: Values, u: Values, values: Values) -> list[Values]:
     """Values of time, states, inputs and parameters in the order in which a program takes them.
 
     t (point,): time [s]
@@ -230,10 +229,10 @@ def leaf_columns(
 
 def at_points(
     program: Program,
-    columns: Sequence[NDArray[np.float64]],
-    late: NDArray[np.float64] | None = None,
+    columns: Sequence[Values],
+    late: Values | None = None,
     points: int | None = None,
-) -> NDArray[np.float64]:
+) -> Values:
     """Outputs of a program at many points, (output, point).
 
     columns each (point,) or (): values of its leaves; one number serves all points

@@ -8,13 +8,13 @@ from functools import cached_property
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from gaitdisc.errors import SimulationError
+from gaitdisc.recording.arrays import Values
 from gaitdisc.simulation.parts import Input, Lines, Parameter, Port, State
 from gaitdisc.simulation.simulation import Simulation
 
-RightHandSide = Callable[..., NDArray[np.float64]]
+RightHandSide = Callable[..., Values]
 
 
 @dataclass(frozen=True)
@@ -93,9 +93,7 @@ def any_equations(states: Sequence[State], parts: Sequence[Input | Parameter | P
     return tuple((state.name, named) for state in states)
 
 
-def call(
-    simulation: PythonSimulation, x: NDArray[np.float64], fed: NDArray[np.float64], values: NDArray[np.float64]
-) -> NDArray[np.float64]:
+def call(simulation: PythonSimulation, x: Values, fed: Values, values: Values) -> Values:
     """Derivatives by the function, with what was added to the equations.
 
     x (row, state): states

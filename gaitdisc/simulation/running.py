@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from gaitdisc.errors import SimulationError
-from gaitdisc.recording.arrays import read_only
+from gaitdisc.recording.arrays import Values, read_only
 from gaitdisc.simulation.compiled_simulation import Compiled, Drive, Rows
 from gaitdisc.simulation.expression import Number, Operation, Tree, parse
 from gaitdisc.simulation.program import compile_program
@@ -94,7 +94,7 @@ class PythonCompiled(Compiled):
 
     model: PythonSimulation
 
-    def _integrator(self, values: NDArray[np.float64]) -> tuple[int, Callable[..., None]]:
+    def _integrator(self, values: Values) -> tuple[int, Callable[..., None]]:
         """All rows as one block, whose derivatives the function gives."""
         from gaitdisc.simulation import machine
 
@@ -110,9 +110,7 @@ class PythonCompiled(Compiled):
         block = machine.integrate_block.py_func
         return lanes, FunctionType(block.__code__, {**vars(machine), "derive": derive})
 
-    def _derivatives(
-        self, x: NDArray[np.float64], given: NDArray[np.float64], values: NDArray[np.float64]
-    ) -> NDArray[np.float64]:
+    def _derivatives(self, x: Values, given: Values, values: Values) -> Values:
         """Derivatives by the function, which is fed with what the right-hand side gives."""
         return call(self.model, x, given, np.broadcast_to(values, (len(x), len(self.parameters))))
 
@@ -130,7 +128,7 @@ class Divergence:
 
 
 def divergences(
-    compiled: Compiled, drive: Drive, rows: Rows, states: NDArray[np.float64], ok: NDArray[np.bool_]
+    compiled: Compiled, drive: Drive, rows: Rows, states: Values, ok: NDArray[np.bool_]
 ) -> tuple[Divergence, ...]:
     """Where each row that did not stay finite was last seen.
 
@@ -140,9 +138,7 @@ def divergences(
     return tuple(_divergence(compiled, drive, rows, states, int(row)) for row in np.flatnonzero(~ok))
 
 
-def refuse_divergence(
-    compiled: Compiled, drive: Drive, rows: Rows, states: NDArray[np.float64], ok: NDArray[np.bool_]
-) -> None:
+def refuse_divergence(compiled: Compiled, drive: Drive, rows: Rows, states: Values, ok: NDArray[np.bool_]) -> None:
     """Refuse a run of which a row did not stay finite."""
     if np.all(ok):
         return
@@ -159,7 +155,7 @@ def refuse_divergence(
     )
 
 
-def _divergence(compiled: Compiled, drive: Drive, rows: Rows, states: NDArray[np.float64], row: int) -> Divergence:
+def _divergence(compiled: Compiled, drive: Drive, rows: Rows, states: Values, row: int) -> Divergence:
     finite = np.isfinite(states[row]).all(axis=1)
     last = int(np.argmin(finite)) - 1 if not finite.all() else len(finite) - 1
     last = max(last, 0)

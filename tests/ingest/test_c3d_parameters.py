@@ -10,7 +10,7 @@ from hypothesis import strategies as st
 from texts import says
 
 from gaitdisc.errors import ReadError
-from gaitdisc.ingest.c3d import find_layout
+from gaitdisc.ingest.c3d_layout import find_layout
 from gaitdisc.ingest.c3d_parameters import C3DParameters, decoded, read_c3d_header, read_c3d_parameters
 
 

@@ -147,7 +147,7 @@ def test_parts_of_one_file_and_one_static_trial_of_two_sessions_are_no_repetitio
 def test_two_bodies_in_one_session_are_refused_and_a_child_that_grew_is_not(monkeypatch, measure, values, said):
     files = dict(zip(("1.c3d", "2.c3d"), values, strict=True))
     monkeypatch.setattr(
-        "gaitdisc.ingest.trial_sets.body_measures_in", lambda path: BodyMeasures(**{measure: files[path.name]})
+        "gaitdisc.ingest.trial_sets.read_body_measures", lambda path: BodyMeasures(**{measure: files[path.name]})
     )
     one = _person("P01", _trial("walk", file="1.c3d"), _trial("walk", file="2.c3d"))
     assert why_refused(_study(one, nominal="walk"), one).startswith(said)
