@@ -43,7 +43,10 @@ def _write_note(own: Sequence[Noted], say: Callable[[str], str]) -> str:
     unit, (low, high) = unit_text(first.unit), (limits.low, limits.high) if first.tier == 2 else limits.band
     low, high, mean = (number(value, first.digits) for value in (low, high, limits.mean))
     sd, word = number(limits.sd, max(first.digits, 1)), say("limits") if first.tier == 2 else "2 sd:"
-    parts = [f"{say(words)}: {_each(each, first.tier, say)}" for (words, _), each in by_rule.items()]
+    parts, last = [], ""
+    for (words, _), each in by_rule.items():
+        parts.append(("" if words == last else f"{say(words)}: ") + _each(each, first.tier, say))
+        last = words
     text = (
         f"{parts[0]}; {word} {low} {say('to')} {high} {unit}, "
         f"{say('reference')} {mean} ± {sd} {unit}, {limits.people} {say('people')}"
