@@ -209,7 +209,7 @@ class Limits:
 
 @dataclass(frozen=True)
 class Noted:
-    """A value of one leg that a rule looks at."""
+    """A value of one leg that a rule looks at, or how much more than the other leg's it is."""
 
     rule: str  # its name
     words: str  # what it calls a value that stands out; no words for one that does not
@@ -222,6 +222,7 @@ class Noted:
     excess: float  # distance from the reference's mean over that of the limit; beyond 1 outside
     tier: int = 0  # 2 beyond the prediction limits, 1 outside two standard deviations of the reference, 0 within
     group: str = ""  # what else says the same thing, and in which direction
+    other: str = ""  # the other side, where the value is the difference to it
 
 
 @dataclass(frozen=True)

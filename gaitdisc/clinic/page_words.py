@@ -28,8 +28,8 @@ TEMPLATES = Path(__file__).parents[1] / "report" / "templates"
 WITH_WORDS = ("person.html.j2", "people.html.j2", "person.typ")
 TABLES = (  # headings and cells of tables, and the words between numbers in a sentence of what stands out
     "value", "left", "right", "reference", "asymmetry", "value of", "side", "limits", "people", "cycles", "stands out",
-    "curve", "file", "what", "version", "cycle", "to", "state", "person", "condition", "cycles L, R", "Side affected",
-    "both", "profile score [deg]", "why",
+    "curve", "file", "what", "version", "cycle", "to", "more than", "less than", "apart from",
+    "state", "person", "condition", "cycles L, R", "Side affected", "both", "profile score [deg]", "why",
     "green", "amber", "red", "gait profile score", "Time and distance",
     "None of {} values lies outside 2 standard deviations of the reference.", "No comparison with controls: {}.",
     "A sentence needs {} cycles of a leg; there are {}.",

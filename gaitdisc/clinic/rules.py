@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import tomllib
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cache
 from pathlib import Path
 
@@ -165,12 +165,16 @@ def outstanding(
             own = {name: float(each.mean()) for name, each in leg.values.items() if name == rule.value}
             if (number := rule.number(curves, own, leg.stance_percent)) is not None:
                 numbers.append((rule, sample, leg, number))
+    two = [rule for rule, *_ in numbers]
+    sides = [(rule, sample) for rule, own in sets if two.count(rule) == 2 and (sample := _differences(rule, own))]
     score = profile.both if profile is not None and profile.both and np.isfinite(profile.both.reference_sd) else None
-    tests, found = len(numbers) + (score is not None), []
+    tests, found = len(numbers) + len(sides) + (score is not None), []
     for rule, sample, leg, number in numbers:
         own_speed = float(leg.values[SPEED].mean()) if SPEED in leg.values and rule.value != SPEED else None
         count = len(leg.cycles[rule.variable]) if rule.variable else len(leg.values[rule.value])
         found.append(_note(rule, leg.side, number, sample.limits(tests, own_speed), count))
+    for rule, sample in sides:
+        found.append(_note_sides(rule, [one for one in found if one.rule == rule.name], sample.limits(tests)))
     if score is not None:
         limits = limits_about(score.reference_mean, score.reference_sd, score.people, tests)
         rule = Rule(SCORE, "", value="profile_deg", part="", take="", least=SCORE_LEAST, less="", more=SCORE_WORDS)
@@ -204,6 +208,28 @@ def _note(rule: Rule, side: str, number: float, limits: Limits, count: int) -> N
     group = f"{rule.group or rule.variable or rule.value} {'more' if above else 'less'}"
     shown = (number, rule.unit, rule.digits, limits, count, excess, tier, group)
     return Noted(rule.name, words if tier else "", side, *shown)
+
+
+def _note_sides(rule: Rule, both: Sequence[Noted], limits: Limits) -> Noted:
+    """Leg farther from the reference less the other: beyond the limits, where that leg's own value is not."""
+    near, far = sorted(both, key=lambda one: abs(one.value - one.limits.mean))
+    found = _note(rule, far.side, far.value - near.value, limits, min(near.cycles, far.cycles))
+    tier = 2 if found.tier == 2 > far.tier else 0
+    # which of both is the unusual one is not said where neither is by itself
+    words = (far.words or rule.name) if tier else ""
+    return replace(found, words=words, tier=tier, other=near.side)
+
+
+def _differences(rule: Rule, reference: Sequence[ReferenceLeg]) -> Sample | None:
+    """Differences of the sides of each control, both ways round; None below the fewest people."""
+    if rule.value == SPEED:
+        return None
+    people: dict[int, list[float]] = {}
+    for leg in reference:
+        if (number := rule.number(leg.curves, leg.values, leg.stance_percent)) is not None:
+            people.setdefault(leg.person, []).append(number)
+    found = np.array([own[0] - own[1] for own in people.values() if len(own) == 2])
+    return Sample(np.concatenate([found, -found]), len(found)) if len(found) >= FEWEST else None
 
 
 def _sample(rule: Rule, reference: Sequence[ReferenceLeg]) -> Sample | None:

@@ -41,7 +41,11 @@ def keep_reference(place: Path | None, run_folder: Path) -> None:
     """Copy a reference into a run, so that its pages are drawn again without it."""
     if place is None:
         return
-    found, own = load_reference(place), run_folder / REFERENCE
+    own = run_folder / REFERENCE
+    source = place / FILE if place.is_dir() else place
+    if (own / FILE).is_file() and source.is_file() and file_sha256(source) == file_sha256(own / FILE):
+        return
+    found = load_reference(place)
     if found.published:
         write_whole(own / PUBLISHED, (place / PUBLISHED if place.is_dir() else place).read_text(encoding="utf-8"))
         remove_file(own / FILE)

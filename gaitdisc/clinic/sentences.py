@@ -36,14 +36,17 @@ def write_noted(noted: Sequence[Noted], tier: int, say: Callable[[str], str] = s
 
 def _write_note(own: Sequence[Noted], say: Callable[[str], str]) -> str:
     """Value of the farthest rule beside its limits; what else says the same after it."""
-    by_rule: dict[str, list[Noted]] = {}
+    by_rule: dict[tuple[str, bool], list[Noted]] = {}
     for one in own:
-        by_rule.setdefault(one.words, []).append(one)
+        by_rule.setdefault((one.words, bool(one.other)), []).append(one)
     first, limits = own[0], own[0].limits
     unit, (low, high) = unit_text(first.unit), (limits.low, limits.high) if first.tier == 2 else limits.band
     low, high, mean = (number(value, first.digits) for value in (low, high, limits.mean))
     sd, word = number(limits.sd, max(first.digits, 1)), say("limits") if first.tier == 2 else "2 sd:"
-    parts = [f"{say(words)}: {_each(each, first.tier, say)}" for words, each in by_rule.items()]
+    parts, last = [], ""
+    for (words, _), each in by_rule.items():
+        parts.append(("" if words == last else f"{say(words)}: ") + _each(each, first.tier, say))
+        last = words
     text = (
         f"{parts[0]}; {word} {low} {say('to')} {high} {unit}, "
         f"{say('reference')} {mean} ± {sd} {unit}, {limits.people} {say('people')}"
@@ -57,8 +60,11 @@ def _each(own: Sequence[Noted], tier: int, say: Callable[[str], str]) -> str:
     for one in sorted(own, key=lambda one: one.side):
         cycles = f"{one.cycles} {say('cycle' if one.cycles == 1 else 'cycles')}"
         less = f", {MARKS[one.tier]}" if one.tier < tier else ""
-        value = f"{number(one.value, one.digits)} {unit_text(one.unit)} ({cycles}{less})"
-        found.append(f"{say(SIDE_WORDS[one.side])} {value}".strip())
+        value = f"{number(abs(one.value) if one.other else one.value, one.digits)} {unit_text(one.unit)}"
+        if one.other:  # words of a rule say which way
+            way = "apart from" if one.words != one.rule else "more than" if one.value > 0 else "less than"
+            value += f" {say(way)} {say(SIDE_WORDS[one.other])}"
+        found.append(f"{say(SIDE_WORDS[one.side])} {value} ({cycles}{less})".strip())
     return ", ".join(found)
 
 

@@ -65,14 +65,16 @@ def numbers_table(reading: ClinicalReading) -> Table:
     for one in reading.numbers:
         unit, limits = unit_text(one.unit), one.limits
         rows.append((
-            one.rule, SIDE_WORDS[one.side], f"{number(one.value, one.digits)} {unit} ({one.cycles})",
+            one.rule, " less ".join(SIDE_WORDS[side] for side in (one.side, one.other) if side),
+            f"{number(one.value, one.digits)} {unit} ({one.cycles})",
             f"{number(limits.low, one.digits)} to {number(limits.high, one.digits)}",
             f"{number(limits.mean, one.digits)} ± {number(limits.sd, max(one.digits, 1))} ({limits.people})",
             f"{MARKS[one.tier]} {one.words}".strip(),
         ))  # fmt: skip
         records.append({
-            "rule": one.rule, "words": one.words, "side": one.side, "value": one.value, "unit": one.unit,
-            "low": limits.low, "high": limits.high, "reference_mean": limits.mean, "reference_sd": limits.sd,
+            "rule": one.rule, "words": one.words, "side": one.side, "less": one.other,
+            "value": one.value, "unit": one.unit, "low": limits.low, "high": limits.high,
+            "reference_mean": limits.mean, "reference_sd": limits.sd,
             "people": limits.people, "cycles": one.cycles, "tier": one.tier,
         })  # fmt: skip
     caption = (

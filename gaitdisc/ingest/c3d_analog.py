@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import re
 from dataclasses import dataclass, replace
+from functools import cached_property
 
 from gaitdisc.channel import Channel, vocabulary
 from gaitdisc.errors import UnitError
@@ -34,7 +35,7 @@ class AnalogLabel:
         """Label without the words of the device."""
         return _DEVICE.sub("", self.label)
 
-    @property
+    @cached_property
     def muscle(self) -> Channel | None:
         """EMG channel of the vocabulary that label or description mean, or None."""
         for text in (self.label, self.plain, self.description, _DEVICE.sub("", self.description)):

@@ -159,8 +159,8 @@ class C3DParameters:
     def texts(self, group: str, name: str) -> tuple[str, ...]:
         """Texts of a parameter, with those of `NAME2`, `NAME3`, ... that carry on where 255 are not enough."""
         found: list[str] = []
-        for part in (name, *(f"{name}{number}" for number in range(2, 100))):
-            value = self.values.get((group, part))
+        for number in ("", *range(2, 100)):
+            value = self.values.get((group, f"{name}{number}"))
             if not isinstance(value, tuple):
                 break
             found.extend(value)

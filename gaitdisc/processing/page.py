@@ -183,7 +183,7 @@ def cycles_figures(pooled: PooledCycles, name: str) -> list[Figure]:
 def _figure(pooled: PooledCycles, numbers: pd.DataFrame, joints: list[str], name: str) -> Figure:
     from matplotlib.lines import Line2D
 
-    columns = [one.name for one in pooled.channels]
+    columns, curves = [one.name for one in pooled.channels], pooled.curves  # read from the disk once
     drawn, cells = panels_for(len(joints), COLUMNS, 1.15, Room(left=0.6, across=0.64, down=0.46))
     stems = {channel: sideless(channel) for channel in numbers["channel"].unique()}
     shown = numbers[numbers["channel"].map(stems).isin(joints)].reset_index(drop=True)
@@ -193,7 +193,7 @@ def _figure(pooled: PooledCycles, numbers: pd.DataFrame, joints: list[str], name
         for channel, side in own[["channel", "side"]].drop_duplicates().itertuples(index=False):
             curve = own[(own["channel"] == channel) & (own["side"] == side)]
             of_side = (pooled.kept["side"] == side).to_numpy()
-            every = pooled.curves[of_side, :, columns.index(channel)]
+            every = curves[of_side, :, columns.index(channel)]
             every = every[np.isfinite(every).any(axis=1)]
             draw_cycles(axes, every, curve["mean"].to_numpy(), curve["sd"].to_numpy(), str(side))
             off = pooled.kept.loc[of_side, "stance_percent"].mean()
@@ -214,9 +214,12 @@ def _figure(pooled: PooledCycles, numbers: pd.DataFrame, joints: list[str], name
 
 def draw_cycles(axes: Axes, every: Values, mean: Values, sd: Values, side: str) -> None:
     """Draw every cycle (cycle, phase) faint, and their mean (phase,); from three cycles on its spread."""
+    from matplotlib.collections import LineCollection
+
     look = SIDES[side]
     axes.axhline(0.0, color="#cccccc", linewidth=0.6, zorder=0)
-    axes.plot(PERCENT, every[:MOST_FAINT].T, color=look.colour, linewidth=0.4, alpha=0.35, zorder=1)
+    lines = [np.column_stack([PERCENT, cycle]) for cycle in every[:MOST_FAINT]]
+    axes.add_collection(LineCollection(lines, colors=look.colour, linewidths=0.4, alpha=0.35, zorder=1))
     if len(every) > 2:
         axes.fill_between(PERCENT, mean - sd, mean + sd, color=look.colour, alpha=0.18, linewidth=0, zorder=1)
     axes.plot(PERCENT, mean, color=look.colour, linewidth=1.2, zorder=2)

@@ -14,7 +14,7 @@ from gaitdisc._version import __version__
 from gaitdisc.own_files import note_outputs, under_this_guard
 from gaitdisc.report.figure import Figure, SavedFigure, save_figures
 from gaitdisc.report.table import Table, as_markdown, save_tables
-from gaitdisc.whole_file import write_whole
+from gaitdisc.whole_file import whole_file, write_whole
 
 Result = TypeVar("Result")
 Shown = TypeVar("Shown", Figure, SavedFigure)
@@ -23,11 +23,17 @@ MOST_PROCESSES = 4  # that draw; each holds some 400 MB
 
 def write_page(template: str, shown: Mapping[str, Any], folder: Path) -> Path:
     """Write `report.html` of a folder from what the template names, beside the version of this package."""
-    return write_whole(folder / "report.html", page_text(template, shown))
+    with whole_file(folder / "report.html") as part:  # piece by piece: of 500 people some 100 MB
+        _template(template).stream(version=__version__, **shown).dump(str(part), "utf-8")
+    return folder / "report.html"
 
 
 def page_text(template: str, shown: Mapping[str, Any]) -> str:
     """Page of a template and what it shows."""
+    return _template(template).render(version=__version__, **shown)
+
+
+def _template(name: str) -> Any:
     import jinja2
 
     templates = jinja2.Environment(
@@ -39,7 +45,7 @@ def page_text(template: str, shown: Mapping[str, Any]) -> str:
     )
     # numbers are bound to their units, so that no line breaks between them
     templates.filters["bound"] = lambda text: re.sub(r"(?<=\d) (?=(?:s|%|Hz)(?!\w))", "\u00a0", text)
-    return templates.get_template(f"{template}.html.j2").render(version=__version__, **shown)
+    return templates.get_template(f"{name}.html.j2")
 
 
 @dataclass(frozen=True, eq=False)

@@ -8,7 +8,6 @@ from itertools import pairwise
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.integrate import trapezoid
 
 from gaitdisc.errors import ComparisonError, ShapeError
 
@@ -204,7 +203,7 @@ def _stretches(t: NDArray[np.float64], threshold: float) -> Iterator[tuple[int, 
         for start, end in pairwise(edges):
             if side[start]:
                 above = np.abs(t[start:end, channel]) - threshold
-                mass = float(trapezoid(above)) if len(above) > 1 else float(above[0])
+                mass = float(((above[1:] + above[:-1]) / 2).sum()) if len(above) > 1 else float(above[0])
                 yield int(channel), int(start), int(end) - 1, int(side[start]), mass
 
 

@@ -1,11 +1,14 @@
 """Rules of what stands out: the table that holds them, and what each of them finds."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from made_clinic import ANKLE, made_controls, made_person
 from texts import says
 
 from gaitdisc.clinic.rules import Rule, find_part, outstanding, rules, rules_in
+from gaitdisc.clinic.sentences import write_noted
 from gaitdisc.errors import SchemaError
 from gaitdisc.processing.leg_curves import BY_NAME, make_legs
 from gaitdisc.processing.pooled_cycles import SPATIOTEMPORAL
@@ -92,9 +95,9 @@ def test_what_is_beyond_the_limits_by_less_than_matters_is_not_spoken_of():
     alike = made_controls(20).of("walk")
     rule = {"name": "a", "variable": "knee_flexion", "part": "contact", "take": "mean", "least": 400.0, "more": "more"}
     person = make_legs(made_person("P01", changed={"knee_angle_l": 300.0}))
-    assert [one.words for one in outstanding(person, alike, rules_in({"rules": [rule]}))[0]] == ["", ""]
+    assert [one.words for one in outstanding(person, alike, rules_in({"rules": [rule]}))[0]] == ["", "", ""]
     found = outstanding(person, alike, rules_in({"rules": [{**rule, "least": 200.0}]}))[0]
-    assert [(one.words, one.side) for one in found] == [("more", "l"), ("", "r")]
+    assert [(one.words, one.side, one.other) for one in found] == [("more", "l", ""), ("", "l", "r"), ("", "r", "")]
 
 
 def test_too_few_controls_say_nothing_in_words():
@@ -103,15 +106,44 @@ def test_too_few_controls_say_nothing_in_words():
     assert says(why, "5 people", "more", "4 people")
 
 
+def _of_leg(side, numbers):
+    (found,) = [one for one in numbers if one.side == side and not one.other]
+    return found
+
+
+def test_legs_that_differ_more_than_those_of_controls_are_noted_where_neither_is_unusual_by_itself(reference):
+    rule = {"name": "knee in swing", "variable": "knee_flexion", "part": "swing", "take": "max", "least": 1.0}
+    table = rules_in({"rules": [{**rule, "less": "reduced", "more": "increased"}]})
+    alike = _of_leg("l", outstanding(make_legs(made_person("P01", spread=0.0)), reference, table)[0])
+    even = [
+        replace(leg, curves={"knee_flexion": reference[k // 2 * 2].curves["knee_flexion"] + 0.1 * (k % 2)})
+        for k, leg in enumerate(reference)
+    ]
+    less = 1.2 * alike.limits.sd
+    legs = make_legs(made_person("P01", spread=0.0, changed={"knee_angle_l": -less, "knee_angle_r": 0.5 * less}))
+    for controls, tier in ((even, 2), (reference, 0)):
+        numbers, _ = outstanding(legs, controls, table)
+        (sides,) = [one for one in numbers if one.other]
+        assert (sides.side, sides.other, sides.tier, sides.words) == ("l", "r", tier, "knee in swing" if tier else "")
+        assert sides.value == pytest.approx(-1.5 * less, abs=0.2) and sides.limits.mean == pytest.approx(0.0)
+        assert sides.limits.people == 20 and [one.tier for one in numbers if not one.other] == [0, 0]
+    (said,) = write_noted(outstanding(legs, even, table)[0][:1], 2)
+    assert said.startswith("Knee in swing: left") and says(said, "deg less than right", "limits", "20 people")
+    few = {
+        side: replace(leg, cycles={name: each[:2] for name, each in leg.cycles.items()}) for side, leg in legs.items()
+    }
+    assert not any(one.tier for one in outstanding(few, even, table)[0])
+
+
 def test_a_number_that_prints_as_the_limit_is_not_beyond_it(reference):
     """0.3 deg below the limit is said only where the limit itself prints as a larger number."""
     rule = {"name": "a", "variable": "knee_flexion", "part": "swing", "take": "max", "least": 5.0, "less": "less"}
     plain, table = made_person("P01", spread=0.0), rules_in({"rules": [rule]})
-    usual = {one.side: one for one in outstanding(make_legs(plain), reference, table)[0]}["l"]
+    usual = _of_leg("l", outstanding(make_legs(plain), reference, table)[0])
     for shown, words in ((round(usual.limits.low), ""), (round(usual.limits.low) - 1, "less")):
         person = made_person("P01", spread=0.0, changed={"knee_angle_l": shown - usual.value})
-        found = {one.side: one for one in outstanding(make_legs(person), reference, table)[0]}["l"]
+        found = _of_leg("l", outstanding(make_legs(person), reference, table)[0])
         assert (round(found.value), found.words) == (shown, words)
     edge = made_person("P01", spread=0.0, changed={"knee_angle_l": usual.limits.low - 0.02 - usual.value})
-    found = {one.side: one for one in outstanding(make_legs(edge), reference, table)[0]}["l"]
+    found = _of_leg("l", outstanding(make_legs(edge), reference, table)[0])
     assert found.value < found.limits.low and (found.words == "") == (round(found.value) == round(found.limits.low))

@@ -4,6 +4,7 @@ import numpy as np
 import pandas as pd
 import pytest
 from made_cycles import made_cycles
+from matplotlib.collections import LineCollection
 from texts import says
 
 from gaitdisc.processing.page import (
@@ -83,8 +84,9 @@ def test_both_feet_lie_over_each_other_with_every_cycle_and_foot_off():
     titles = [axes.get_title() for axes in shown]
     assert titles[0] == "knee angle" and titles[-1].startswith("EMG")
     knee = shown[0]
-    curves = [line for line in knee.lines if len(line.get_xdata()) == 101]
-    assert len(curves) == 2 * (4 + 1)  # four cycles and their mean, of each foot
+    means = [line for line in knee.lines if len(line.get_xdata()) == 101]
+    cycles = [line for own in knee.collections if isinstance(own, LineCollection) for line in own.get_segments()]
+    assert len(means) == 2 and len(cycles) == 2 * 4 and {len(line) for line in cycles} == {101}
     assert any(np.allclose(line.get_xdata(), 60.0) for line in knee.lines if len(line.get_xdata()) == 2)
     assert says(figure.caption, "4 cycles left", "4 cycles right", "2 trials")
     assert "one plate" not in figure.caption and says(figure.caption, "1 left, 1 right")
