@@ -67,13 +67,13 @@ def cases(seed: int = 0) -> tuple[HiddenEffect, ...]:
 
 def run(quick: bool = False, folder: Path = Path("ch3_who_names")) -> Result:
     """Ask everybody about every case."""
-    noises, seeds = (NOISES[1:3], SEEDS[:1]) if quick else (NOISES, SEEDS)
+    noises, seeds = (NOISES[2:3], SEEDS[:1]) if quick else (NOISES, SEEDS)
     found: list[Naming] = []
     for noise in noises:
         for seed in seeds if noise else seeds[:1]:
             for hidden in cases(seed):
                 record = recorded(hidden.system, Conditions(noise, seed, duration_s=hidden.duration_s))
-                methods = METHODS if seed == seeds[0] and noise in CURVED else NAMING
+                methods = METHODS if not quick and seed == seeds[0] and noise in CURVED else NAMING
                 found += [discover_answer(hidden, record), *(method_answer(hidden, record, each) for each in methods)]
     block = Block("names", "Who names it", (), (naming_figure(found, "names"),), (naming_table(found),))
     return written({}, [block], "Who names the hidden effect, sections 3.4 and 3.5", folder)
