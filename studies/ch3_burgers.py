@@ -24,6 +24,7 @@ from chapter3.cell import NOISES, DiscrepancyCell, cell_of, learned_model
 from chapter3.methods import Method, MethodSettings
 from chapter3.pages import Result, field_figure, grid_table, statements_table, written
 from chapter3.record import APPROACHES, Conditions, Record, recorded
+from further import result_text
 
 import gaitdisc as gd
 from gaitdisc.report.page import Block
@@ -92,4 +93,4 @@ def artefact(record: Record) -> str:
 
 
 if __name__ == "__main__":
-    print(run(GIVEN.quick, GIVEN.folder).page)
+    print(result_text(run(GIVEN.quick, GIVEN.folder)))

@@ -34,12 +34,12 @@ import pandas as pd
 from chapter5 import gait
 from chapter5.disturbances import disturbed
 from chapter5.gait import SAGITTAL, Wanted
+from further import result_text
 
-from gaitdisc.reconstruction.reconstruct_study import CONDITION, SUBJECT
+from gaitdisc.reconstruction.reconstruct_study import SUBJECT
 from gaitdisc.reconstruction.window_model import KINDS
 from gaitdisc.reconstruction.windows import RANDOM, RULES
 from gaitdisc.report.page import Block, write_blocks
-from gaitdisc.report.table import as_markdown
 
 LEFT_OUT = "one person left out"
 ABOUT = "Ebers 2023, chapter 5, computed anew."
@@ -84,29 +84,13 @@ def population(wanted: Wanted) -> gait.Result:
     table = pd.concat([found["summary"].assign(data="cohort") for found in cells], ignore_index=True)
     errors = pd.concat([found["errors"] for found in cells])
     figure = gait.sensor_sets_figure(errors, study.title, "population", LEFT_OUT)
-    numbers = [gait.sensor_sets_table(table, gait.printed("population"), "population", LEFT_OUT)]
-    blocks = [Block("population", "Table 5.2", tuple(gait.calibration_sentences(table)), (figure,), tuple(numbers))]
-    if wanted.data.is_dir() and not wanted.quick:
-        numbers.append(across(wanted))
-        blocks.append(Block("conditions", "Another condition", (), tables=(numbers[-1],)))
+    numbers = gait.sensor_sets_table(table, gait.printed("population"), "population", LEFT_OUT)
+    blocks = [Block("population", "Table 5.2", tuple(gait.calibration_sentences(table)), (figure,), (numbers,))]
     page = write_blocks("Population models, section 5.3.3", ABOUT, blocks, wanted.folder)
-    return gait.Result(table, page, tuple(numbers))
-
-
-def across(wanted: Wanted) -> gait.Table:
-    """One runner, without and with the device, each reconstructed by models of the other condition."""
-    one, found = gait.first_person(gait.exotendon(wanted.data)), []
-    for word in ("natural", "exotendon"):
-        for sensors in gait.SENSORS:
-            cell = wanted.cell(one, sensors, f"population/exotendon_run/{word}", split=CONDITION, condition=word)
-            found.append(cell["summary"].assign(data=f"exotendon_run, {word} tested"))
-    rule = "fitted to the other condition"
-    return gait.sensor_sets_table(pd.concat(found), gait.NOTHING_PRINTED, "conditions", rule)
+    return gait.Result(table, page, (numbers,))
 
 
 if __name__ == "__main__":
     kinds = tuple(GIVEN.kinds or KINDS)
     make = {"individual": individual, "population": population}[GIVEN.part]
-    result = make(Wanted(GIVEN.quick, GIVEN.folder, GIVEN.data, kinds, GIVEN.seeds))
-    print("\n\n".join(f"{table.caption}\n\n{as_markdown(table)}" for table in result.tables))
-    print(result.page)
+    print(result_text(make(Wanted(GIVEN.quick, GIVEN.folder, GIVEN.data, kinds, GIVEN.seeds))))

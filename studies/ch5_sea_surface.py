@@ -24,9 +24,10 @@ from dataclasses import replace
 
 import pandas as pd
 from ch5_fields import Result, fields, on_departures, reconstructed_maps, route_cells, unseen_walks, written
-from chapter5.pages import field_table, histograms_figure, latent_figure, maps_figure, routes_figure
+from chapter5.pages import field_table, histograms_figure, latent_figure, maps_figure, means_table, routes_figure
 from chapter5.reconstruct_field import FieldCell, latent_sizes, targets_of
 from chapter5.routes import Route, circuit, fixed_at_random, joined
+from further import result_text
 
 import gaitdisc as gd
 from gaitdisc.reconstruction.window_model import KINDS
@@ -56,7 +57,7 @@ def run(
 ) -> Result:
     """Compute every route under both splits, the latent sizes, and a path never seen."""
     kinds = tuple(kinds or (("linear", "delay ridge") if quick else KINDS))
-    every, blocks = [], [Block("printed", "What Table 5.1 prints", (PRINTED,))]
+    every, of_routes, blocks = [], [], [Block("printed", "What Table 5.1 prints", (PRINTED,))]
     for number, (field, task, region) in enumerate(fields(), 1):
         cells: list[FieldCell] = []
         routes = routes_of(field, task.season, region)
@@ -91,8 +92,10 @@ def run(
         ]
         blocks.append(Block(f"field-{number}", task.name, (), tuple(drawn), tuple(tables)))
         every += [*cells, *apart, *unseen]
+        of_routes += cells
+    blocks.insert(1, Block("means", "Mean over the routes", (), tables=(means_table(of_routes, "means"),)))
     return written(every, blocks, "Sea surface, section 5.3.2", folder)
 
 
 if __name__ == "__main__":
-    print(run(GIVEN.quick, GIVEN.folder, GIVEN.kinds, GIVEN.seeds).page)
+    print(result_text(run(**vars(GIVEN))))

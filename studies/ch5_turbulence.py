@@ -30,6 +30,7 @@ from chapter5.pages import boxes_figure, flow_figure, histograms_figure, maps_fi
 from chapter5.reconstruct_field import CEILING, FieldTask, prepare, targets_of
 from chapter5.routes import Route, fixed, fixed_at_random, random_walk
 from chapter5.turbulence import FlowSettings, record_turbulence
+from further import result_text
 
 from gaitdisc.reconstruction.windows import RANDOM, Lags
 from gaitdisc.report.page import Block
@@ -52,7 +53,7 @@ def run(
     """Compute the flow, reconstruct it from fixed and from walking sensors under both splits, and draw Fig. 5.2."""
     settings = FlowSettings(nodes=24, cut=16, spin_up=300) if quick else FlowSettings(nodes, cut or 5 * nodes // 6)
     kinds, models = (KINDS[:2], min(models, 3)) if quick else (KINDS, models)
-    flow, numbers = record_turbulence(settings, folder / "flow", _said("flow"))
+    flow, numbers = record_turbulence(settings, folder / "flow")
     cells, shown = [], {}
     for rule in SPLITS:
         task = replace(TASK, rule=rule)
@@ -80,16 +81,5 @@ def run(
     return written(cells, [block], "Turbulence, section 5.3.1", folder)
 
 
-def _said(what: str):
-    tenths: list[int] = []
-
-    def say(fraction: float) -> None:
-        if not tenths or int(10 * fraction) > tenths[-1]:
-            tenths.append(int(10 * fraction))
-            print(f"{what}: {100 * fraction:.0f} %", flush=True)
-
-    return say
-
-
 if __name__ == "__main__":
-    print(run(**vars(GIVEN)).page)
+    print(result_text(run(**vars(GIVEN))))
