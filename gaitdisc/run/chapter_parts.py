@@ -49,8 +49,8 @@ PARTS = (
     Part(5, "turbulence", "ch5_turbulence", "5.3.1, Fig. 5.2, on substitute data", 8, 0.3),
     Part(5, "real_people", "ch5_further", "5.2, Fig. 5.1, 5.3.3, 6.2.3: the text's network, people, forecasts", 12, 0.7,
          quick_words=(OUT, "--quick", "--tables", "text", "population", "turns"), data="gait/exotendon_run"),
-    Part(5, "beyond", "ch5_beyond", "6.2.3 and later work: few strides, speed, spread, simulated walkers", 6, 1,
-         data="gait/exotendon_run"),
+    Part(5, "beyond", "ch5_beyond", "6.2.3 and later work: few strides, speed, spread, simulated walkers", 6, 0.4,
+         quick_words=(OUT, "--quick", "--tables", "few", "speed"), data="gait/exotendon_run"),
 )  # fmt: skip
 CHAPTERS = tuple(dict.fromkeys(part.chapter for part in PARTS))
 
