@@ -118,9 +118,8 @@ def answer(tool, seed, answer, accuracy, diverged=None):
 
 def test_a_tile_says_the_answer_of_most_seeds_and_the_forecast():
     names = [answer("sindy", k, a, 90.0) for k, a in enumerate(("named", "named", "curve"))]
-    figure = naming_figure(
-        namings_table([*names, answer("gp", 0, "curve", -2e4), answer("nn", 0, "curve", 5.0, diverged=3.0)]), "n"
-    )
+    names += [answer("gp", 0, "curve", -2e4), answer("nn", 0, "curve", 5.0, diverged=3.0)]
+    figure = naming_figure(namings_table(names), "n")
     assert figure.numbers["kind"].tolist() == ["right", "curve", "curve"]
     assert figure.numbers["forecast"].tolist() == ["90", "<−999", "div."]
     texts = [text.get_text() for text in figure.drawn.axes[0].texts]
