@@ -4,15 +4,16 @@ from __future__ import annotations
 
 from dataclasses import dataclass, replace
 
+import ch3_burgers
 import ch3_lorenz
 import ch3_measurement_bias
 import ch3_van_der_pol
-from chapter3.cell import NOISES
+from chapter3.burgers import burgers, local_cell, recorded_field
+from chapter3.cell import FOUR_METHODS, NOISES, DiscrepancyCell, cell_of
 from chapter3.kept_cells import FURTHER
 from chapter3.methods import Method, MethodSettings
-from chapter3.record import Approach, Conditions, System, further_start, recorded
+from chapter3.record import Approach, Conditions, Record, System, further_start, recorded
 
-FOUR: tuple[Method, ...] = ("sindy", "dmd", "gp", "nn")
 LONG, SHORT = 50.0, 10.0
 
 
@@ -23,10 +24,21 @@ class CellSet:
     system: System
     conditions: Conditions
     approach: Approach = "dynamics"
-    methods: tuple[Method, ...] = FOUR
+    methods: tuple[Method, ...] = FOUR_METHODS
     noises: tuple[float, ...] = NOISES  # shares of each channel's standard deviation
     seeds: int = 12
     settings: MethodSettings | None = None
+    field: bool = False  # its noise is taken out over space too, and all but DMD learn one function of each point
+
+    def record(self, **conditions: float) -> Record:
+        """A record under the conditions of the set but for these."""
+        return (recorded_field if self.field else recorded)(self.system, replace(self.conditions, **conditions))
+
+    def cell(self, record: Record, method: Method) -> DiscrepancyCell:
+        """What a method makes of a record."""
+        if self.field and method != "dmd":
+            return local_cell(record, method)
+        return cell_of(record, method, self.approach, self.settings)
 
 
 def cell_sets() -> dict[str, CellSet]:
@@ -48,6 +60,14 @@ def cell_sets() -> dict[str, CellSet]:
         "van_der_pol_text_state": CellSet(text, long, "state"),
         "van_der_pol_code_state": CellSet(code, long, "state"),
         "lorenz_state": CellSet(lorenz, long, "state"),
+        "burgers": CellSet(
+            burgers(ch3_burgers.CUBICS["text, with the pulse of the code"]),
+            long,
+            methods=("sindy", "dmd", "nn"),
+            seeds=6,
+            settings=ch3_burgers.SETTINGS,
+            field=True,
+        ),
     }
     return found | {
         f"{name}{FURTHER}{number:02d}": replace(begun, noises=NOISES[1:], seeds=6)

@@ -14,10 +14,11 @@ from command_line import report_line
 
 GIVEN = report_line(__name__, __doc__, "ch3_measurement_bias")  # before the slow imports
 
-from chapter3.cell import ALL_METHODS, NOISES, grid
+from chapter3.cell import ALL_METHODS, FOUR_METHODS, NOISES, grid
 from chapter3.methods import MethodSettings
 from chapter3.pages import Result, blocks_of, written
 from chapter3.record import APPROACHES, Conditions, System, system_of
+from further import result_text
 
 import gaitdisc as gd
 
@@ -41,11 +42,11 @@ def systems() -> dict[str, System]:
 
 def run(quick: bool = False, folder: Path = Path("ch3_measurement_bias")) -> Result:
     """Compute all cells, draw the figures."""
-    noises, seeds = (NOISES[:2], SEEDS[:1]) if quick else (NOISES, SEEDS)
-    chosen, conditions = (ALL_METHODS, APPROACHES[1:]), Conditions(duration_s=20.0)
+    noises, seeds, methods = (NOISES[:1], SEEDS[:1], FOUR_METHODS) if quick else (NOISES, SEEDS, ALL_METHODS)
+    chosen, conditions = (methods, APPROACHES[1:]), Conditions(duration_s=20.0)
     cells = {name: grid(system, conditions, noises, seeds, chosen, SETTINGS) for name, system in systems().items()}
     return written(cells, blocks_of(cells, FIGURES, STATED), "Measurement bias, section 3.4.4", folder)
 
 
 if __name__ == "__main__":
-    print(run(GIVEN.quick, GIVEN.folder).page)
+    print(result_text(run(GIVEN.quick, GIVEN.folder)))

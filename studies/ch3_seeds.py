@@ -26,16 +26,14 @@ GIVEN = command_line(
 
 import sys
 import warnings
-from dataclasses import replace
 from itertools import product
 
 import numpy as np
 import pandas as pd
 from ch3_cell_sets import CellSet, cell_sets, chosen_sets
-from chapter3.cell import METHODS, RECONSTRUCTION, DiscrepancyCell, cell_of
+from chapter3.cell import METHODS, RECONSTRUCTION, DiscrepancyCell
 from chapter3.kept_cells import CELLS, FURTHER, measured, sets_tables
 from chapter3.recommend import FOUND, evidence_of
-from chapter3.record import recorded
 
 from gaitdisc.report.table import save_table
 
@@ -45,18 +43,17 @@ def compute(folder: Path, sets: dict[str, CellSet], seeds: int) -> None:
     warm = set()  # no cell's seconds hold importing and compiling
     for seed, (name, cells) in product(range(seeds), sets.items()):
         for noise in (noise for noise in cells.noises if seed < (cells.seeds if noise else 1)):
-            record = recorded(cells.system, replace(cells.conditions, noise=noise, seed=seed))
+            record = cells.record(noise=noise, seed=seed)
             for method in cells.methods:
                 path = folder / f"{name}-{noise:g}-{seed:02d}-{method}.csv"
                 if path.exists():
                     continue
-                if (method, cells.approach) not in warm:
-                    first = recorded(cells.system, replace(cells.conditions, duration_s=600 * 0.01, dt_s=0.01))
-                    cell_of(first, method, cells.approach)
-                    warm.add((method, cells.approach))
-                table = rows_of(cell_of(record, method, cells.approach, cells.settings))
+                if (method, cells.approach, cells.field) not in warm:
+                    cells.cell(cells.record(duration_s=600 * 0.01, dt_s=0.01), method)
+                    warm.add((method, cells.approach, cells.field))
+                table = rows_of(cells.cell(record, method))
                 table.insert(0, "set", name)
-                table["variant"] += ", begun elsewhere" * (FURTHER in name)
+                table["variant"] += ", begun elsewhere" * (FURTHER in name) + ", a field" * cells.field
                 save_table(table, path)
                 print(path.name, file=sys.stderr, flush=True)
 
@@ -77,17 +74,25 @@ def rows_of(cell: DiscrepancyCell) -> pd.DataFrame:
 
 
 def gathered(folder: Path) -> pd.DataFrame:
-    """Every cell of a folder, in the order of the sets, methods, noises and seeds."""
-    table = pd.concat([pd.read_csv(path) for path in sorted(folder.glob("*-*-*-*.csv"))], ignore_index=True)
+    """Every cell of a folder."""
+    return in_order(pd.concat([pd.read_csv(path) for path in sorted(folder.glob("*-*-*-*.csv"))], ignore_index=True))
+
+
+def in_order(table: pd.DataFrame) -> pd.DataFrame:
+    """Cells in the order of the sets, methods, noises and seeds."""
     order = {name: k for k, name in enumerate([*cell_sets(), *METHODS])}
     rank = table.assign(set=table["set"].map(order), method=table["method"].map(order))
     return table.loc[rank.sort_values(["set", "method", "noise", "seed"], kind="stable").index]
 
 
 def keep(folder: Path) -> None:
-    """Write the table of all cells, and what `recommend` answers from."""
+    """Write the table of all cells, those of the folder in place of what was kept of them, and `recommend`'s."""
     table = gathered(folder)
-    save_table(table[(table["part"] != RECONSTRUCTION) | ~table["set"].str.contains(FURTHER)], CELLS)
+    table = table[(table["part"] != RECONSTRUCTION) | ~table["set"].str.contains(FURTHER)]
+    cell = ["set", "noise", "seed", "method"]
+    old = measured()
+    renewed = old.set_index(cell).index.isin(table.set_index(cell).index)
+    save_table(in_order(pd.concat([old[~renewed], table], ignore_index=True)), CELLS)
     save_table(evidence_of(measured().query("approach == 'dynamics' and variant == 'right'")), FOUND)
 
 
@@ -98,6 +103,6 @@ if __name__ == "__main__":
         GIVEN.folder.mkdir(parents=True, exist_ok=True)
         with warnings.catch_warnings():
             warnings.simplefilter("ignore")
-            quick = (["van_der_pol_text"], [0.0, 0.01]) if GIVEN.quick else (GIVEN.sets, GIVEN.noises)
+            quick = (["van_der_pol_text"], [0.01]) if GIVEN.quick else (GIVEN.sets, GIVEN.noises)
             compute(GIVEN.folder, chosen_sets(*quick), 1 if GIVEN.quick else GIVEN.seeds)
         print(sets_tables(gathered(GIVEN.folder)))

@@ -18,6 +18,7 @@ GIVEN = command_line(__name__, __doc__, TABLE)  # before the slow imports
 
 import numpy as np
 import pandas as pd
+from chapter3.cell import FOUR_METHODS as FOUR
 from chapter3.kept_cells import (
     FURTHER,
     NUMBERS,
@@ -34,7 +35,7 @@ from markdown_table import markdown_table
 import gaitdisc as gd
 from gaitdisc.statistics.signed_rank import exact_p
 
-FOUR, ALPHA = ("sindy", "dmd", "gp", "nn"), 0.05
+ALPHA = 0.05
 RANKED = {
     "van_der_pol_text": ("forecast", "Van der Pol, text [% less RMSE]"),
     "van_der_pol_code": ("forecast", "Van der Pol, code [% less RMSE]"),

@@ -1,21 +1,24 @@
 """Chapter 4 whole: the response of twelve walkers to an ankle spring, from recordings to Figs. 4.2, 4.3 and 4.4.
 
-    python studies/ch4_ankle_exo.py [FOLDER] [--quick]
+    python studies/ch4_ankle_exo.py [FOLDER] [--quick] [--jobs 2]
 
 The embedded cohort walks 240 s without and with the spring, its recordings are written as a laboratory's and read back,
 and what `gaitdisc ablate` does is done to them. FOLDER/report holds the figures (comparison is Fig. 4.2, reduction and
 residual-* Fig. 4.3, quantity Fig. 4.4) with their tables and CSV; FOLDER/printed.csv what the dissertation prints, and
-beside it what is found here.
+beside it what is found here. Printed are that table, R2 by variable, the tests, the reductions and the lengths.
 """
 
 from __future__ import annotations
 
 from pathlib import Path
 
-from command_line import KEPT, report_line
+from command_line import KEPT, QUICK, argument, command_line
 
-GIVEN = report_line(__name__, __doc__, "ch4", KEPT)  # before the slow imports
+OUT, JOBS = argument("folder", KEPT, Path("ch4")), argument("--jobs", "people side by side", 2)
+GIVEN = command_line(__name__, __doc__, OUT, QUICK, JOBS)  # before the slow imports
 
+import os
+import time
 import tomllib
 from dataclasses import dataclass
 
@@ -26,7 +29,12 @@ from markdown_table import markdown_table
 import gaitdisc as gd
 from gaitdisc.cohort.demonstration import write_demonstration
 from gaitdisc.ingest.study_file import load_study
+from gaitdisc.report.table import as_markdown
+from gaitdisc.response.data_quantity_page import length_table
+from gaitdisc.response.over_participants_page import baseline_table, reduction_table
 from gaitdisc.response.page import write_report
+from gaitdisc.response.pair_tests import comparison_tables
+from gaitdisc.response.r2_tables import study_r2_table
 from gaitdisc.run.vary_study import ablate_study
 from gaitdisc.run.workers import Workers
 
@@ -59,9 +67,20 @@ def run(quick: bool, folder: Path = Path("ch4"), jobs: int = 2) -> Result:
     return Result(done, printed, page)
 
 
+def tables(result: Result) -> str:
+    """Every table of the chapter, as documents hold it, below its caption."""
+    run = result.run
+    first = markdown_table(" | dissertation | embedded cohort", result.printed.iloc[:, :3].itertuples(index=False))
+    made = (study_r2_table, baseline_table, reduction_table, length_table)
+    found = [*(make(run) for make in made), *comparison_tables(run)]
+    return "\n\n".join([first, *(f"{one.caption}\n\n{as_markdown(one)}" for one in found if one is not None)])
+
+
 if __name__ == "__main__":
-    result = run(GIVEN.quick, GIVEN.folder)
-    print(markdown_table(" | dissertation | embedded cohort", result.printed.iloc[:, :3].itertuples(index=False)))
+    begun = time.perf_counter()
+    result = run(GIVEN.quick, GIVEN.folder, GIVEN.jobs)
+    print(tables(result))
     for refusal in result.run.refusals:
         print(f"left out: {refusal.participant} {refusal.condition}: {refusal.reason}")
-    print(f"report: {result.page}")
+    spent = f"{time.perf_counter() - begun:.0f} s with {GIVEN.jobs} jobs, {sum(os.times()[:4]):.0f} s of cores"
+    print(f"{spent}; report: {result.page}")

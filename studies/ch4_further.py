@@ -22,14 +22,14 @@ from chapter4.runners import band, curve, people, quartiles, search, terms
 from further import Made, main
 
 MADE = {
-    "band": Made(band, "running, n = 10 outputs of one person, last 12.5 % held out"),
+    "band": Made(band, "running, one person, last 12.5 % held out", "outputs"),
     "people": Made(
         lambda quick: quartiles(people(quick)),
         "90 % bands, 8 outputs a person, 60 s, last 12.5 % of device walking held out",
     ),
     "terms": Made(terms, "welk007, running, last 12.5 % held out"),
     "search": Made(search, "runs, ten outputs, last 12.5 % held out"),
-    "curve": Made(curve, "Discrepancy of welk007, n = 10 outputs, last 12.5 % held out"),
+    "curve": Made(curve, "Discrepancy of welk007, last 12.5 % held out", "outputs"),
 }
 
 if __name__ == "__main__":

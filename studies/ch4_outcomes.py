@@ -82,7 +82,7 @@ def moments(quick: bool) -> Iterator[Number]:
 
 
 MADE = {
-    "moments": Made(moments, "stance, one child left out"),
+    "moments": Made(moments, "stance, one child left out", "children"),
     "energy": Made(energy, "metabolic power, one person left out, own mean known; nine settings each"),
 }
 

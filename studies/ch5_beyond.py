@@ -91,8 +91,8 @@ def spread(quick: bool) -> Iterator[Number]:
 
 MADE = {
     "few": Made(few, "RMSE of 7 angles [deg], welk007, ten strides known, n = 1 person"),
-    "speed": Made(speed, "7 angles, treadmill, one walk left out"),
-    "spread": Made(spread, "90 % intervals, runner, split in time, n = 12 angles"),
+    "speed": Made(speed, "7 angles, one person on a treadmill, one walk left out", "walks"),
+    "spread": Made(spread, "90 % intervals, one runner, split in time", "angles"),
     "simulated": Made(
         lambda quick: simulated(quick, GIVEN.folder / "recordings"),
         "7 angles, S01's last four walks, fitted to simulated walkers",

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import asdict, dataclass, replace
 from pathlib import Path
 
 import numpy as np
@@ -11,8 +11,11 @@ from chapter5.files import read_navy_winds, read_oisst, read_sst_mat, read_sst_p
 from chapter5.reconstruct_field import (
     FieldCell,
     FieldTask,
+    Targets,
+    load_cells,
     prepare,
     reconstruct_field,
+    save_cells,
     snapshots_of,
     targets_of,
     unseen_path,
@@ -51,6 +54,18 @@ def fields() -> Iterator[tuple[gd.Field, FieldTask, str]]:
     yield sst, FieldTask("Pacific temperature anomaly", Lags(12, 1), season=12), "pacific"
     winds = read_navy_winds(FIELDS / "navy_winds" / "monthly_navy_winds.npz")
     yield winds, FieldTask("winds of the globe", Lags(7, 1), season=12), "globe"
+
+
+def route_cells(
+    field: gd.Field, route: Route, task: FieldTask, kinds: Sequence[str], targets: Targets, path: Path
+) -> list[FieldCell]:
+    """Every kind of model on one route, kept in a file; floor and ceiling with the first seed alone."""
+    made_by = {"task": asdict(task), "field": [*vars(field.source).values(), *field.values.shape], "kinds": kinds}
+    found = load_cells(made_by, path)
+    if found is None:
+        found = reconstruct_field(field, route, task, kinds, task.seed == 0, targets)
+        save_cells(found, made_by, path)
+    return found
 
 
 def reconstructed_maps(field: gd.Field, route: Route, task: FieldTask, kind: str, rules: Sequence[str]) -> dict:

@@ -118,7 +118,7 @@ MADE = {
     "latent": Made(latent, "SHRED, runner, split in time, n = 1 run"),
     "population": Made(population, "RMSE of 7 angles [deg], one person left out"),
     "ahead": Made(ahead, "RMSE of 12 angles [deg], runner, split in time, n = 1 run"),
-    "turns": Made(turns, "RMSE of 10 angles [deg], one child left out"),
+    "turns": Made(turns, "RMSE of 10 angles [deg], one child left out", "children"),
 }
 
 if __name__ == "__main__":

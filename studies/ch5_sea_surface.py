@@ -15,17 +15,19 @@ from command_line import KEPT, QUICK, argument, command_line
 
 OUT = argument("folder", KEPT, Path("ch5_sea_surface"))
 OF_MODEL = argument("--kinds", "of model, the text's own is shred-text (default: the usual five)", nargs="+")
-GIVEN = command_line(__name__, __doc__, OUT, QUICK, OF_MODEL)  # before the slow imports
+SEEDS = argument("--seeds", "of the networks and the random features: 0 to one less than this", 1)
+GIVEN = command_line(__name__, __doc__, OUT, QUICK, OF_MODEL, SEEDS)  # before the slow imports
 
 import tomllib
 from collections.abc import Sequence
 from dataclasses import replace
 
 import pandas as pd
-from ch5_fields import Result, fields, on_departures, reconstructed_maps, unseen_walks, written
-from chapter5.pages import field_table, histograms_figure, latent_figure, maps_figure, routes_figure
-from chapter5.reconstruct_field import FieldCell, latent_sizes, reconstruct_field, targets_of
+from ch5_fields import Result, fields, on_departures, reconstructed_maps, route_cells, unseen_walks, written
+from chapter5.pages import field_table, histograms_figure, latent_figure, maps_figure, means_table, routes_figure
+from chapter5.reconstruct_field import FieldCell, latent_sizes, targets_of
 from chapter5.routes import Route, circuit, fixed_at_random, joined
+from further import result_text
 
 import gaitdisc as gd
 from gaitdisc.reconstruction.window_model import KINDS
@@ -50,17 +52,21 @@ def routes_of(field: gd.Field, period: int, region: str) -> list[Route]:
     return [fixed_at_random(field, 3, 0), fixed_at_random(field, 1, 0), a, b, c, *several]
 
 
-def run(quick: bool = False, folder: Path = Path("ch5_sea_surface"), kinds: Sequence[str] | None = None) -> Result:
+def run(
+    quick: bool = False, folder: Path = Path("ch5_sea_surface"), kinds: Sequence[str] | None = None, seeds: int = 1
+) -> Result:
     """Compute every route under both splits, the latent sizes, and a path never seen."""
     kinds = tuple(kinds or (("linear", "delay ridge") if quick else KINDS))
-    every, blocks = [], [Block("printed", "What Table 5.1 prints", (PRINTED,))]
+    every, of_routes, blocks = [], [], [Block("printed", "What Table 5.1 prints", (PRINTED,))]
     for number, (field, task, region) in enumerate(fields(), 1):
         cells: list[FieldCell] = []
         routes = routes_of(field, task.season, region)
         targets = {rule: targets_of(field, replace(task, rule=rule)) for rule in SPLITS}
-        for route in routes:
+        for place, route in enumerate(routes):
             for rule in SPLITS:
-                cells += reconstruct_field(field, route, replace(task, rule=rule), kinds, True, targets[rule])
+                for seed in range(seeds):
+                    path = folder / "cells" / f"{number}-{place}-{rule.split()[0]}-{seed}.json"
+                    cells += route_cells(field, route, replace(task, rule=rule, seed=seed), kinds, targets[rule], path)
                 print(f"{task.name}: {route.name}, {rule}: {cells[-1].model} R2 {cells[-1].r2:.3f}", flush=True)
         paths = {route.name: route.places(field)[: task.season + 1, 0] for route in routes[1:5]}
         shown = [cell for cell in cells if (cell.quantity, cell.model) == (field.quantities[0], kinds[-1])]
@@ -86,8 +92,10 @@ def run(quick: bool = False, folder: Path = Path("ch5_sea_surface"), kinds: Sequ
         ]
         blocks.append(Block(f"field-{number}", task.name, (), tuple(drawn), tuple(tables)))
         every += [*cells, *apart, *unseen]
+        of_routes += cells
+    blocks.insert(1, Block("means", "Mean over the routes", (), tables=(means_table(of_routes, "means"),)))
     return written(every, blocks, "Sea surface, section 5.3.2", folder)
 
 
 if __name__ == "__main__":
-    print(run(GIVEN.quick, GIVEN.folder, GIVEN.kinds).page)
+    print(result_text(run(**vars(GIVEN))))

@@ -23,21 +23,14 @@ GIVEN = command_line(
     argument("--cut", "side of the part that is kept, in nodes (default: five sixths of the box)", type=int),
 )  # before the slow imports
 
-from dataclasses import asdict, replace
+from dataclasses import replace
 
-from ch5_fields import Result, middle_of, written
+from ch5_fields import Result, middle_of, route_cells, written
 from chapter5.pages import boxes_figure, flow_figure, histograms_figure, maps_figure, medians_table
-from chapter5.reconstruct_field import (
-    CEILING,
-    FieldTask,
-    load_cells,
-    prepare,
-    reconstruct_field,
-    save_cells,
-    targets_of,
-)
+from chapter5.reconstruct_field import CEILING, FieldTask, prepare, targets_of
 from chapter5.routes import Route, fixed, fixed_at_random, random_walk
 from chapter5.turbulence import FlowSettings, record_turbulence
+from further import result_text
 
 from gaitdisc.reconstruction.windows import RANDOM, Lags
 from gaitdisc.report.page import Block
@@ -59,8 +52,8 @@ def run(
 ) -> Result:
     """Compute the flow, reconstruct it from fixed and from walking sensors under both splits, and draw Fig. 5.2."""
     settings = FlowSettings(nodes=24, cut=16, spin_up=300) if quick else FlowSettings(nodes, cut or 5 * nodes // 6)
-    kinds = KINDS[:2] if quick else KINDS
-    flow, numbers = record_turbulence(settings, folder / "flow", _said("flow"))
+    kinds, models = (KINDS[:2], min(models, 3)) if quick else (KINDS, models)
+    flow, numbers = record_turbulence(settings, folder / "flow")
     cells, shown = [], {}
     for rule in SPLITS:
         task = replace(TASK, rule=rule)
@@ -69,14 +62,8 @@ def run(
             walk = random_walk(flow, run_number)
             stays = Route("1 fixed", fixed_at_random(flow, 1, run_number).points)
             for route in (stays, Route("1 walking", walk.points)):
-                seeded = replace(task, seed=run_number)
-                made_by = {"task": asdict(seeded), "flow": asdict(settings), "kinds": kinds}
                 path = folder / "cells" / f"{rule.split()[0]}-{route.name.split()[-1]}-{run_number}.json"
-                found = load_cells(made_by, path)
-                if found is None:
-                    found = reconstruct_field(flow, route, seeded, kinds, run_number == 0, targets)
-                    save_cells(found, made_by, path)
-                cells += found
+                cells += route_cells(flow, route, replace(task, seed=run_number), kinds, targets, path)
                 print(f"{rule}, {route.name} {run_number + 1} of {models}: R2 {cells[-1].r2:.3f}", flush=True)
         ready = prepare(flow, fixed(flow, [0]), task, targets)
         middle, snapshot = middle_of(ready.test)
@@ -94,16 +81,5 @@ def run(
     return written(cells, [block], "Turbulence, section 5.3.1", folder)
 
 
-def _said(what: str):
-    tenths: list[int] = []
-
-    def say(fraction: float) -> None:
-        if not tenths or int(10 * fraction) > tenths[-1]:
-            tenths.append(int(10 * fraction))
-            print(f"{what}: {100 * fraction:.0f} %", flush=True)
-
-    return say
-
-
 if __name__ == "__main__":
-    print(run(**vars(GIVEN)).page)
+    print(result_text(run(**vars(GIVEN))))

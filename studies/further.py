@@ -1,4 +1,4 @@
-"""What `ch4_further.py` and `ch5_further.py` have in common: tables computed one by one, kept, and printed."""
+"""What studies of chapters have in common: their result as text, tables computed one by one, kept, and printed."""
 
 from __future__ import annotations
 
@@ -8,13 +8,13 @@ import warnings
 from argparse import Namespace
 from collections.abc import Callable, Iterator, Mapping
 from pathlib import Path
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 import pandas as pd
 from markdown_table import markdown_table
 
-from gaitdisc.report.table import save_table
+from gaitdisc.report.table import as_markdown, save_table
 
 
 class Number(NamedTuple):
@@ -27,10 +27,11 @@ class Number(NamedTuple):
 
 
 class Made(NamedTuple):
-    """A table: how it is computed, quickly or whole; its heading says unit and split."""
+    """A table: how it is computed, quickly or whole; its heading says unit and split, and `of` what n counts."""
 
     computed: Callable[[bool], Iterator[Number]]
     heading: str
+    of: str = "people"
 
 
 def main(given: Namespace, tables: Mapping[str, Made], kept: Path) -> None:
@@ -66,11 +67,11 @@ def printed(found: pd.DataFrame, name: str, made: Made) -> str:
     for row in dict.fromkeys(some["row"]):
         own = some[some["row"] == row]
         cells = [own.loc[own["column"] == column, "value"].to_numpy(float) for column in columns]
-        rows.append((str(row), *map(_said, cells)))
+        rows.append((str(row), *(_said(values, made.of) for values in cells)))
     return markdown_table(" | ".join((made.heading, *map(str, columns))), rows)
 
 
-def _said(values: np.ndarray) -> str:
+def _said(values: np.ndarray, of: str) -> str:
     known = values[np.isfinite(values)]
     if not len(values):
         return ""
@@ -79,4 +80,9 @@ def _said(values: np.ndarray) -> str:
     lost = f", {len(values) - len(known)} diverged" * (len(known) < len(values))
     if len(known) == 1:
         return f"{known[0]:.3g}{lost}"
-    return f"{np.median(known):.3g} [{known.min():.3g}, {known.max():.3g}], n = {len(known)}{lost}"
+    return f"{np.median(known):.3g} [{known.min():.3g}, {known.max():.3g}], n = {len(known)} {of}{lost}"
+
+
+def result_text(result: Any) -> str:
+    """Every table of a study's result below its caption, and where its page is."""
+    return "\n\n".join([*(f"{one.caption}\n\n{as_markdown(one)}" for one in result.tables), str(result.page)])

@@ -12,7 +12,7 @@ NUMBER = re.compile(r"(?<![\w.])[-−+]?\d[\d,]*(?:\.\d+)?(?:e[-+]?\d+)?|(?<![\w
 PLACEHOLDER, WIDTH, SLOW = "#", 150, ", slow"  # of a form: more than half a minute
 CODE = re.compile(r"^```.*?^```", re.DOTALL | re.MULTILINE)
 TABLE = re.compile(r"^(.*)\n(\|.*)\n\|[-: |]+$", re.MULTILINE)  # the line above, and the heads
-MEASURED = re.compile(r"<!-- measured by: (.+?) \| [0-9a-f]{8}, .+ -->")
+MEASURED = re.compile(r"<!-- measured by: (?!no command)(.+?) \| [0-9a-f]{8}, .+ -->")
 
 
 @dataclass(frozen=True)

@@ -59,10 +59,10 @@ def as_markdown(table: Table) -> str:
     |---|---|
     | 3.4 | a |
     """
-    rows = ["| " + " | ".join(table.columns) + " |", "|" + "---|" * len(table.columns)]
-    return "\n".join(
-        [*rows, *("| " + " | ".join(cell.replace("\n", " ") for cell in row) + " |" for row in table.rows)]
-    )
+    groups = [group for group, count in table.groups for _ in range(count)] or [""] * len(table.columns)
+    heads = [f"{group}: {name}" if group else name for group, name in zip(groups, table.columns, strict=True)]
+    lines = ["| " + " | ".join(cell.replace("\n", " ") for cell in row) + " |" for row in (heads, *table.rows)]
+    return "\n".join([lines[0], "|" + "---|" * len(heads), *lines[1:]])
 
 
 def tabulate_findings(findings: Sequence[Finding], caption: str, what: str = "what") -> Table:

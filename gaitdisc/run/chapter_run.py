@@ -97,7 +97,8 @@ def _stands(folder: Path, begun: dict[str, Any]) -> bool:
 
 def _study(part: Part, folder: Path, quick: bool, data: Path | None, ticked: Callable[[float], None]) -> str:
     """Run the study of a part to its end, and return what it printed."""
-    words = [str(folder) if word == OUT else word for word in (part.quick_words if quick else part.words)]
+    called = (part.quick_words or (*part.words, "--quick")) if quick else part.words
+    words = [str(folder) if word == OUT else word for word in called]
     command = [sys.executable, str(studies_folder() / f"{part.study}.py"), *words]
     package = str(Path(__file__).parents[2])
     paths = os.pathsep.join(filter(None, (package, os.environ.get("PYTHONPATH", ""))))

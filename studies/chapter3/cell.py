@@ -132,6 +132,7 @@ PUBLISHED_THRESHOLDS = {"dynamics": 0.0095, "state": 0.046}
 NOISES = (0.0, 0.001, 0.01, 0.1)
 WARMING = 600  # samples
 ALL_METHODS: tuple[Method, ...] = ("sindy", "dmd", "bopdmd", "gp", "nn")
+FOUR_METHODS: tuple[Method, ...] = ("sindy", "dmd", "gp", "nn")
 
 
 def cell_of(

@@ -16,7 +16,8 @@ CELLS = Path(__file__).parents[1] / "ch3_cells.csv"
 LYAPUNOV_PER_S = 0.906  # largest exponent of the Lorenz system: Sprott 2003, Chaos and Time-Series Analysis
 START_WORDS = {**STARTS, RECONSTRUCTION: "reconstruction, true start"}
 FURTHER = "_start"  # in the name of a set that begins elsewhere
-LAWS = {"van_der_pol": r"y: \S+\*x\*\*3", "lorenz": r"x: \S+\*x\*\*3", "mass": r"x: \S+\*x"}  # of SINDy
+LAWS = {"van_der_pol": r"y: \S+\*x\*\*3", "lorenz": r"x: \S+\*x\*\*3", "mass": r"x: \S+\*x",
+        "burgers": r"error: \S+\*u\*\*3"}  # fmt: skip # of SINDy
 NUMBERS = {
     "forecast": ("accuracy", 1.0, (FORECAST, ORACLE)),
     "parts": ("accuracy", 1.0, (RECONSTRUCTION, FORECAST, ORACLE)),

@@ -5,6 +5,7 @@ from __future__ import annotations
 import time as clock
 from collections.abc import Mapping, Sequence
 from dataclasses import asdict, dataclass, field, replace
+from pathlib import Path
 
 import numpy as np
 import pandas as pd
@@ -64,6 +65,12 @@ class Naming:
 def namings_table(namings: Sequence[Naming]) -> pd.DataFrame:
     """Return all answers, one row each."""
     return pd.DataFrame([asdict(naming) | {"right": naming.right} for naming in namings])
+
+
+def read_namings(path: Path) -> pd.DataFrame:
+    """Answers that were written as CSV."""
+    numbers = {name: [""] for name in ("amount", "accuracy", "diverged_s", "seconds")}
+    return pd.read_csv(path, keep_default_na=False, na_values=numbers)
 
 
 @dataclass(frozen=True, eq=False)

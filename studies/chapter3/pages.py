@@ -19,7 +19,6 @@ from gaitdisc.report.table import Table, save_table, words_table
 from gaitdisc.words import unit_text
 
 from .cell import FORECAST, ORACLE, PART_WORDS, PARTS, RECONSTRUCTION, DiscrepancyCell, PartAccuracy, cells_table
-from .naming import Naming, namings_table
 from .recommend import measured_cells
 from .record import System
 
@@ -351,9 +350,8 @@ def statements_table(statements: Sequence[tuple[str, str, str]], name: str) -> T
     return words_table(name, caption, ("where", "dissertation", "ours"), statements)
 
 
-def naming_table(namings: Sequence[Naming]) -> Table:
-    """What each tool answers, a row a case and noise."""
-    table = namings_table(namings)
+def naming_table(table: pd.DataFrame) -> Table:
+    """What each tool answers, a row a case and noise, of `namings_table`."""
     tools = [tool for tool in TOOL_WORDS if tool in set(table["tool"])]
     rows = []
     for (case, noise), found in table.groupby(["case", "noise"], sort=False):
@@ -380,11 +378,11 @@ def _answers(found: pd.DataFrame) -> str:
 
 
 @in_style
-def naming_figure(namings: Sequence[Naming], name: str) -> Figure:
+def naming_figure(table: pd.DataFrame, name: str) -> Figure:
     """A row a case, a column a tool and noise; the tile shows the answer, and the forecast."""
     from matplotlib.patches import Patch
 
-    table, rows = namings_table(namings), []
+    rows = []
     for tool in TOOL_WORDS:
         for (case, noise), found in table[table["tool"] == tool].groupby(["case", "noise"], sort=False):
             counts = found["answer"].where(~found["right"], "right").value_counts(sort=False)

@@ -3,28 +3,24 @@
 from __future__ import annotations
 
 import tomllib
-from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+from itertools import product
 from pathlib import Path
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 import pandas as pd
 from command_line import SHARED
-from numpy.typing import NDArray
 
 import gaitdisc as gd
-from gaitdisc import Channel, Recording, Samples
 from gaitdisc.channel import vocabulary
 from gaitdisc.cohort.demonstration import write_demonstration
 from gaitdisc.ingest.study import Conditions, Participant, PlannedTrial, Quality, Study
 from gaitdisc.ingest.study_file import load_study
-from gaitdisc.reconstruction.page import NOT_MSE, write_reconstruction_report
+from gaitdisc.reconstruction.page import NOT_MSE
 from gaitdisc.reconstruction.reconstruct_study import ReconstructionSettings, reconstruct_study
-from gaitdisc.reconstruction.reconstruction import mean_over_people
-from gaitdisc.reconstruction.state_errors import angle_columns
-from gaitdisc.reconstruction.window_model import MASKED, Sensing, WindowModel, fit_reconstructor
-from gaitdisc.reconstruction.windows import Parts, fill_readings, split_within, with_missing
+from gaitdisc.reconstruction.reconstruction import CALIBRATED, mean_over_people
+from gaitdisc.reconstruction.window_model import KINDS, OF_TEXT, WITHOUT_NETWORK
 from gaitdisc.report.figure import Figure
 from gaitdisc.report.panels import RECONSTRUCTED, Room, decades, draw_box, in_style, legend, panels
 from gaitdisc.report.table import Table
@@ -39,7 +35,9 @@ SENSORS = {
 PRINTED = ["sensors", "model", "mean", "sd"]
 NOTHING_PRINTED = pd.DataFrame(columns=pd.Index(PRINTED))
 PELVIS = ("3 random", "1 random")  # the embedded cohort has no pelvis, and cannot have these
+SAGITTAL = "3 sagittal"
 WALK_S, PEOPLE = 60.0, 12
+TEXT_SPACING_S = 0.01  # of the 100 readings that the text's network has
 DATA = SHARED / "gait"
 TREADMILL = range(504, 516)
 RUNS = {
@@ -49,10 +47,6 @@ RUNS = {
     },
     "welk002": {"natural": "welk002"},
 }
-NOISES = (0.0, 0.01, 0.02, 0.05, 0.10)
-SHARES = (0.0, 0.1, 0.2, 0.3, 0.4, 0.5)
-DISTURBED = ("disturbance", "level", "model", "rmse_deg")
-Walks = Sequence[tuple[Recording, NDArray[np.float64]]]  # of one person, with the place in the stride (time,) [%]
 MEASURES = ("rmse_deg", "relative_l2", "relative_l2_whole", "r2", "coverage", "seconds")
 LESS_THAN_NOTHING = (
     "A relative L2 above 1 is worse than estimating zero; the table prints such values for linear and SDN, so its norm "
@@ -60,15 +54,41 @@ LESS_THAN_NOTHING = (
     "does not say how time was split or how long the history was: no claim of better or worse is made."
 )
 STEP, PITCH = 0.23, 1.4  # from one box to the next, and from one sensor set to the next
-AXES = {"noise": "noise of the sensors [% of their standard deviation]", "missing": "missing readings [%]"}
 
 
 @dataclass(frozen=True, eq=False)
 class Result:
     """One of the two studies."""
 
-    table: pd.DataFrame
+    table: pd.DataFrame  # a row a person, model, sensor set and seed
     page: Path
+    tables: tuple[Table, ...]  # that are printed
+
+
+class Wanted(NamedTuple):
+    """What is computed, and where it goes."""
+
+    quick: bool
+    folder: Path
+    data: Path = DATA
+    kinds: tuple[str, ...] = tuple(KINDS)
+    seeds: int = 1
+
+    def cell(self, study: Study, sensors: str, place: str, **settings: str) -> dict[str, pd.DataFrame]:
+        """Summary and errors of one sensor set in one data set, by seed; what is in the folder is not redone."""
+        found, kinds = [], WITHOUT_NETWORK if self.quick else self.kinds
+        both = {
+            "models": ReconstructionSettings(kinds=tuple(k for k in kinds if k != OF_TEXT), **settings),
+            "text": ReconstructionSettings(kinds=(OF_TEXT,), spacing_s=TEXT_SPACING_S, **settings),
+        }
+        for seed, (name, one) in product(range(self.seeds), both.items()):
+            kept = self.folder / place / sensors.replace(" ", "_") / f"{name}-{seed}"
+            if not set(one.kinds) & set(kinds):
+                continue
+            if not (kept / "summary.csv").exists():
+                reconstruct_study(study, SENSORS[sensors], replace(one, seed=seed))[0].save(kept)
+            found.append({each: pd.read_csv(kept / f"{each}.csv").assign(seed=seed) for each in ("summary", "errors")})
+        return {each: pd.concat([one[each] for one in found]).assign(sensors=sensors) for each in ("summary", "errors")}
 
 
 def printed(kind: str) -> pd.DataFrame:
@@ -77,15 +97,6 @@ def printed(kind: str) -> pd.DataFrame:
     models = ("shred", "shallow decoder", "linear")
     found = [(row["sensors"], model, *row[model]) for row in rows if row["kind"] == kind for model in models]
     return pd.DataFrame(found, columns=pd.Index(PRINTED))
-
-
-def cell(study: Study, sensors: str, settings: ReconstructionSettings, folder: Path) -> dict[str, pd.DataFrame]:
-    """Summary and errors of one sensor set in one data set, with their report; what is in the folder is not redone."""
-    if not (folder / "report.html").exists():
-        done, _ = reconstruct_study(study, SENSORS[sensors], settings)
-        done.save(folder)
-        write_reconstruction_report(done, folder)
-    return {name: pd.read_csv(folder / f"{name}.csv").assign(sensors=sensors) for name in ("summary", "errors")}
 
 
 def first_person(study: Study) -> Study:
@@ -130,91 +141,49 @@ def _study(title: str, words: tuple[str, str], people: tuple[Participant, ...]) 
     return Study(title=title, conditions=both, participants=people, quality=Quality(late_change="report"))
 
 
-def noisy(recording: Recording, sensors: Sequence[str], share: float, seed: int) -> Recording:
-    """Add white noise to the readings of the sensors, and to nothing else.
-
-    share: standard deviation of the noise, by that of the sensor in this trial
-    """
-    rng = np.random.default_rng(seed)
-    values = recording.values.copy()
-    for name in sensors:
-        column = recording.index(name)
-        values[:, column] += share * np.nanstd(values[:, column]) * rng.standard_normal(len(values))
-    return recording.with_values(values)
-
-
-def against_noise(walks: Walks, what: Sensing, channels: Sequence[Channel], kinds: Sequence[str]) -> pd.DataFrame:
-    """RMSE of every kind of model against noise, temporal split; fitted to and tested on the same noise.
-
-    returns: disturbance (`noise`), level [share of the sensor's standard deviation], model, rmse_deg (angles)
-    """
-    rows = []
-    for level in NOISES:
-        parts = _disturbed_parts(walks, what, lambda walk, k, level=level: noisy(walk, what.sensors, level, k))
-        for kind in kinds:
-            done = fit_reconstructor(kind, what, parts.fitted(), parts.checked(), 0)
-            rows.append(("noise", level, kind, _rmse(done, parts.tested(), channels)))
-    return pd.DataFrame(rows, columns=pd.Index(DISTURBED))
-
-
-def against_missing(walks: Walks, what: Sensing, channels: Sequence[Channel], kinds: Sequence[str]) -> pd.DataFrame:
-    """RMSE of every kind of model against missing readings, temporal split; fitted to walks that lack none.
-
-    Readings are lost one by one, each sensor by itself. The sensor's last known reading stands in their place; the
-    masked SHRED alone is given which are missing.
-
-    returns: disturbance (`missing`), level [share of the readings], model, rmse_deg (angles)
-    """
-    parts = _disturbed_parts(walks, what, lambda walk, _: walk)
-    fitted = {kind: fit_reconstructor(kind, what, parts.fitted(), parts.checked(), 0) for kind in kinds}
-    rows = []
-    for level in SHARES:
-        for kind, done in fitted.items():
-
-            def lost(walk: Recording, k: int, done: WindowModel = done, level: float = level) -> Recording:
-                holed = with_missing(walk, what.sensors, level, 0.0, k)
-                return holed if done.kind == MASKED else fill_readings(holed, what.sensors, "last", done.sensor_means)
-
-            test = _disturbed_parts(walks, what, lost).tested()
-            rows.append(("missing", level, kind, _rmse(done, test, channels)))
-    return pd.DataFrame(rows, columns=pd.Index(DISTURBED))
-
-
-def _disturbed_parts(walks: Walks, what: Sensing, disturbed: Callable[[Recording, int], Recording]) -> Parts:
-    windows = [what.windows(disturbed(walk, k), phi, missing=True) for k, (walk, phi) in enumerate(walks)]
-    return split_within(windows, "temporal", what.reach_s)
-
-
-def _rmse(done: WindowModel, test: Samples, channels: Sequence[Channel]) -> float:
-    return float(np.sqrt(np.mean((done(test) - test.y)[:, angle_columns(channels)] ** 2)))
+def walkers(wanted: Wanted) -> dict[str, Study]:
+    """Who walked, by name."""
+    recordings = wanted.folder / "recordings"
+    if wanted.quick:
+        return {"cohort": cohort(recordings, 1, 30.0)}
+    found = {"cohort": cohort(recordings)}
+    if wanted.data.is_dir():
+        found["treadmill_walk_ik"] = treadmill(wanted.data, wanted.folder / "treadmill")
+        found["exotendon_run"] = exotendon(wanted.data)
+    return found
 
 
 def sensor_sets_table(summary: pd.DataFrame, printed: pd.DataFrame, name: str, rule: str) -> Table:
-    """One row a data set, sensor set and model.
+    """One row a data set, sensor set and model: n people, of each of whom the seeds' mean is taken.
 
-    summary: `summary` of reconstructions, with columns `data` and `sensors`
+    summary: `summary` of reconstructions, with columns `data`, `sensors` and `seed`
     printed: sensors, model, mean, sd: of the dissertation
     """
     found = []
     for keys, own in summary.groupby(["data", "sensors", "model"], sort=False):
-        found.append(dict(zip(("data", "sensors", "model"), keys, strict=True)) | {"n": len(own)})
+        people, seeds = (own.groupby(by)[list(MEASURES)].mean() for by in ("participant", "seed"))
+        found.append(dict(zip(("data", "sensors", "model"), keys, strict=True)) | {"n": len(people)})
+        found[-1] |= {"seeds": len(seeds), "least": seeds["rmse_deg"].min(), "greatest": seeds["rmse_deg"].max()}
         for measure in MEASURES:
-            mean, sd, half = mean_over_people(own[measure].to_numpy(float))
+            mean, sd, half = mean_over_people(people[measure].to_numpy(float))
             found[-1] |= {measure: mean, f"{measure}_sd": sd}
             found[-1] |= {f"{measure}_low": mean - half, f"{measure}_high": mean + half}
-    numbers = pd.DataFrame(found).merge(printed, "left", ["sensors", "model"])
+    numbers = pd.DataFrame(found)
+    numbers["of_text"] = numbers["model"].replace(OF_TEXT, "shred")
+    numbers = numbers.merge(printed.rename(columns={"model": "of_text"}), "left", ["sensors", "of_text"])
     rows: Any = numbers.itertuples()
     cells = tuple(
         (str(row.data), str(row.sensors), str(row.model), str(row.n), *_measures(row), f"{row.seconds:.2f}")
         for row in rows
     )
     columns = (
-        "data", "sensors", "model", "n", "RMSE [deg]", "relative L2 [1]", "R² [1]", "relative L2 with sensors ± sd [1]",
-        "printed “MSE” ± sd", "fit [s]",
+        "data", "sensors", "model", "n", "RMSE [deg]", "its seeds", "relative L2 [1]", "R² [1]",
+        "relative L2 with sensors ± sd [1]", "printed “MSE” ± sd", "fit [s]",
     )  # fmt: skip
     caption = (
-        f"Mean over participants [95 % interval of the mean, from three participants], angles that no sensor measures; "
-        f"R²: median of the angles. Split: {rule}. {NOT_MSE} {LESS_THAN_NOTHING}"
+        f"Mean over n participants [95 % interval of the mean, from three participants], angles that no sensor "
+        f"measures; its seeds: least and greatest mean of a seed, and how many seeds; R²: median of the angles. Split: "
+        f"{rule}. {NOT_MSE} {LESS_THAN_NOTHING}"
     )
     return Table(name, caption, columns, cells, numbers)
 
@@ -223,13 +192,25 @@ def _measures(row: Any) -> tuple[str, ...]:
     low, high, found = row.rmse_deg_low, row.rmse_deg_high, number(row.rmse_deg, 2)
     interval = f" [{number(low, 2)}, {number(high, 2)}]" if np.isfinite(low) else ""
     whole, printed = _with_sd(row.relative_l2_whole, row.relative_l2_whole_sd), _with_sd(row.mean, row.sd)
-    return found + interval, number(row.relative_l2, 3), number(row.r2, 3), whole, printed
+    seeds = f"{number(row.least, 2)} to {number(row.greatest, 2)}, {row.seeds}" if row.seeds > 1 else "1"
+    return found + interval, seeds, number(row.relative_l2, 3), number(row.r2, 3), whole, printed
 
 
 def _with_sd(mean: float, sd: float) -> str:
     if not np.isfinite(mean):
         return "–"
     return number(mean, 3) + (f" ± {number(sd, 3)}" if np.isfinite(sd) else "")
+
+
+def calibration_sentences(table: pd.DataFrame) -> list[str]:
+    """What ten strides of a new person take off the error, by model and sensor set."""
+    said = []
+    for sensors, own in table.groupby("sensors", sort=False):
+        rmse = own.groupby("model")["rmse_deg"].mean()
+        pairs = [(model, rmse[model], rmse.get(CALIBRATED.format(model))) for model in KINDS if model in rmse]
+        words = [f"{n} {a:.2f} to {b:.2f} deg ({100 * (b / a - 1):+.0f} %)" for n, a, b in pairs if b is not None]
+        said.append(f"{sensors}, by ten strides: {', '.join(words)}.")
+    return said
 
 
 @in_style
@@ -264,34 +245,3 @@ def sensor_sets_figure(errors: pd.DataFrame, data: str, name: str, rule: str) ->
     alt = f"Boxes of the error of {listing(models)} for {counted(shown['sensors'].nunique(), 'sensor set')}."
     kept = ["sensors", "participant", "model", "state", "unit", "rmse"]
     return Figure(name, caption, alt, shown[kept], drawn)
-
-
-@in_style
-def disturbance_figure(found: pd.DataFrame, whose: str) -> Figure:
-    """One panel a disturbance, one line a model.
-
-    found: disturbance, level, model, rmse_deg
-    """
-    from matplotlib.lines import Line2D
-
-    kinds = [word for word in AXES if (found["disturbance"] == word).any()]
-    models = list(dict.fromkeys(found["model"]))
-    drawn, grid = panels(1, len(kinds), 2.1, Room(left=0.6, across=0.6))
-    for axes, kind in zip(grid[0], kinds, strict=True):
-        for model, rows in found[found["disturbance"] == kind].groupby("model", sort=False):
-            axes.plot(100 * rows["level"], rows["rmse_deg"], markersize=3, linewidth=1.1, **_look(str(model)))
-        axes.set(xlabel=AXES[kind], ylabel="RMSE [deg]")
-        decades(axes)
-    legend(drawn, [Line2D([], [], label=model, markersize=3, **_look(model)) for model in models])
-    caption = (
-        f"{whose}: RMSE of the angles that no sensor measures, temporal split. Left: white noise on the sensors, in "
-        f"the fitted and the test part alike. Right: readings lost one by one in the test part; models were "
-        f"fitted to walks that lack none, the last known reading stands for a lost one, and masked shred is "
-        f"given which are lost."
-    )
-    return Figure("disturbed", caption, f"Error of {listing(models)} against noise and missing readings.", found, drawn)
-
-
-def _look(model: str) -> dict[str, Any]:
-    look = RECONSTRUCTED[model]
-    return {"color": look.colour, "linestyle": look.line, "marker": look.mark}

@@ -124,18 +124,20 @@ def field_table(cells: Sequence[FieldCell], name: str, printed: Mapping[tuple[st
     splits = list(dict.fromkeys(cell.split for cell in cells))
     models = list(dict.fromkeys(cell.model for cell in cells if not _is_bound(cell.model)))
     routes = list(dict.fromkeys(cell.route for cell in cells))
-    found = {(cell.route, cell.split, cell.model): cell for cell in cells}
+    found = {}
+    for cell in cells:
+        found.setdefault((cell.route, cell.split, cell.model), []).append(cell)
     extra, rows, tested = ("printed",) if printed else (), [], []
     for split in splits:
         counts = sorted({cell.tested for cell in cells if cell.split == split})
         tested.append(f"{split} {' to '.join(map(str, dict.fromkeys((counts[0], counts[-1]))))}")
     bounds = {(cell.split, cell.model): cell for cell in reversed(cells) if _is_bound(cell.model)}  # of every route
-    words = [f"{split}, {model}: {_cell(cell)}" for (split, model), cell in reversed(bounds.items())]
+    words = [f"{split}, {model}: {_cell([cell])}" for (split, model), cell in reversed(bounds.items())]
     for route in routes:
         row = [route]
         for split in splits:
-            here = [found.get((route, split, model)) for model in models]
-            least = min((cell.relative_l2 for cell in here if cell), default=0.0)
+            here = [found.get((route, split, model), []) for model in models]
+            least = min((_middle(some, "relative_l2") for some in here if some), default=0.0)
             row += [_cell(cell, least) for cell in here]
             if printed:
                 row.append(f"{printed[route, split]:.4f}" if (route, split) in printed else "")
@@ -143,7 +145,8 @@ def field_table(cells: Sequence[FieldCell], name: str, printed: Mapping[tuple[st
     first = cells[0]
     caption = (
         f"{first.field}, {first.quantity}: relative L2 error, the norm of the error over the norm of the field about "
-        f"zero; in brackets RMSE [{first.unit}] and R2 about the training part's mean; star: least of the models. "
+        f"zero; in brackets RMSE [{first.unit}] and R2 about the training part's mean; medians "
+        f"of the seeds; star: least of the models. "
         f"Test snapshots: {', '.join(tested)}." + f" Bounds: {'; '.join(words)}." * bool(words)
     )
     columns = ("route", *[word for _ in splits for word in (*models, *extra)])
@@ -155,11 +158,36 @@ def _is_bound(model: str) -> bool:
     return model.endswith("(no sensor)") or model.startswith("POD")
 
 
-def _cell(cell: FieldCell | None, least: float = 0.0) -> str:
-    if cell is None:
+def _middle(cells: Sequence[FieldCell], name: str) -> float:
+    return float(np.median([getattr(cell, name) for cell in cells]))
+
+
+def _cell(cells: Sequence[FieldCell], least: float = 0.0) -> str:
+    if not cells:
         return ""
-    star = "*" if cell.relative_l2 == least else ""
-    return f"{cell.relative_l2:.3f}{star} ({cell.rmse:.3g}; {cell.r2:.2f})"
+    error, rmse, r2 = (_middle(cells, name) for name in ("relative_l2", "rmse", "r2"))
+    return f"{error:.3f}{'*' * (error == least)} ({rmse:.3g}; {r2:.2f})"
+
+
+def means_table(cells: Sequence[FieldCell], name: str) -> Table:
+    """Mean over the routes, a row a field, quantity and split: median of the seeds, [least, greatest] of several."""
+    numbers = field_cells_table([cell for cell in cells if not _is_bound(cell.model)])
+    models, rows = list(dict.fromkeys(numbers["model"])), []
+    for keys, own in numbers.groupby(["field", "quantity", "split"], sort=False):
+        seeds = own.groupby(["model", "run"])[["relative_l2", "r2"]].mean()
+        least = own.pivot_table("relative_l2", "route", "model", "median").idxmin(axis=1).value_counts()
+        said = [_spread(seeds.loc[model]) if model in seeds.index else "" for model in models]
+        rows.append((*map(str, keys), *said, ", ".join(f"{model} {count}" for model, count in least.items())))
+    times = numbers.groupby("model")["seconds"].median()
+    rows.append(("median fit [s]", "", "", *(f"{times[model]:.2g}" for model in models), ""))
+    caption = "Relative L2 error (R2), mean over routes; least: of how many routes a model has the least error."
+    return Table(name, caption, ("field", "quantity", "split", *models, "least"), tuple(rows), numbers)
+
+
+def _spread(seeds: pd.DataFrame) -> str:
+    error, r2 = seeds["relative_l2"], seeds["r2"]
+    spread = f" [{error.min():.3f}, {error.max():.3f}], n = {len(error)}" if len(error) > 1 else ""
+    return f"{error.median():.3f}{spread} ({r2.median():.2f})"
 
 
 def medians_table(cells: Sequence[FieldCell], name: str) -> Table:

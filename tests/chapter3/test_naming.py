@@ -104,7 +104,7 @@ ANSWERS = [
 
 
 def test_answers_are_counted_over_seeds_and_a_curve_says_how_far_it_is_off():
-    table = naming_table(ANSWERS)
+    table = naming_table(namings_table(ANSWERS))
     assert table.columns == ("case", "hidden", "noise", "SINDy", "Gaussian process")
     assert says(table.rows[0][3], "named 1/2", "wrong name 1/2", "1.02")
     assert says(table.rows[0][4], "curve", "7 % off")
@@ -118,7 +118,8 @@ def answer(tool, seed, answer, accuracy, diverged=None):
 
 def test_a_tile_says_the_answer_of_most_seeds_and_the_forecast():
     names = [answer("sindy", k, a, 90.0) for k, a in enumerate(("named", "named", "curve"))]
-    figure = naming_figure([*names, answer("gp", 0, "curve", -2e4), answer("nn", 0, "curve", 5.0, diverged=3.0)], "n")
+    names += [answer("gp", 0, "curve", -2e4), answer("nn", 0, "curve", 5.0, diverged=3.0)]
+    figure = naming_figure(namings_table(names), "n")
     assert figure.numbers["kind"].tolist() == ["right", "curve", "curve"]
     assert figure.numbers["forecast"].tolist() == ["90", "<−999", "div."]
     texts = [text.get_text() for text in figure.drawn.axes[0].texts]
@@ -126,5 +127,5 @@ def test_a_tile_says_the_answer_of_most_seeds_and_the_forecast():
 
 
 def test_every_case_has_a_label_with_what_is_hidden():
-    figure = naming_figure([answer("sindy", 0, "named", 90.0)], "n")
+    figure = naming_figure(namings_table([answer("sindy", 0, "named", 90.0)]), "n")
     assert [label.get_text() for label in figure.drawn.axes[0].get_yticklabels()] == ["c:\nx³"]

@@ -1,6 +1,6 @@
 import numpy as np
 import pytest
-from chapter5.gait import NOISES, SHARES, against_missing, against_noise, noisy
+from chapter5.disturbances import NOISES, SHARES, against_missing, against_noise, noisy
 
 KINDS = ("linear", "delay ridge")
 

@@ -1,11 +1,11 @@
 """Studies of chapter 5's gait: one person, many, and sets of sensors."""
 
-import ch5_gait_individual
-import ch5_gait_population
+import ch5_gait
 import numpy as np
 import pandas as pd
 import pytest
-from chapter5.gait import MEASURES, disturbance_figure, sensor_sets_figure, sensor_sets_table
+from chapter5.disturbances import disturbance_figure
+from chapter5.gait import MEASURES, Wanted, sensor_sets_figure, sensor_sets_table
 from texts import says
 
 from gaitdisc.reconstruction.page import search_sentences, search_table
@@ -31,9 +31,9 @@ def test_a_box_a_model_and_set_angles_and_translations_apart():
 @pytest.fixture
 def table():
     rows = [
-        {"data": "cohort", "sensors": "1 sagittal", "participant": f"P{k}", "model": model,
-         **dict.fromkeys(MEASURES, value + 0.1 * k)}
-        for k in range(3) for model, value in (("linear", 2.0), ("delay ridge", 1.0))
+        {"data": "cohort", "sensors": "1 sagittal", "participant": f"P{k}", "model": model, "seed": seed,
+         **dict.fromkeys(MEASURES, value + 0.1 * k + 0.02 * seed)}
+        for k in range(3) for model, value in (("linear", 2.0), ("delay ridge", 1.0)) for seed in (-1, 1)
     ]  # fmt: skip
     printed = pd.DataFrame({"sensors": ["1 sagittal"], "model": ["linear"], "mean": [1.083], "sd": [0.705]})
     return sensor_sets_table(pd.DataFrame(rows), printed, "sets", "temporal")
@@ -43,6 +43,7 @@ def test_mean_interval_and_deviation_over_participants(table):
     row = dict(zip(table.columns, table.rows[0], strict=True))
     half = 4.3027 * 0.1 / np.sqrt(3)
     assert row["RMSE [deg]"] == f"2.10 [{2.1 - half:.2f}, {2.1 + half:.2f}]"
+    assert (row["n"], row["its seeds"]) == ("3", "2.08 to 2.12, 2")  # n counts people, whatever the seeds
     assert [row[name] for name in row if says(name, "with sensors ± sd", "[1]")] == ["2.100 ± 0.100"]
 
 
@@ -99,20 +100,18 @@ def test_one_panel_a_disturbance_and_one_line_a_model():
 
 
 def test_the_table_of_the_dissertation_is_that_of_the_text():
-    rows = ch5_gait_individual.gait.printed("individual").set_index(["sensors", "model"])["mean"]
-    assert len(rows) == 4 * 3
-    assert rows["3 sagittal", "shred"] == 0.064 and rows["1 random", "linear"] == 1.096
+    rows = ch5_gait.gait.printed("individual").set_index(["sensors", "model"])["mean"]
+    assert (len(rows), rows["3 sagittal", "shred"], rows["1 random", "linear"]) == (4 * 3, 0.064, 1.096)
 
 
 def test_the_runners_and_the_treadmill_walks_are_found(gait_data, tmp_path):
-    found = ch5_gait_individual.gait.exotendon(gait_data)
-    assert [len(person.trials) for person in found.participants] == [2, 1]
-    assert len(ch5_gait_individual.gait.treadmill(gait_data, tmp_path).participants[0].trials) == 12
+    assert [len(person.trials) for person in ch5_gait.gait.exotendon(gait_data).participants] == [2, 1]
+    assert len(ch5_gait.gait.treadmill(gait_data, tmp_path).participants[0].trials) == 12
 
 
 @pytest.mark.slow
 def test_history_divides_the_error_and_windows_drawn_at_random_hide_it(tmp_path):
-    result = ch5_gait_individual.run(quick=True, folder=tmp_path)
+    result = ch5_gait.individual(Wanted(True, tmp_path))
     rmse = result.table[result.table["sensors"] == "3 sagittal"].set_index("model")["rmse_deg"]
     assert rmse["delay ridge"] < 0.35 * rmse["linear"]
     text = result.page.read_text(encoding="utf-8")
@@ -123,11 +122,11 @@ def test_what_calibration_brings_is_said_in_degrees_and_percent():
     table = pd.DataFrame(
         {"sensors": "3 sagittal", "model": ["shred", "shred, calibrated"], "rmse_deg": [4.0, 1.0], "participant": "W01"}
     )
-    [said] = ch5_gait_population.calibration_sentences(table)
+    [said] = ch5_gait.gait.calibration_sentences(table)
     assert says(said, "3 sagittal", "shred", "4.00 to 1.00 deg", "-75 %")
 
 
 @pytest.mark.slow
 def test_ten_strides_of_a_new_person_halve_the_error(tmp_path):
-    rmse = ch5_gait_population.run(quick=True, folder=tmp_path).table.groupby(["sensors", "model"])["rmse_deg"].mean()
+    rmse = ch5_gait.population(Wanted(True, tmp_path)).table.groupby(["sensors", "model"])["rmse_deg"].mean()
     assert rmse["3 sagittal", "delay ridge, calibrated"] < 0.5 * rmse["3 sagittal", "delay ridge"]

@@ -22,7 +22,7 @@ INSIDE = {
         "plug_in_gait_bones", "pooled_cycles", "real_strides",
     },
     "what a command does with a whole study, beside its inner numbers": {
-        "ch4_ankle_exo", "ch4_ours", "ch5_gait_individual",
+        "ch4_ankle_exo", "ch4_ours",
         "as_a_user", "compare_exo_emg", "engine_cases", "false_alarms", "planted_faults", "tracked_walks",
     },
     "fits and windows of one kind set beside others of the literature": {
