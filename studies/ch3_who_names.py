@@ -1,11 +1,10 @@
 """Who names the hidden effect, and at which noise: `gaitdisc discover` beside the methods of chapter 3.
 
-    python studies/ch3_who_names.py [FOLDER] [--keep] [--quick]
-    python studies/ch3_who_names.py --print
+    python studies/ch3_who_names.py [FOLDER] [--quick]
 
 All learn from the same samples, the first 60 %, and forecast the rest. Below stand what section 3.5 leaves open: one
 state measured, a wrong parameter, a wrong start, random pushes. The answers at each noise and seed are a file in
-FOLDER: a run that was stopped goes on. `--keep` makes `studies/ch3_names.csv` of them, which `--print` prints.
+FOLDER: a run that was stopped goes on.
 """
 
 from __future__ import annotations
@@ -19,8 +18,6 @@ GIVEN = command_line(
     __name__,
     __doc__,
     argument("folder", KEPT, Path("ch3_who_names")),
-    argument("--keep", "write studies/ch3_names.csv as well", False),
-    argument("--print", "compute nothing; print studies/ch3_names.csv as a table", False),
     QUICK,
 )  # before the slow imports
 
@@ -35,9 +32,9 @@ from further import result_text
 
 import gaitdisc as gd
 from gaitdisc.report.page import Block
-from gaitdisc.report.table import as_markdown, save_table
+from gaitdisc.report.table import save_table
 
-SEEDS, KEPT_ANSWERS = (0, 1, 2), Path(__file__).with_name("ch3_names.csv")
+SEEDS = (0, 1, 2)
 NAMING: tuple[Method, ...] = ("sindy",)
 CURVED = NOISES[1:3]
 METHODS: tuple[Method, ...] = (*NAMING, "dmd", "gp", "nn")  # a curve is no name: one seed and two noises show that
@@ -100,10 +97,4 @@ def run(quick: bool = False, folder: Path = Path("ch3_who_names")) -> Result:
 
 
 if __name__ == "__main__":
-    if GIVEN.print:
-        print(as_markdown(naming_table(read_namings(KEPT_ANSWERS))))
-    else:
-        result = run(GIVEN.quick, GIVEN.folder)
-        if GIVEN.keep:
-            save_table(result.tables[0].numbers, KEPT_ANSWERS)
-        print(result_text(result))
+    print(result_text(run(GIVEN.quick, GIVEN.folder)))
