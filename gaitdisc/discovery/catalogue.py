@@ -20,7 +20,6 @@ from gaitdisc.toml_text import parse_toml
 
 if TYPE_CHECKING:
     from gaitdisc.discovery.candidate import Candidate
-    from gaitdisc.discovery.candidate_model import CandidateModel
     from gaitdisc.discovery.result import Discovery
     from gaitdisc.discovery.scored_model import ScoredModel
     from gaitdisc.simulation.simulation import Simulation
@@ -92,9 +91,7 @@ class Request:
     progress: Callable[[str], None] = field(default_factory=lambda: lambda _: None, compare=False)
     added: tuple[Candidate, ...] = ()  # explanations beside those of places, numbers and signals
     possible: Callable[[Candidate], bool] = field(default_factory=lambda: lambda _: True, compare=False)
-    refitted: Callable[[ScoredModel], CandidateModel] = field(
-        default_factory=lambda: lambda found: found.model, compare=False
-    )
+    refitted: Callable[[ScoredModel], ScoredModel] = field(default_factory=lambda: lambda model: model, compare=False)
     twins: int = 0  # simulated records of each kind, which are searched as the record was
     answered: Callable[[Discovery, Simulation], object] = field(default_factory=lambda: lambda *_: None, compare=False)
 

@@ -10,11 +10,10 @@ from dataclasses import replace
 
 import numpy as np
 
-from gaitdisc.discovery.candidate_model import fit_model
 from gaitdisc.discovery.first_states import StateGuess
 from gaitdisc.discovery.noise import white_noise
 from gaitdisc.discovery.record_filter import RecordFilter
-from gaitdisc.discovery.scored_model import ScoredModel
+from gaitdisc.discovery.scored_model import ScoredModel, fit_model
 from gaitdisc.discovery.segments import cut_segments
 from gaitdisc.discovery.shooting import Shooting
 from gaitdisc.recording import Finding
@@ -49,7 +48,7 @@ def find_record_filter(
         runs = cut_segments(measured.samples, tuple(range(len(measured.trials))), length, length // OVERLAP)
         size = np.nanstd(measured.observed, axis=(0, 1))
         shooting = Shooting(measured, runs, white_noise(size), past=guess.states)
-        as_read = ScoredModel(fit_model(shooting, simulation, (), guess.starts(runs)), shooting)
+        as_read = fit_model(shooting, simulation, (), guess.starts(runs))
         seen = _beside_the_simulation(as_read, seen, inputs)
     units = [simulation.sensor(name).unit for name in measured.channels]
     cutoffs = _as_the_surer(seen, units)
@@ -113,13 +112,13 @@ def _beside_the_simulation(
         return found
     cutoffs = tuple(found[number].cutoff_hz if number in found else None for number in range(len(measured.channels)))
     filtered = replace(now.shooting, record_filter=RecordFilter(cutoffs, measured.rate))
-    return found if now.model.refitted(filtered).fit.misfit < now.model.fit.misfit else {}
+    return found if now.refitted(filtered).fit.misfit < now.fit.misfit else {}
 
 
 def _stitch(now: ScoredModel) -> Values:
     """Overlapping runs as whole trials (trial, sample, channel): one fades out while the next fades in."""
-    segments, observed, fit = now.shooting.segments, now.shooting.measured.observed, now.model.fit
-    runs = now.shooting.unfiltered(now.model.machine, fit.states[None], fit.values[None])[0]
+    segments, observed, fit = now.shooting.segments, now.shooting.measured.observed, now.fit
+    runs = now.shooting.unfiltered(now.machine, fit.states[None], fit.values[None])[0]
     weight, shared = np.ones(segments.length), 2 * segments.margin
     ramp = np.sin(np.linspace(0, np.pi / 2, shared + 2)[1:-1]) ** 2
     weight[:shared], weight[segments.length - shared :] = ramp, ramp[::-1]

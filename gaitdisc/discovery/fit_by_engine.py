@@ -9,7 +9,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 from gaitdisc.discovery.answer import left_out
-from gaitdisc.discovery.candidate_model import CandidateModel, Part
 from gaitdisc.discovery.criteria import CRITERIA
 from gaitdisc.discovery.estimates import name_estimates
 from gaitdisc.discovery.grids import find_rhythm
@@ -19,7 +18,7 @@ from gaitdisc.discovery.noise import sensor_noise
 from gaitdisc.discovery.paired_test import compare_errors, sum_error
 from gaitdisc.discovery.record_filter import RecordFilter
 from gaitdisc.discovery.result import Discovery, Runs
-from gaitdisc.discovery.scored_model import ScoredModel
+from gaitdisc.discovery.scored_model import Part, ScoredModel
 from gaitdisc.discovery.wording import write_sentence
 from gaitdisc.engines.engine import Engine
 from gaitdisc.engines.mapping import replace_inputs, with_input_changed, with_strength
@@ -51,10 +50,10 @@ class EngineFit:
     progress: Callable[[str], None] = field(default_factory=lambda: lambda _: None)
     native: bool = True  # whether what was found is written into the model, or acts beside it at each step
 
-    def noted(self, found: ScoredModel) -> CandidateModel:
+    def noted(self, found: ScoredModel) -> ScoredModel:
         """Return what was found as it is, once its parts and the record's filter are kept."""
-        self.parts, self.low_pass = found.model.parts, found.shooting.record_filter or NO_FILTER
-        return found.model
+        self.parts, self.low_pass = found.parts, found.shooting.record_filter or NO_FILTER
+        return found
 
     def in_mapping(self, found: Discovery, parts: tuple[Part, ...]) -> Simulation:
         """What was found, in the model's mapping; with the states that effects bring along behind the model's own."""

@@ -15,11 +15,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from gaitdisc.discovery.candidate import Candidate
-from gaitdisc.discovery.candidate_model import Part
 from gaitdisc.discovery.criteria import CRITERIA
 from gaitdisc.discovery.grids import Rhythm, cells
 from gaitdisc.discovery.noise import Noise, find_noise
 from gaitdisc.discovery.paired_test import PairedTest, compare_errors
+from gaitdisc.discovery.scored_model import Part
 from gaitdisc.recording.arrays import Values
 
 LATEST_S, DELAYS = 0.12, 25

@@ -6,7 +6,6 @@ import math
 import re
 from dataclasses import replace
 
-from gaitdisc.discovery.candidate_model import Part
 from gaitdisc.discovery.criteria import CRITERIA
 from gaitdisc.discovery.effect_words import (
     amount,
@@ -22,6 +21,7 @@ from gaitdisc.discovery.effect_words import (
     would_distinguish,
 )
 from gaitdisc.discovery.result import Discovery, Estimate, FoundEffect, GapSize, Whereabouts
+from gaitdisc.discovery.scored_model import Part
 from gaitdisc.simulation.simulation import Simulation
 
 FEW = 12  # independent samples of held-out data
