@@ -78,7 +78,7 @@ def answer(
     parts, moved = stated.found.parts, list_corrections(stated.found, base)
     effects = list_effects(case, stated, 1 - held_out.unexplained, gained)
     if verdict.given:
-        effects = tuple(replace(one, small=idle) for one, idle in zip(effects, verdict.given, strict=True))
+        effects = tuple(replace(effect, small=idle) for effect, idle in zip(effects, verdict.given, strict=True))
     named = (Explanation(effects, held_out, *first_run(case, held.after, held_out)),) if effects else ()
     agrees = verdict.word != "no_gap" or not grows_along_runs(case, as_read)
     discovery = Discovery(
@@ -87,7 +87,7 @@ def answer(
         where=whereabouts(case, stated, train) if effects or not agrees else (),
         effects=effects,
         rivals=(
-            *(report_rival(case, one) for one in rivals if one.part.candidate.label not in now.labels),
+            *(report_rival(case, rival) for rival in rivals if rival.part.candidate.label not in now.labels),
             *(
                 FoundEffect(one.candidate.kind, one.candidate.place, one.candidate.name, one.term, small=True)
                 for one in verdict.small  # that close too little of the gap to be named
@@ -112,7 +112,11 @@ def answer(
 
 def left_out(findings: tuple[Finding, ...]) -> list[str]:
     """Say which trials were left out, and why."""
-    return [f"{one.what[0].upper()}{one.what[1:]}; it was left out." for one in findings if one.kind == ODD_TRIAL]
+    return [
+        f"{finding.what[0].upper()}{finding.what[1:]}; it was left out."
+        for finding in findings
+        if finding.kind == ODD_TRIAL
+    ]
 
 
 def list_effects(case: Case, verdict: Verdict, closed: float, gained: float) -> tuple[FoundEffect, ...]:
@@ -176,7 +180,7 @@ def weigh_rivals(search: Search, now: ScoredModel, found: tuple[ScoredModel, ...
             others.setdefault(tuple(sorted(one.labels)), one)
     listed = list(others.values())[:MOST_RIVALS]
     if not own:
-        return tuple(Rival(one, one.gained, False) for one in listed)
+        return tuple(Rival(model, model.gained, False) for model in listed)
     fitted: dict[tuple[str, ...], ScoredModel] = {}
     for one in listed:
         parts, sets = now.parts, [one.parts]
@@ -184,13 +188,17 @@ def weigh_rivals(search: Search, now: ScoredModel, found: tuple[ScoredModel, ...
             last = one.parts[-1]
             beside = [(*parts[:k], *parts[k + 1 :], last) for k in range(len(parts))] if len(parts) > 1 else []
             sets = [(last,), *(sets if len(sets[0]) > 1 else []), *beside]
-        best = min((search.with_others(now, each) for each in sets), key=lambda each: each.bic)
+        best = min((search.with_others(now, each) for each in sets), key=lambda model: model.bic)
         fitted.setdefault(tuple(sorted(best.labels)), best)
     rivals = [
-        Rival(one, gained - (one.bic - now.bic), one.bic - now.bic < CRITERIA.tie and not set(own) < set(one.labels))
-        for one in fitted.values()  # what only adds to the answer is no other answer
+        Rival(
+            model,
+            gained - (model.bic - now.bic),
+            model.bic - now.bic < CRITERIA.tie and not set(own) < set(model.labels),
+        )
+        for model in fitted.values()  # what only adds to the answer is no other answer
     ]
-    return tuple(sorted(rivals, key=lambda one: -one.gained))
+    return tuple(sorted(rivals, key=lambda rival: -rival.gained))
 
 
 def list_explanations(
@@ -225,7 +233,7 @@ def whereabouts(case: Case, verdict: Verdict, train: GapSize) -> tuple[Whereabou
         return tuple(Whereabouts("state", name, float("nan")) for name in verdict.starts)
     now = verdict.found
     if not now.parts:
-        firsts = [one.parts[0].candidate for one in verdict.rivals[:1] if one.parts]
+        firsts = [rival.parts[0].candidate for rival in verdict.rivals[:1] if rival.parts]
         return tuple(Whereabouts(one.kind, one.place, float("nan")) for one in firsts)
     share = (train.before**2 - train.after**2) / train.before**2 if train.before > 0 else 0.0
     return tuple(
@@ -259,7 +267,7 @@ def push_along(case: Case, now: ScoredModel, part: Part) -> Values | None:
 
 def find_phase(case: Case, now: ScoredModel, part: Part) -> tuple[float, ...]:
     """Return the part of the stride in which an effect is at least half as strong as at its strongest."""
-    names = [one.name for one in case.search.base.inputs]
+    names = [signal.name for signal in case.search.base.inputs]
     push = push_along(case, now, part) if "phase" in names else None
     if push is None:
         return ()
@@ -278,7 +286,7 @@ def exact_inputs(case: Case, now: ScoredModel) -> tuple[Finding, ...]:
         if push is None:
             continue
         unit = places_unit(base, candidate.kind, candidate.place)
-        like = [repr(one.name) for one in base.driving if one.unit == unit and not (one.sd or one.gain)]
+        like = [repr(signal.name) for signal in base.driving if signal.unit == unit and not (signal.sd or signal.gain)]
         if like:
             size = with_unit(amount(float(np.sqrt(np.mean(push**2)))), unit)
             what = (
@@ -304,7 +312,7 @@ def list_corrections(model: ScoredModel, base: Simulation) -> tuple[Correction, 
     """List the numbers that were fitted within their bounds and moved, each with its 95 % interval inside these."""
     prior, free = model.fit.prior, model.fit.free
     error = np.sqrt(np.diag(model.fit.covariance))
-    units, found = {one.name: one.unit for one in base.parameters}, []
+    units, found = {parameter.name: parameter.unit for parameter in base.parameters}, []
     for name, place, given, low, high in zip(
         prior.names, prior.places, prior.value, prior.low, prior.high, strict=True
     ):
@@ -317,12 +325,15 @@ def list_corrections(model: ScoredModel, base: Simulation) -> tuple[Correction, 
 
 def file_bounds(base: Simulation, candidate: Candidate) -> tuple[float, ...]:
     """Return the bounds that the file gives a wrong parameter, infinite where it has but one."""
-    for one in base.parameters if candidate.verdict == "wrong_parameter" else ():
-        if one.name == candidate.place and (one.low is not None or one.high is not None):
-            return (-np.inf if one.low is None else one.low, np.inf if one.high is None else one.high)
+    for parameter in base.parameters if candidate.verdict == "wrong_parameter" else ():
+        if parameter.name == candidate.place and (parameter.low is not None or parameter.high is not None):
+            return (
+                -np.inf if parameter.low is None else parameter.low,
+                np.inf if parameter.high is None else parameter.high,
+            )
     return ()
 
 
 def corrected(base: Simulation, corrections: tuple[Correction, ...]) -> Simulation:
     """Return a simulation with corrected numbers."""
-    return base.with_values({one.parameter: one.found.value for one in corrections})
+    return base.with_values({correction.parameter: correction.found.value for correction in corrections})

@@ -57,8 +57,8 @@ class Beam:
     def fit(self, sets: Iterable[tuple[Part, ...]], begun: CrossValidated | None = None) -> list[CrossValidated]:
         """Fit sets, so that they are weighed as well."""
         fitted = [cross_validated(self.scale, begun or self.as_read, parts) for parts in sets]
-        fitted = [one for one in fitted if self.search.sensible(one)]
-        self.known.update((one.explanations, one) for one in fitted)
+        fitted = [model for model in fitted if self.search.sensible(model)]
+        self.known.update((model.explanations, model) for model in fitted)
         return fitted
 
     def select_forward(self, begin: CrossValidated) -> CrossValidated:
@@ -75,7 +75,7 @@ class Beam:
             longer = self._extend(beam)
             if not longer:
                 break
-            least = min(one.gap for one in beam)
+            least = min(model.gap for model in beam)
             beam = sorted(longer, key=self.cost)[:WIDTH]
             if least - beam[0].gap <= 0.5 * CRITERIA.matters * self.as_read.gap:
                 break
@@ -116,8 +116,7 @@ class Beam:
         """Fit a set with one explanation more; None where its numbers would not mean what its name says."""
         wanted = now.explanations | {score.candidate.identity}
         if wanted not in self.known:
-            parts = (*now.parts, Part(score.candidate, score.values))
-            longer = cross_validated(self.scale, now, parts)
+            longer = cross_validated(self.scale, now, (*now.parts, score))
             if not self.search.sensible(longer):
                 return None
             self.known[wanted] = longer
@@ -167,7 +166,7 @@ class Beam:
             and one.gap < self.as_read.gap
             and errs_more(one, now) >= ALPHA
         ]
-        return min(equal, key=lambda one: (round(one.penalty, 3), one.gap)) if equal else now
+        return min(equal, key=lambda model: (round(model.penalty, 3), model.gap)) if equal else now
 
     def near(self, now: CrossValidated, within: float) -> list[CrossValidated]:
         """Return other sets that cost hardly more, the cheapest first.
@@ -175,7 +174,7 @@ class Beam:
         within: how much more, in shares of the gap as read
         """
         others = [one for one in self.known.values() if one.explanations and one.explanations != now.explanations]
-        return sorted((one for one in others if self.cost(one) <= self.cost(now) + within), key=self.cost)
+        return sorted((model for model in others if self.cost(model) <= self.cost(now) + within), key=self.cost)
 
 
 @dataclass(frozen=True, eq=False)

@@ -24,7 +24,7 @@ from gaitdisc.discovery.record_filter import RecordFilter
 from gaitdisc.discovery.result import ALPHA
 from gaitdisc.discovery.scored_model import ScoredModel, fit_model, leaves, score
 from gaitdisc.discovery.search import Search
-from gaitdisc.discovery.segments import Segments, cut_segments
+from gaitdisc.discovery.segments import FEWEST_SAMPLES, Segments, cut_segments
 from gaitdisc.discovery.shooting import Shooting
 from gaitdisc.recording import Finding
 from gaitdisc.recording.arrays import Values
@@ -33,7 +33,6 @@ from gaitdisc.simulation.measured import Measured
 from gaitdisc.simulation.running import compile_simulation
 from gaitdisc.simulation.simulation import Simulation
 
-FEWEST_SAMPLES = 16  # of a segment
 FEWEST_COMPARED = 8  # samples of a segment that went through a filter
 SHORT = 6  # margins in a trial, at least
 FIRST_SHARE = 0.3  # of that length, is fitted first, so that the fit of the whole begins near its end
@@ -246,7 +245,7 @@ def _less_idle(case: Case) -> Case:
     kinds = {(place.kind, place.name) for place in search.places if place.name in idle.places}
     kinds |= {("parameter", name) for name in idle.parameters}
     places = tuple(place for place in search.places if place.name not in idle.places)
-    candidates = tuple(one for one in search.candidates if (one.kind, one.place) not in kinds)
+    candidates = tuple(candidate for candidate in search.candidates if (candidate.kind, candidate.place) not in kinds)
     measured, kind = case.measured, "port" if search.base.ports else "equation"
     findings = (*measured.findings, *idle.findings(measured.source or search.base.title, kind))
     return replace(

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 from difflib import get_close_matches
 from functools import cache
@@ -115,6 +115,11 @@ class Request:
 ALL = Request()  # the effects that come along
 
 
+def name_factors(pieces: Sequence[str]) -> list[str]:
+    """Return the names of the factors of a shape's pieces: `factor`, `factor_1`, ..."""
+    return [f"factor_{number}" if number else "factor" for number in range(len(pieces))]
+
+
 def with_names(expression: str, names: Mapping[str, str]) -> str:
     """Return an expression with other names, or numbers, in the place of some of its names.
 
@@ -209,7 +214,7 @@ def _shape(entry: Any, where: str) -> Shape:
     if needs not in NEEDS:
         raise SchemaError('a shape may need only "angle"', f"{where} has {needs!r}", "Remove the line.")
     names = entry.get("names", {})
-    numbers = ["factor", *(f"factor_{number}" for number in range(1, len(pieces))), *constants]
+    numbers = [*name_factors(pieces), *constants]
     if not isinstance(names, dict) or not set(names) <= set(numbers) or not all(map(_is_name, names.values())):
         raise SchemaError(
             f"the names of a shape's numbers must be for {', '.join(numbers)}",

@@ -125,7 +125,7 @@ def keep_useful(case: Case, as_read: ScoredModel, now: ScoredModel) -> ScoredMod
     """Return what was named without the explanations that the held-out data do not bear out beside the others."""
     while len(now.parts) > 1:
         fewer = [case.search.without(now, number) for number in range(len(now.parts))]
-        tests = [prove_held_out(case, one, now, as_read).test for one in fewer]
+        tests = [prove_held_out(case, model, now, as_read).test for model in fewer]
         idle = max(range(len(fewer)), key=lambda number: np.nan_to_num(tests[number].p, nan=1.0))
         if tests[idle].bears_out:
             break
@@ -165,11 +165,11 @@ def prefer_on_held_out(case: Case, now: ScoredModel, near: tuple[ScoredModel, ..
 
     near: what costs hardly more; of these, what has no more numbers. The plainest of what is preferred is returned
     """
-    equal = [one for one in near if one.size <= now.size]
-    proofs = [prove(case, now, one, one) for one in equal]
+    equal = [model for model in near if model.size <= now.size]
+    proofs = [prove(case, now, model, model) for model in equal]
     better = [
-        (one.penalty, -proof.test.fall, one)
-        for proof, one in zip(proofs, equal, strict=True)
+        (model.penalty, -proof.test.fall, model)
+        for proof, model in zip(proofs, equal, strict=True)
         if proof.bears_out and proof.test.p < case.alpha / len(equal)
     ]
     return min(better, key=lambda one: one[:2])[2] if better else now
@@ -251,8 +251,8 @@ def find_term_before(case: Case, as_read: ScoredModel, named: ScoredModel, rival
     pushes = rank_process_noise(as_read, case.search.places)[0]
     scale, among = case.scale, len(case.search.candidates)
     span = as_read.shooting.segments.span
-    others = [one for one in rivals if one.labels != named.labels and one.bic < named.bic + CRITERIA.support]
-    others = [one for one in others if one.shooting.segments.span == span]
+    others = [rival for rival in rivals if rival.labels != named.labels and rival.bic < named.bic + CRITERIA.support]
+    others = [model for model in others if model.shooting.segments.span == span]
     borne: list[tuple[float, ScoredModel, Proof]] = []
     for one in (named, *others[:MOST_NEAR]):
         before, now = compared([as_read, one])
@@ -284,13 +284,13 @@ def refit_longer(case: Case, named: ScoredModel, rivals: list[ScoredModel]) -> t
     longer = case.lengthen(named)
     if len(named.parts) > 1:
         return longer, rivals
-    near = [one for one in rivals if one is not named and one.bic < named.bic + CRITERIA.support][:MOST_NEAR]
-    near = [case.lengthen(one, longer.shooting.segments.span) for one in near]
-    near = [one for one in near if one.shooting.segments.span == longer.shooting.segments.span]
+    near = [rival for rival in rivals if rival is not named and rival.bic < named.bic + CRITERIA.support][:MOST_NEAR]
+    near = [case.lengthen(model, longer.shooting.segments.span) for model in near]
+    near = [model for model in near if model.shooting.segments.span == longer.shooting.segments.span]
     first, *others = ranked(compared([longer, *near]), case.search.candidates)
-    others = [replace(one, gained=first.gained + first.bic - one.bic) for one in others]
+    others = [replace(model, gained=first.gained + first.bic - model.bic) for model in others]
     decided_on = {one.labels for one in (first, *others)}
-    return first, [first, *others, *(one for one in rivals if one.labels not in decided_on)]
+    return first, [first, *others, *(rival for rival in rivals if rival.labels not in decided_on)]
 
 
 def runs_that_pushes_move(case: Case, as_read: ScoredModel) -> ScoredModel:

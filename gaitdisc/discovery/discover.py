@@ -16,7 +16,7 @@ from gaitdisc.discovery.decision import Verdict, decide, prove_held_out
 from gaitdisc.discovery.held_out import grows_along_runs, holding_out_others, is_uninformative, noted, noting_alike
 from gaitdisc.discovery.odd_trials import agreeing_trials, without_trial_apart
 from gaitdisc.discovery.result import Discovery
-from gaitdisc.discovery.scored_model import Part, ScoredModel, score
+from gaitdisc.discovery.scored_model import ScoredModel, score
 from gaitdisc.discovery.search import Search, is_certain
 from gaitdisc.discovery.second_look import look_at_whole_runs, prefer_delay, prefer_relatives, without_small
 from gaitdisc.discovery.spiked_samples import without_spikes
@@ -130,7 +130,7 @@ def refuse_blow_up(simulation: Simulation, measured: Measured) -> bool:
 
 def refuse_unknown(search: Search, effects: tuple[str, ...]) -> None:
     """Refuse an effect or a place that does not exist, with the nearest."""
-    known = {one.label for one in search.candidates}
+    known = {candidate.label for candidate in search.candidates}
     for given in effects:
         if given not in known:
             near = get_close_matches(given, sorted(known), NEAREST, 0.0)
@@ -145,17 +145,17 @@ def fit_given(case: Case, as_read: ScoredModel, effects: tuple[str, ...]) -> Ver
     """Fit a simulation with exactly these effects in it, each `name@place`, and test it on what is held out."""
     search, now = case.search, as_read
     for given in effects:
-        castings = tuple(one for one in search.open_beside(now) if one.label == given)
-        begun = search.scorer(now).scores(castings)
-        tried = [search.with_part(now, Part(one.candidate, one.values)) for one in begun]
-        tried = [one for one in tried if np.isfinite(one.fit.misfit)]
+        castings = tuple(candidate for candidate in search.open_beside(now) if candidate.label == given)
+        scores = search.scorer(now).scores(castings)
+        tried = [search.with_part(now, casting) for casting in scores]
+        tried = [model for model in tried if np.isfinite(model.fit.misfit)]
         if not tried:
             raise SchemaError(
                 "an effect to be fitted must change a measured channel, and may be given only once",
                 f"with {given!r} once more the simulation leaves all bounds, or runs as without it",
                 "Give another effect or place.",
             )
-        now = score(min(tried, key=lambda one: one.fit.misfit))
+        now = score(min(tried, key=lambda model: model.fit.misfit))
     now = case.lengthen(now)
     count = len(now.parts)
     idle = [

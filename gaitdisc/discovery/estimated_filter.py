@@ -14,7 +14,7 @@ from gaitdisc.discovery.first_states import StateGuess
 from gaitdisc.discovery.noise import white_noise
 from gaitdisc.discovery.record_filter import RecordFilter
 from gaitdisc.discovery.scored_model import ScoredModel, fit_model
-from gaitdisc.discovery.segments import cut_segments
+from gaitdisc.discovery.segments import FEWEST_SAMPLES, cut_segments
 from gaitdisc.discovery.shooting import Shooting
 from gaitdisc.recording import Finding
 from gaitdisc.recording.arrays import Values
@@ -27,7 +27,6 @@ FELT = 1e-3  # times the noise's power at the cut-off, from which on a signal th
 LIKELIER = 10.0  # log likelihood, by which the signal has to be more like the simulation than like any that dies out
 ALIKE = 1.3  # between the cut-offs of channels that went through one filter
 OVERLAP = 4  # times as long a run is as what it shares with the next on either side
-FEWEST_SAMPLES = 16  # of a run
 ROUGH = 1.0  # times the noise's power at the cut-off, from which on a signal there makes the number a rough one
 
 
@@ -73,9 +72,9 @@ def _trials(measured: Measured, channel: int) -> list[Values]:
 def _inputs_are_filtered(simulation: Simulation, measured: Measured) -> bool:
     """Whether an input went through a filter: of a linear system, the record has then gone through no other."""
     drive = measured.drive
-    trials = [each[:samples] for each, samples in zip(drive.inputs, drive.samples, strict=True)]
-    numbers = [number for number, one in enumerate(simulation.inputs) if not one.computed]
-    found = [find_filter([each[:, number] for each in trials], drive.rate) for number in numbers]
+    trials = [signal[:samples] for signal, samples in zip(drive.inputs, drive.samples, strict=True)]
+    numbers = [number for number, signal in enumerate(simulation.inputs) if not signal.computed]
+    found = [find_filter([trial[:, number] for trial in trials], drive.rate) for number in numbers]
     return any(one is not None and one.signal < SURE for one in found)
 
 

@@ -186,9 +186,12 @@ def read_prior(simulation: Simulation, exact: frozenset[str] = frozenset()) -> P
     (('inertia', 'k'), [0.049, 19.5])
     """
     found = [
-        (place, one.name, one.value, one.low, one.high)
-        for place, one in enumerate(simulation.parameters)
-        if one.low is not None and one.high is not None and one.low < one.high and one.name not in exact
+        (place, parameter.name, parameter.value, parameter.low, parameter.high)
+        for place, parameter in enumerate(simulation.parameters)
+        if parameter.low is not None
+        and parameter.high is not None
+        and parameter.low < parameter.high
+        and parameter.name not in exact
     ]
     if not found:
         return Prior()

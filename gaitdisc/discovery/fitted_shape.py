@@ -14,6 +14,7 @@ from gaitdisc.discovery.case import Case
 from gaitdisc.discovery.criteria import CRITERIA
 from gaitdisc.discovery.gap_share import CrossValidated, cross_validated
 from gaitdisc.discovery.places import Place
+from gaitdisc.discovery.score import Score
 from gaitdisc.discovery.scored_model import Part, ScoredModel, score
 from gaitdisc.discovery.search import Search
 from gaitdisc.recording.arrays import Values
@@ -36,7 +37,7 @@ def shapes_at(place: Place, now: ScoredModel, search: Search) -> list[Candidate]
     At a place between bodies the states may be differences of two, and another body's.
     """
     shapes = [one for motion in place.motions for one in _shapes_over(place, *motion, now, search)]
-    if any(one.name == "phase" for one in search.base.inputs):
+    if any(signal.name == "phase" for signal in search.base.inputs):
         centres = (np.arange(STRIDE_BUMPS) + 0.5) / STRIDE_BUMPS
         sharp = (STRIDE_BUMPS / (SHARPNESS * 2 * np.pi)) ** 2 * 2
         pieces = [f"exp({sharp:.4g}*(cos(6.283185307179586*(phase - {c:.4g})) - 1))" for c in centres]
@@ -77,7 +78,7 @@ def fit_shape(case: Case, now: ScoredModel) -> ScoredModel | None:
     tried = best + [
         cross_validated(scale, plain, (part,)) for one in best for part in (*_thin_shape(one), *_local(one))
     ]
-    kept = _cheapest([one for one in tried if search.sensible(one)], plain)
+    kept = _cheapest([model for model in tried if search.sensible(model)], plain)
     return score(replace(kept[0], shooting=now.shooting)) if kept else None
 
 
@@ -87,17 +88,19 @@ def find_cost(one: CrossValidated, plain: CrossValidated) -> float:
 
 
 def _cheapest(tried: list[CrossValidated], plain: CrossValidated) -> list[CrossValidated]:
-    return sorted((one for one in tried if np.isfinite(one.gap)), key=lambda one: find_cost(one, plain))
+    return sorted((model for model in tried if np.isfinite(model.gap)), key=lambda one: find_cost(one, plain))
 
 
-def _promising(now: ScoredModel, search: Search, plain: CrossValidated) -> list[Part]:
+def _promising(now: ScoredModel, search: Search, plain: CrossValidated) -> list[Score]:
     """Shapes that promise most, to first order, and more than their numbers cost if what is left were mere noise."""
     scorer = search.scorer(plain)
     shapes = tuple(shape for place in search.places for shape in shapes_at(place, now, search))
     numbers, each = plain.shooting.known.sum(), CRITERIA.independent
-    worth = [one for one in scorer.scores(shapes) if each * one.gain > np.log(numbers) * len(one.candidate.slots)]
+    worth = [
+        score for score in scorer.scores(shapes) if each * score.gain > np.log(numbers) * len(score.candidate.slots)
+    ]
     scores = sorted(worth, key=lambda one: np.log(numbers / each) * len(one.candidate.slots) - one.gain)
-    return [Part(one.candidate, one.values) for one in scores[:FITTED]]
+    return scores[:FITTED]
 
 
 def _thin_shape(model: ScoredModel) -> Iterator[Part]:

@@ -239,7 +239,7 @@ def gap_size(
 def tabulate_runs(case: Case, before: ScoredModel, after: ScoredModel) -> Runs:
     """Return the runs as a report draws them."""
     segments, drive, seen = before.shooting.segments, case.measured.drive, before.shooting.seen
-    names = [one.name for one in case.search.base.inputs]
+    names = [signal.name for signal in case.search.base.inputs]
     phase = segments.of(drive.inputs)[:, :, names.index("phase")] if "phase" in names else np.zeros((len(segments), 0))
     return Runs(
         segments.trial,

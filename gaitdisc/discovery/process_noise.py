@@ -84,7 +84,7 @@ def rank_process_noise(model: ScoredModel, places: tuple[Place, ...]) -> list[Pr
         best, level, share = min((*pushed.likelihood(share / unit, numbers), share) for share in SHARES)
         best += constant + float(np.log(count.sum()))
         found.append(ProcessNoise(place, best, rival, float(np.sqrt(level * share / unit)), int(count.sum())))
-    return sorted(found, key=lambda one: one.bic)
+    return sorted(found, key=lambda pushes: pushes.bic)
 
 
 def sensor_covariance(shooting: Shooting, known: NDArray[np.bool_]) -> Values:

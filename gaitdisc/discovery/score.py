@@ -17,7 +17,7 @@ from gaitdisc.discovery.grids import Rhythm, cells, delays
 from gaitdisc.discovery.kept_work import keep, recall
 from gaitdisc.discovery.linearised import Linearised, carry_change, linearise
 from gaitdisc.discovery.places import Place
-from gaitdisc.discovery.scored_model import ScoredModel
+from gaitdisc.discovery.scored_model import Part, ScoredModel
 from gaitdisc.recording.arrays import Values
 from gaitdisc.simulation.compiled_simulation import Compiled
 from gaitdisc.simulation.evaluating import Points, evaluate_many
@@ -31,22 +31,25 @@ TRIED = "tried"  # begins the names of the numbers of what is scored
 
 
 @dataclass(frozen=True)
-class Score:
-    """What a candidate promises."""
+class Score(Part):
+    """A candidate with its best numbers to first order, and what they promise."""
 
-    candidate: Candidate
-    values: dict[str, float]
-    gain: float  # fall of the misfit (twice the log likelihood) that they promise
+    gain: float  # fall of the misfit (twice the log likelihood)
 
 
 @dataclass(frozen=True)
 class _Cell:
     """One point of a candidate's grid, and the columns that stand for it."""
 
-    candidate: int
+    candidate: Candidate
     constants: dict[str, float]
     idle: dict[str, float]  # the slots that columns stand for, and where they change nothing
     whole: bool = False  # whether its column is all that its constants change, and no slope
+
+    @property
+    def pieces(self) -> tuple[str, ...]:
+        """The pieces of a missing term, with the constants in them."""
+        return self.candidate.pieces_at({slot: f"{value:.9g}" for slot, value in self.constants.items()})
 
 
 @dataclass(frozen=True)
@@ -68,17 +71,18 @@ class Scorer:
         known = recall(repr(len(candidates)), self.model.fit.values.tobytes(), self.model.fit.starts.tobytes())
         if known is not None:
             return [Score(candidates[number], values, gain) for number, values, gain in known]
-        places = {id(one): number for number, one in enumerate(candidates)}
-        found = self._scores(candidates)
-        keep([(places[id(one.candidate)], one.values, one.gain) for one in found])
-        return found
+        numbers = {id(candidate): number for number, candidate in enumerate(candidates)}
+        scores = self._scores(candidates)
+        keep([(numbers[id(score.candidate)], score.values, score.gain) for score in scores])
+        return scores
 
     def _scores(self, candidates: tuple[Candidate, ...]) -> list[Score]:
         explained, best = _Explained.by(self.model.fit), dict[int, Score]()
         for some, columns in self._columns(candidates):
-            for number, score in explained.gains(some, columns, candidates):
-                if number not in best or score.gain > best[number].gain:
-                    best[number] = score
+            for score in explained.gains(some, columns):
+                known = best.setdefault(id(score.candidate), score)
+                if score.gain > known.gain:
+                    best[id(score.candidate)] = score
         return sorted(best.values(), key=lambda score: -score.gain)
 
     def leave_out_each(self, candidates: tuple[Candidate, ...]) -> Values:
@@ -91,7 +95,7 @@ class Scorer:
         gained = np.zeros(len(others))
         for some, columns in self._columns(candidates):
             for place, rest in enumerate(others):
-                gains = (score.gain for _, score in explained[place].gains(some, columns[rest], candidates))
+                gains = (score.gain for score in explained[place].gains(some, columns[rest]))
                 gained[place] = max([gained[place], *gains])
         left = fit.projected[0]
         return np.array([(left[rest] ** 2).mean() for rest in others]) - gained / [left[rest].size for rest in others]
@@ -99,43 +103,33 @@ class Scorer:
     def _columns(self, candidates: tuple[Candidate, ...]) -> Iterator[tuple[list[_Cell], Values]]:
         """Yield cells and what each of their slots would change, whitened (segment, number, column)."""
         line = linearise(self.model, self.places)
-        roles = sorted({one.role for one in candidates if one.constants})
+        roles = sorted({candidate.role for candidate in candidates if candidate.constants})
         along = dict(zip(roles, np.moveaxis(self._along(roles), -1, 0), strict=True))
         for number, place in enumerate(self.places):
-            all_here = [i for i, one in enumerate(candidates) if (one.kind, one.place) == (place.kind, place.name)]
-            here = [i for i in all_here if not candidates[i].states]
-            for i in all_here:
-                if candidates[i].states:
-                    some, push = self._with_own_states(i, candidates[i], along)
+            here = [one for one in candidates if (one.kind, one.place) == (place.kind, place.name)]
+            for candidate in here:
+                if candidate.states:
+                    some, push = self._with_own_states(candidate, along)
                     yield some, self._white(line.of_push(number, push))
-            jobs = [(cell, pieces) for i in here for cell, pieces in self._cells(i, candidates[i], along)]
-            for first in range(0, len(jobs), AT_ONCE):
-                some = jobs[first : first + AT_ONCE]
-                push = self._along([piece for _, pieces in some for piece in pieces])
-                yield [cell for cell, _ in some], self._white(line.of_push(number, push))
-        for i, one in enumerate(candidates):
-            late = one.name == "sensor_lag" and "delay(" in dict(self.model.simulation.observations)[one.place]
-            if one.verdict != "missing_physics" and not late:  # a signal that is late already is not delayed again
-                yield self._signal_columns(line, i, one, along)
+            plain = [cell for candidate in here if not candidate.states for cell in self._cells(candidate, along)]
+            for first in range(0, len(plain), AT_ONCE):
+                some = plain[first : first + AT_ONCE]
+                push = self._along([piece for cell in some for piece in cell.pieces])
+                yield some, self._white(line.of_push(number, push))
+        seen = dict(self.model.simulation.observations)
+        for candidate in candidates:
+            late = candidate.name == "sensor_lag" and "delay(" in seen[candidate.place]
+            if candidate.verdict != "missing_physics" and not late:  # a signal that is late already: not once more
+                yield self._signal_columns(line, candidate, along)
 
-    def _cells(
-        self, number: int, candidate: Candidate, along: dict[str, Values]
-    ) -> list[tuple[_Cell, tuple[str, ...]]]:
+    def _cells(self, candidate: Candidate, along: dict[str, Values]) -> list[_Cell]:
         constants = dict(candidate.constants or {})
         x = along[candidate.role].ravel() if constants else np.zeros(1)
-        return [
-            (
-                _Cell(number, cell, candidate.idle),
-                candidate.pieces_at({slot: f"{value:.9g}" for slot, value in cell.items()}),
-            )
-            for cell in cells(constants, x, self.rhythm)
-        ]
+        return [_Cell(candidate, cell, candidate.idle) for cell in cells(constants, x, self.rhythm)]
 
-    def _with_own_states(
-        self, number: int, candidate: Candidate, along: dict[str, Values]
-    ) -> tuple[list[_Cell], Values]:
+    def _with_own_states(self, candidate: Candidate, along: dict[str, Values]) -> tuple[list[_Cell], Values]:
         """Cells of a term with states of its own, and its pieces along the run (segment, sample, cell times piece)."""
-        some = [cell for cell, _ in self._cells(number, candidate, along)]
+        some = self._cells(candidate, along)
         machine, values, states = self._extend(candidate, [candidate.idle | cell.constants for cell in some])
         pieces = candidate.pieces_at({slot: candidate.named(TRIED)[slot] for slot in candidate.constants or {}})
         seen = tuple((f"piece_{i}", piece) for i, piece in enumerate(pieces))
@@ -179,7 +173,7 @@ class Scorer:
         return self.model.shooting.whiten(carry_change(self.model, change))
 
     def _signal_columns(
-        self, line: Linearised, number: int, candidate: Candidate, along: dict[str, Values]
+        self, line: Linearised, candidate: Candidate, along: dict[str, Values]
     ) -> tuple[list[_Cell], Values]:
         """What a wrong number, input or sensor changes: in each step's landing, and in what is seen."""
         model, shooting = self.model, self.model.shooting
@@ -188,10 +182,10 @@ class Scorer:
             none = float(model.fit.values[model.machine.parameters.index(candidate.place)])
         tried = [{slot: none + NUDGE * max(abs(none), 1e-2)}]
         if limited:
-            tried = [cell.constants for cell, _ in self._cells(number, candidate, along)]
+            tried = [cell.constants for cell in self._cells(candidate, along)]
         elif candidate.is_late:
             either_way = candidate.name == "input_delay"
-            tried = [{slot: float(one)} for one in delays(self.rhythm, either_way)]
+            tried = [{slot: float(delay)} for delay in delays(self.rhythm, either_way)]
         whole = limited or candidate.is_late
         over = np.ones(len(tried)) if whole else np.array([tried[0][slot] - none])
         machine, values, states = self._extend(candidate, tried)
@@ -201,7 +195,7 @@ class Scorer:
         if candidate.verdict != "sensor_error":
             landed = shooting.landed(machine, states[:, :, :-1], values)[..., : line.landed.shape[-1]] - line.landed
             columns += self._white(line.of_change(np.moveaxis(landed / over[:, None, None, None], 0, -1)))
-        return [_Cell(number, one if whole else {}, {slot: none}, whole) for one in tried], columns
+        return [_Cell(candidate, cell if whole else {}, {slot: none}, whole) for cell in tried], columns
 
 
 @dataclass(frozen=True)
@@ -223,10 +217,8 @@ class _Explained:
         known = np.linalg.qr(flat[:, size > 0] / size[size > 0])[0]
         return cls(fit.start_basis, known, left - known @ (known.T @ left))
 
-    def gains(
-        self, some: list[_Cell], columns: Values, candidates: tuple[Candidate, ...]
-    ) -> Iterator[tuple[int, Score]]:
-        """Yield each cell's candidate and score.
+    def gains(self, some: list[_Cell], columns: Values) -> Iterator[Score]:
+        """Yield the score of each cell that changes anything.
 
         columns (segment, number, column): a cell has as many as slots that columns stand for
         """
@@ -245,4 +237,4 @@ class _Explained:
             if size[mine].max() <= 1e-9 or (cell.whole and found[0] <= 0):
                 continue
             values = {slot: none + float(factor) for (slot, none), factor in zip(cell.idle.items(), found, strict=True)}
-            yield cell.candidate, Score(candidates[cell.candidate], values | cell.constants, gain)
+            yield Score(cell.candidate, values | cell.constants, gain)

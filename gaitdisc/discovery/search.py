@@ -53,7 +53,7 @@ class Search:
 
         scores = self.scorer(now).scores(self.open_beside(now))
         worth = sorted((score for score in scores if price(score) < 0), key=price)[:REFITTED]
-        fitted = [self.with_part(now, Part(score.candidate, score.values)) for score in self._report(worth)]
+        fitted = [self.with_part(now, score) for score in self._report(worth)]
         fitted = [model for model in fitted if self.sensible(model) and is_certain(model, -1)]
         fitted += [] if now.parts else self.far_off(now)
         likeliest: dict[Explanations, ScoredModel] = {}
@@ -156,7 +156,7 @@ class Search:
 
     def _widest(self, model: ScoredModel, role: str) -> float:
         """Return the half width that a run can show; of an input, one that it never reaches does nothing anyway."""
-        driven = any(each.name == role for each in self.base.inputs)
+        driven = any(signal.name == role for signal in self.base.inputs)
         return np.inf if driven else CRITERIA.widest * max(map(abs, self._visited(model, role)))
 
     def without(self, now: ScoredModel, number: int) -> ScoredModel:

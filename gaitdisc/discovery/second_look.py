@@ -42,11 +42,11 @@ def prefer_relatives(case: Case, as_read: ScoredModel, verdict: Verdict) -> Verd
     """
     shows = case.search.shows
     if verdict.word in ("unnamed", "process_noise", "no_gap") or not verdict.proof:
-        return replace(verdict, rivals=tuple(one for one in verdict.rivals if shows(one)))
+        return replace(verdict, rivals=tuple(rival for rival in verdict.rivals if shows(rival)))
     for number in range(len(verdict.found.parts)):
         found = verdict.found
-        tried = [in_its_place(case, found, number, one) for one in list_relatives(case, found, number)]
-        for now in sorted((one for one in tried if one), key=lambda one: one.bic):
+        tried = [in_its_place(case, found, number, candidate) for candidate in list_relatives(case, found, number)]
+        for now in sorted((model for model in tried if model), key=lambda model: model.bic):
             idle = not shows(found) or may_vanish(found, number)
             if found.parts[number].candidate.kind == "input":  # what is added takes half of what a number leaves
                 idle = idle or free_run_error(case, found) > CRITERIA.half * free_run_error(case, now)
@@ -56,7 +56,7 @@ def prefer_relatives(case: Case, as_read: ScoredModel, verdict: Verdict) -> Verd
             if proof.bears_out:
                 verdict = verdict.with_model(now, proof)
                 break
-    rivals = tuple(one for one in verdict.rivals if shows(one))
+    rivals = tuple(rival for rival in verdict.rivals if shows(rival))
     if not shows(verdict.found):
         return Verdict(as_read, rivals, proof=verdict.proof)
     return replace(verdict, rivals=rivals)
@@ -74,9 +74,10 @@ def prefer_delay(case: Case, as_read: ScoredModel, verdict: Verdict) -> Verdict:
     if len(parts) != 1 or not springs or not verdict.proof:
         return verdict
     late = [
-        one
-        for one in case.search.candidates
-        if one.name == LATE and (one.place, one.role) == (springs[0].candidate.place, springs[0].candidate.role)
+        candidate
+        for candidate in case.search.candidates
+        if candidate.name == LATE
+        and (candidate.place, candidate.role) == (springs[0].candidate.place, springs[0].candidate.role)
     ]
     found, search = verdict.found, case.search
     begun = [
@@ -85,10 +86,10 @@ def prefer_delay(case: Case, as_read: ScoredModel, verdict: Verdict) -> Verdict:
         for delay in delays(case.rhythm)[::STEP]
     ]
     tried = [search.with_others(found, (part,)) for part in begun]
-    tried = [one for one in tried if search.sensible(one) and is_certain(one) and not may_vanish(one, 0)]
+    tried = [model for model in tried if search.sensible(model) and is_certain(model) and not may_vanish(model, 0)]
     if not tried:
         return verdict
-    now = replace(min(tried, key=lambda one: one.bic), gained=found.gained)
+    now = replace(min(tried, key=lambda model: model.bic), gained=found.gained)
     _, now = compared([found, now])
     proof = prove_held_out(case, as_read, now)
     if not prove(case, found, now, now).bears_out or not proof.bears_out:
@@ -141,7 +142,7 @@ def complete_on_whole_runs(case: Case, as_read: ScoredModel, verdict: Verdict) -
     named, rivals = select_forward(search, whole, len(found.parts) + 1)
     if named is whole:
         return verdict
-    tried = [one for one in rivals if len(one.parts) == len(named.parts)]
+    tried = [rival for rival in rivals if len(rival.parts) == len(named.parts)]
     left = [(free_run_error(case, one), one) for one in (named, *tried[:MOST_NEAR])]
     least, before = min(error for error, _ in left), min(free_run_error(case, one) for one in (found, whole))
     closed = (np.sqrt(before) - np.sqrt(least)) / np.sqrt(free_run_error(case, as_read))
@@ -190,7 +191,7 @@ def in_its_place(case: Case, now: ScoredModel, number: int, relative: Candidate)
     if not scores:
         return None
     parts = [*fewer.parts]
-    parts.insert(number, Part(scores[0].candidate, scores[0].values))
+    parts.insert(number, scores[0])
     model = fewer.refitted(now.shooting, tuple(parts), now.fit.starts, TURNS)
     return replace(model, gained=now.gained) if search.sensible(model) else None
 

@@ -65,7 +65,7 @@ def read_shape(case: Case, as_read: ScoredModel, verdict: Verdict) -> Verdict:
         return verdict
     begun = replace(plain, shooting=shape.shooting)
     readings = [cross_validated(scale, begun, (part,)) for part in _readings(search, shape)]
-    readings = [one for one in readings if search.sensible(one)]
+    readings = [reading for reading in readings if search.sensible(reading)]
     for one in sorted(readings, key=lambda one: find_cost(one, plain)):
         found = score(replace(one, shooting=shape.shooting))
         proof = prove_held_out(case, as_read, found)
@@ -100,7 +100,7 @@ def read_instead(case: Case, as_read: ScoredModel, verdict: Verdict) -> Verdict:
 def find_effect(search: Search, candidate: Candidate) -> str:
     """Return the name of the catalogue's effect that a reading is, or nothing."""
     alike = (one for one in search.candidates if (one.kind, one.place) == (candidate.kind, candidate.place))
-    return next((one.name for one in alike if one.pieces == candidate.pieces), "")
+    return next((effect.name for effect in alike if effect.pieces == candidate.pieces), "")
 
 
 def _readings(search: Search, shape: ScoredModel) -> Iterator[Part]:
@@ -177,7 +177,7 @@ class _Curve:
         along = evaluate_many(self.search.base, [self.motion[0]], points)[0]
         pieces = list(self._pieces(along))
         (part,) = self.shape.parts
-        values = evaluate_many(self.search.base, [part.term, *(one.at for one in pieces)], points).T
+        values = evaluate_many(self.search.base, [part.term, *(piece.at for piece in pieces)], points).T
         size = np.linalg.norm(values, axis=0)
         good = np.flatnonzero(np.isfinite(size[1:]) & (size[1:] > 0))
         return [pieces[i] for i in good], values[:, 1 + good], values[:, 0]
@@ -196,7 +196,7 @@ class _Curve:
     def _pieces(self, along: Values) -> Iterator[Piece]:
         """Pieces over the position, over its rate, over both, and products of one and the other."""
         rate = self.motion[1]
-        angle = any(one.motions[0] == self.motion and one.angle for one in self.search.places)
+        angle = any(place.motions[0] == self.motion and place.angle for place in self.search.places)
         known = [
             one for one in read_shapes() if len(one.pieces) == 1 and not one.states and "delay" not in one.pieces[0]
         ]

@@ -103,16 +103,17 @@ def likeliest(case: Case, verdict: Verdict) -> Weighed:
     """Return what was found, weighed; or a rival of random pushes or of a shape without a name, which absorb errors."""
     # as many numbers as a covariance can be made of
     found = cut_short(case, verdict.found, max(MOST_NUMBERS // len(case.measured.channels), FEWEST_SAMPLES))
-    tried = [one.parts for one in verdict.rivals[:RIVALS]]
+    tried = [rival.parts for rival in verdict.rivals[:RIVALS]]
     tried += [
-        (Part(one, part.values),)  # what a shape reads as
+        (Part(candidate, part.values),)  # what a shape reads as
         for part in found.parts
-        for one in case.search.candidates
-        if (one.name, one.place, one.pieces) == (verdict.reads_as, part.candidate.place, part.candidate.pieces)
+        for candidate in case.search.candidates
+        if (candidate.name, candidate.place, candidate.pieces)
+        == (verdict.reads_as, part.candidate.place, part.candidate.pieces)
     ]
     tried = tried if verdict.process_noise or verdict.word == UNNAMED else []
     models = [case.search.with_others(found, parts) for parts in tried]
-    models = [one for one in models if case.search.sensible(one)]
+    models = [model for model in models if case.search.sensible(model)]
     ordered = sorted((weighed(case, one) for one in (found, *models)), key=lambda one: one.criterion)
     named = [one for one in ordered if one.now.parts and one.now.word != UNNAMED]
     return next((one for one in named if one.criterion < ordered[0].criterion + CRITERIA.tie), ordered[0])
@@ -134,8 +135,8 @@ def beyond_errors(case: Case, now: Weighed) -> tuple[ScoredModel, Proof | None]:
     base, proof = weighed(case, case.search.with_others(now.now, ())), None
     while now.now.parts:
         parts = range(len(now.now.parts))
-        fewer = [weighed(case, case.search.without(now.now, one)) for one in parts] if len(parts) > 1 else [base]
-        tests = [tested(case, one, now) for one in (*fewer, base)]
+        fewer = [weighed(case, case.search.without(now.now, number)) for number in parts] if len(parts) > 1 else [base]
+        tests = [tested(case, model, now) for model in (*fewer, base)]
         proof = replace(prove(case, base.now, now.now, now.now), test=tests[-1])
         excess = float((base.held_out**2).sum()) - (base.held_out != 0).sum()  # beyond the stated errors
         if tests[-1].fall >= CRITERIA.half * excess and all(one.bears_out for one in tests):
@@ -183,8 +184,11 @@ def weighed(case: Case, now: ScoredModel) -> Weighed:
         move = np.zeros(len(values))
         move[columns] = -np.linalg.lstsq(slopes, here, rcond=None)[0]
         tried = (fit.prior.within(values + share * move) for share in HALVED)
-        tried = (one for one in tried if case.search.sensible(now.with_estimates(one, fit.covariance)))
-        better = next(((one, found) for one in tried if ((found := rows(one)) ** 2).sum() < (here**2).sum()), None)
+        tried = (numbers for numbers in tried if case.search.sensible(now.with_estimates(numbers, fit.covariance)))
+        better = next(
+            ((numbers, left_over) for numbers in tried if ((left_over := rows(numbers)) ** 2).sum() < (here**2).sum()),
+            None,
+        )
         if better is None:
             break
         gained, (values, here) = (here**2).sum() - (better[1] ** 2).sum(), better
@@ -245,7 +249,7 @@ def propagate_inputs(model: ScoredModel, names: list[str], hats: Values) -> list
 
     hats (sample, knot): the error that each knot stands for
     """
-    places = tuple(Place("input", one, (), (), (), False) for one in names)
+    places = tuple(Place("input", name, (), (), (), False) for name in names)
     line, direct = linearise(model, places), propagate_push(model, places)
     push, moved = np.broadcast_to(hats, (len(model.fit.starts), *hats.shape)), []
     for number in range(len(places)):
@@ -257,14 +261,14 @@ def propagate_inputs(model: ScoredModel, names: list[str], hats: Values) -> list
 def weigh_unstated_errors(case: Case, verdict: Verdict) -> tuple[Case, Verdict]:
     """Return a verdict without each name that errors of inputs of unknown size explain as well: gains and wanders."""
     found, search = verdict.found, case.search
-    erring = [one.name for one in search.base.driving if not (one.sd or one.gain or one.wraps)]
+    erring = [signal.name for signal in search.base.driving if not (signal.sd or signal.gain or signal.wraps)]
     if not erring or not names_in(found):
         return case, verdict
     kept = cut_short(case, found, round(case.rhythm.samples))  # along long runs such errors are not linear
     best, now = beside_errors(case, kept, erring)
     while names := names_in(kept):
         fewer = [search.without(kept, number) for number in names]
-        tried = [(*beside_errors(case, one, erring), one) for one in fewer]
+        tried = [(*beside_errors(case, model, erring), model) for model in fewer]
         least, gained, less = min(tried, key=lambda one: one[0])
         if least - best > CRITERIA.margin:
             break
@@ -279,7 +283,7 @@ def weigh_unstated_errors(case: Case, verdict: Verdict) -> tuple[Case, Verdict]:
     if not now.parts and verdict.proof and verdict.proof.closed > CRITERIA.half:
         return case, verdict
     verdict, dropped = without_names(replace(verdict, proof=proof), found, now)
-    what = f"unstated errors of {listing([repr(one) for one in erring])} explain {dropped} as well"
+    what = f"unstated errors of {listing([repr(name) for name in erring])} explain {dropped} as well"
     finding = Finding("note", "unstated errors", case.measured.source, what, "the name; it is among the rivals")
     return case.noting(finding), verdict
 
@@ -292,8 +296,10 @@ def names_in(now: ScoredModel) -> list[int]:
 def beside_errors(case: Case, now: ScoredModel, erring: list[str]) -> tuple[float, ScoredModel]:
     """Return the criterion of a model whose inputs err, and the model, with their gains where these are evident."""
     search, present = case.search, now.explanations
-    gains = [one for one in search.candidates if one.name == "input_gain" and one.place in erring]
-    parts = (*now.parts, *(Part(one, {"gain": 1.0}) for one in gains if one.identity not in present))
+    gains = [
+        candidate for candidate in search.candidates if candidate.name == "input_gain" and candidate.place in erring
+    ]
+    parts = (*now.parts, *(Part(gain, {"gain": 1.0}) for gain in gains if gain.identity not in present))
     plain, gained = criterion_with_errors(case, now, erring), search.with_others(now, parts)
     beside = criterion_with_errors(case, gained, erring) if search.sensible(gained) else np.inf
     return min(plain, beside), gained if plain - beside > CRITERIA.margin else now
@@ -301,7 +307,7 @@ def beside_errors(case: Case, now: ScoredModel, erring: list[str]) -> tuple[floa
 
 def criterion_with_errors(case: Case, now: ScoredModel, erring: list[str]) -> float:
     """Return the information criterion of a model whose inputs err, by the size and memory that are likeliest."""
-    fit, names, period = now.fit, [one.name for one in case.search.base.inputs], case.rhythm.samples
+    fit, names, period = now.fit, [signal.name for signal in case.search.base.inputs], case.rhythm.samples
     some = np.unique(np.linspace(0, len(now.shooting.segments) - 1, RUNS).astype(int))
     segments = now.shooting.segments.among(some)
     noise = white_noise(case.noise_floor(now.noise.size))
@@ -311,7 +317,7 @@ def criterion_with_errors(case: Case, now: ScoredModel, erring: list[str]) -> fl
     hats = np.array([np.interp(np.arange(segments.length), at, one) for one in np.eye(len(at))]).T
     driven = segments.of(case.measured.drive.inputs)[:, at.round().astype(int)]
     errors = propagate_inputs(replace(now, shooting=shooting, fit=fit), erring, hats)
-    moved = [shooting.whiten(one) for one in errors]
+    moved = [shooting.whiten(error) for error in errors]
     pairs = [(one, driven[..., names.index(name)]) for one, name in zip(moved, erring, strict=True)]
     numbers, best = int(shooting.known.sum()) - fit.starts.size, np.inf
     for periods in PERIODS:

@@ -20,7 +20,7 @@ def _scores(case, now):
 
 
 def _fall(case, now, score):
-    part = Part(score.candidate, score.values)
+    part = score
     refitted = fit_model(now.shooting, case.search.base, (part,), now.fit.starts)
     return now.fit.misfit - refitted.fit.misfit, refitted.parts[0].values
 
