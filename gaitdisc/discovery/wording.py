@@ -64,7 +64,7 @@ def _say(discovery: Discovery, base: Simulation, parts: tuple[Part, ...]) -> str
     if discovery.verdict == "process_noise":
         where = at_place(effects[0].kind, effects[0].place)
         push = estimate_text(effects[0].estimates["strength"])
-        alone = discovery.held_out is not None and discovery.held_out.of.endswith("quarter")
+        alone = discovery.held_out.of.endswith("quarter")
         repeats = (
             "one trial cannot show whether a deterministic effect is missing"
             if alone
