@@ -45,7 +45,7 @@ from gaitdisc.discovery.linearised import Linearised
 from gaitdisc.discovery.score import Scorer
 from gaitdisc.discovery.shooting import Shooting
 
-METHODS = {Shooting: ("fitted",), Scorer: ("scores", "left_without_each"), Linearised: ("first_growth",)}
+METHODS = {Shooting: ("fitted",), Scorer: ("scores", "leave_out_each"), Linearised: ("first_growth",)}
 FUNCTIONS = {
     "linearised": ("linearise", "linearise_along"),
     "process_noise": ("rank_process_noise",),

@@ -50,7 +50,7 @@ def run(quick: bool, data: Path) -> Result:
     case = set_up_case(simulation, measured)
     as_read = case.as_read()
     first, _ = select_forward(case.search, as_read, 1)
-    part = first.model.parts[0]
+    part = first.parts[0]
     left = {"held-out stretches": errors_mm(case, case.held_out, as_read, first)}
     if (data / "DATA_EMPS_PULSES.mat").exists():
         pulses = set_up_case(simulation, stretches(data / "DATA_EMPS_PULSES.mat", simulation))

@@ -88,11 +88,11 @@ def searched(walk: Pass, draws: np.ndarray) -> dict[str, object]:
     named = [one.named for one in joints if one.named]
     touched = max(joints, key=lambda one: float(np.mean(one.joint.left**2) / one.joint.floor**2))
     residual = [np.sqrt(np.mean(walk.dense(walk.demanded[:, k]) ** 2)) for k in walk.engine.base]
-    numbers = named[0].part.values if len(named) == 1 else {}
+    numbers = named[0].values if len(named) == 1 else {}
     rest = touched.joint.left - (touched.named.predicted if touched.named else 0.0)
     pairs = [(regressed(walk, one.joint) ** 2, float(np.mean(one.joint.left**2))) for one in joints]
     return {
-        "named": ", ".join(f"{one.part.candidate.name} at {one.part.candidate.place}" for one in named),
+        "named": ", ".join(f"{one.candidate.name} at {one.candidate.place}" for one in named),
         "value": abs(numbers.get("value", numbers.get("factor", np.nan))),
         "left_nm": float(np.sqrt(np.mean(touched.joint.left**2))),
         "after_nm": float(np.sqrt(np.mean(rest**2))),

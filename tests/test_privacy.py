@@ -256,7 +256,7 @@ def test_models_and_what_they_tell_hold_none_of_them(study, recordings, tmp_path
 
 def test_a_discovery_from_a_study_holds_none_of_them(study, tmp_path, monkeypatch, said):
     """Whatever is found: the words come from the study, and the search for what is missing has none of them."""
-    monkeypatch.setattr("gaitdisc.discovery.discover.decide", lambda _, as_read: Verdict("no_gap", as_read, ()))
+    monkeypatch.setattr("gaitdisc.discovery.discover.decide", lambda _, as_read: Verdict(as_read, ()))
     words = said("discover", study, "--participant", "P01", "--out", tmp_path, "--no-report", "--quiet", ends=0)
     assert (tmp_path / "discovery.json").exists(), words
     assert planted(words.replace(str(tmp_path), "")) == []

@@ -8,7 +8,6 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from gaitdisc.discovery.candidate import Candidate
-from gaitdisc.discovery.candidate_model import CandidateModel, Part
 from gaitdisc.discovery.case import Case
 from gaitdisc.discovery.criteria import CRITERIA
 from gaitdisc.discovery.decision import Verdict
@@ -16,7 +15,6 @@ from gaitdisc.discovery.effect_words import amount, spoken, with_unit
 from gaitdisc.discovery.estimates import NORMAL_95, list_estimates
 from gaitdisc.discovery.held_out import (
     Proof,
-    Trial,
     compare_runs,
     gap_size,
     grows_along_runs,
@@ -27,7 +25,7 @@ from gaitdisc.discovery.held_out import (
 from gaitdisc.discovery.influence import nearly_off
 from gaitdisc.discovery.odd_trials import KIND as ODD_TRIAL
 from gaitdisc.discovery.result import Correction, Discovery, Estimate, Explanation, FoundEffect, GapSize, Whereabouts
-from gaitdisc.discovery.scored_model import ScoredModel
+from gaitdisc.discovery.scored_model import Part, ScoredModel
 from gaitdisc.discovery.search import Search
 from gaitdisc.discovery.wording import write_sentence
 from gaitdisc.recording import Finding
@@ -53,14 +51,14 @@ class Rival:
     @property
     def part(self) -> Part:
         """The rival's explanation."""
-        return self.scored.model.parts[-1]
+        return self.scored.parts[-1]
 
 
 def answer(
     case: Case,
     as_read: ScoredModel,
     verdict: Verdict,
-    refitted: Callable[[ScoredModel], CandidateModel] = lambda found: found.model,
+    refitted: Callable[[ScoredModel], ScoredModel] = lambda model: model,
 ) -> tuple[Discovery, Simulation]:
     """Write down what was found.
 
@@ -71,16 +69,16 @@ def answer(
     floor, proof = case.noise_floor(now.noise.size), verdict.proof
     before, after = (run_trials(case, one, case.learned, now) for one in (as_read, now))
     train = gap_size(before, after, floor, channels, compare_runs(case, before, after, now))
-    held = proof if proof and now.model.parts else prove(case, as_read, now, now)
+    held = proof if proof and now.parts else prove(case, as_read, now, now)
     of = f"trial {', '.join(case.measured.trials[one] for one in case.held_out)}"
     held_out = replace(gap_size(held.before, held.after, floor, channels, (proof or held).test), of=of)
     gained = bic_gain(case.search, now)
     rivals = weigh_rivals(case.search, now, verdict.rivals, gained)
-    stated = replace(verdict, found=replace(now, model=refitted(now)))
-    parts, moved = stated.found.model.parts, list_corrections(stated.found.model, base)
+    stated = replace(verdict, found=refitted(now))
+    parts, moved = stated.found.parts, list_corrections(stated.found, base)
     effects = list_effects(case, stated, 1 - held_out.unexplained, gained)
     if verdict.given:
-        effects = tuple(replace(one, small=idle) for one, idle in zip(effects, verdict.given, strict=True))
+        effects = tuple(replace(effect, small=idle) for effect, idle in zip(effects, verdict.given, strict=True))
     named = (Explanation(effects, held_out, *first_run(case, held.after, held_out)),) if effects else ()
     agrees = verdict.word != "no_gap" or not grows_along_runs(case, as_read)
     discovery = Discovery(
@@ -89,7 +87,7 @@ def answer(
         where=whereabouts(case, stated, train) if effects or not agrees else (),
         effects=effects,
         rivals=(
-            *(report_rival(case, one) for one in rivals if one.part.candidate.label not in now.labels),
+            *(report_rival(case, rival) for rival in rivals if rival.part.candidate.label not in now.labels),
             *(
                 FoundEffect(one.candidate.kind, one.candidate.place, one.candidate.name, one.term, small=True)
                 for one in verdict.small  # that close too little of the gap to be named
@@ -114,7 +112,11 @@ def answer(
 
 def left_out(findings: tuple[Finding, ...]) -> list[str]:
     """Say which trials were left out, and why."""
-    return [f"{one.what[0].upper()}{one.what[1:]}; it was left out." for one in findings if one.kind == ODD_TRIAL]
+    return [
+        f"{finding.what[0].upper()}{finding.what[1:]}; it was left out."
+        for finding in findings
+        if finding.kind == ODD_TRIAL
+    ]
 
 
 def list_effects(case: Case, verdict: Verdict, closed: float, gained: float) -> tuple[FoundEffect, ...]:
@@ -129,7 +131,7 @@ def list_effects(case: Case, verdict: Verdict, closed: float, gained: float) -> 
             FoundEffect("state", name, "wrong_initial_condition", "", {"initial": start})
             for name, start in verdict.starts.items()
         )
-    parts = verdict.found.model.parts
+    parts = verdict.found.parts
     found = [replace(_effect(case, verdict.found, n), held_out=closed, bic=gained) for n in range(len(parts))]
     if verdict.read:
         (part,) = parts
@@ -147,21 +149,21 @@ def augment_with(base: Simulation, parts: tuple[Part, ...]) -> Simulation:
 
 def report_rival(case: Case, rival: Rival, part: int = -1) -> FoundEffect:
     """Say one of a rival's explanations, the last by default, with its numbers."""
-    number = part % len(rival.scored.model.parts)
+    number = part % len(rival.scored.parts)
     return replace(_effect(case, rival.scored, number), term="", states={}, bic=rival.gained, tied=rival.tied)
 
 
 def _effect(case: Case, now: ScoredModel, number: int) -> FoundEffect:
     """Return one of a model's explanations with its numbers."""
-    part, base = now.model.parts[number], case.search.base
-    one, estimates = part.candidate, list_estimates(now.model, number, base)
+    part, base = now.parts[number], case.search.base
+    one, estimates = part.candidate, list_estimates(now, number, base)
     bounds, states = file_bounds(base, one), one.states_at(part.written)
     return FoundEffect(one.kind, one.place, one.name, part.term, estimates, bounds=bounds, states=states)
 
 
 def bic_gain(search: Search, now: ScoredModel) -> float:
     """By how much the information criterion falls from the simulation as read to an answer, on the answer's runs."""
-    return search.with_others(now, ()).bic - now.bic if now.model.parts else 0.0
+    return search.with_others(now, ()).bic - now.bic if now.parts else 0.0
 
 
 def weigh_rivals(search: Search, now: ScoredModel, found: tuple[ScoredModel, ...], gained: float) -> tuple[Rival, ...]:
@@ -174,25 +176,29 @@ def weigh_rivals(search: Search, now: ScoredModel, found: tuple[ScoredModel, ...
     own = sorted(now.labels)
     others: dict[tuple[str, ...], ScoredModel] = {}
     for one in found:
-        if one.model.parts and sorted(one.labels) != own:
+        if one.parts and sorted(one.labels) != own:
             others.setdefault(tuple(sorted(one.labels)), one)
     listed = list(others.values())[:MOST_RIVALS]
     if not own:
-        return tuple(Rival(one, one.gained, False) for one in listed)
+        return tuple(Rival(model, model.gained, False) for model in listed)
     fitted: dict[tuple[str, ...], ScoredModel] = {}
     for one in listed:
-        parts, sets = now.model.parts, [one.model.parts]
+        parts, sets = now.parts, [one.parts]
         if one.labels[-1] not in own:  # its last explanation alone, as it was, or beside the answer's but one
-            last = one.model.parts[-1]
+            last = one.parts[-1]
             beside = [(*parts[:k], *parts[k + 1 :], last) for k in range(len(parts))] if len(parts) > 1 else []
             sets = [(last,), *(sets if len(sets[0]) > 1 else []), *beside]
-        best = min((search.with_others(now, each) for each in sets), key=lambda each: each.bic)
+        best = min((search.with_others(now, each) for each in sets), key=lambda model: model.bic)
         fitted.setdefault(tuple(sorted(best.labels)), best)
     rivals = [
-        Rival(one, gained - (one.bic - now.bic), one.bic - now.bic < CRITERIA.tie and not set(own) < set(one.labels))
-        for one in fitted.values()  # what only adds to the answer is no other answer
+        Rival(
+            model,
+            gained - (model.bic - now.bic),
+            model.bic - now.bic < CRITERIA.tie and not set(own) < set(model.labels),
+        )
+        for model in fitted.values()  # what only adds to the answer is no other answer
     ]
-    return tuple(sorted(rivals, key=lambda one: -one.gained))
+    return tuple(sorted(rivals, key=lambda rival: -rival.gained))
 
 
 def list_explanations(
@@ -203,7 +209,7 @@ def list_explanations(
     floor = np.array([floor for _, _, floor in size.channels.values()])
     for one in rivals:
         after = run_trials(case, one.scored, case.held_out, verdict.found)
-        effects = tuple(report_rival(case, one, number) for number in range(len(one.scored.model.parts)))
+        effects = tuple(report_rival(case, one, number) for number in range(len(one.scored.parts)))
         test = compare_runs(case, held.before, after, verdict.found)
         left = gap_size(held.before, after, floor, tuple(size.channels), test)
         explanation = Explanation(effects, replace(left, of=size.of), *first_run(case, after, size))
@@ -211,10 +217,11 @@ def list_explanations(
     return [explanation for _, explanation in sorted(found, key=lambda one: one[0])]
 
 
-def first_run(case: Case, after: Trial, size: GapSize) -> tuple[tuple[float, ...], tuple[float, ...]]:
+def first_run(case: Case, after: ScoredModel, size: GapSize) -> tuple[tuple[float, ...], tuple[float, ...]]:
     """Return times [s] of the first held-out run, and measured minus run of the channel with the largest gap."""
     left = after.fit.residual[0, :DRAWN, [*size.channels].index(size.ranked[0])]
-    time = after.segments.samples[0, after.segments.compared][:DRAWN] / case.measured.rate
+    segments = after.shooting.segments
+    time = segments.samples[0, segments.compared][:DRAWN] / case.measured.rate
     return tuple(time.tolist()), tuple(left.tolist())
 
 
@@ -225,19 +232,19 @@ def whereabouts(case: Case, verdict: Verdict, train: GapSize) -> tuple[Whereabou
     if verdict.starts:
         return tuple(Whereabouts("state", name, float("nan")) for name in verdict.starts)
     now = verdict.found
-    if not now.model.parts:
-        firsts = [one.model.parts[0].candidate for one in verdict.rivals[:1] if one.model.parts]
+    if not now.parts:
+        firsts = [rival.parts[0].candidate for rival in verdict.rivals[:1] if rival.parts]
         return tuple(Whereabouts(one.kind, one.place, float("nan")) for one in firsts)
     share = (train.before**2 - train.after**2) / train.before**2 if train.before > 0 else 0.0
     return tuple(
         Whereabouts(
             part.candidate.kind,
             part.candidate.place,
-            share / len(now.model.parts),
+            share / len(now.parts),
             find_phase(case, now, part),
             find_region(part),
         )
-        for part in now.model.parts
+        for part in now.parts
     )
 
 
@@ -249,18 +256,18 @@ def push_along(case: Case, now: ScoredModel, part: Part) -> Values | None:
     term = part.candidate.term({slot: f"{value:.9g}" for slot, value in part.values.items()})
     if part.candidate.verdict != "missing_physics" or "delay(" in term:
         return None
-    segments, drive, fit = now.shooting.segments, case.measured.drive, now.model.fit
+    segments, drive, fit = now.shooting.segments, case.measured.drive, now.fit
     # run by run: what stands beside the effect may be late, and a delay needs consecutive samples
     runs = [
         Points(*one, fit.values, rate=drive.rate)
         for one in zip(segments.times(drive), fit.states, segments.of(drive.inputs), strict=True)
     ]
-    return np.abs([evaluate(now.model.simulation, term, run) for run in runs])
+    return np.abs([evaluate(now.simulation, term, run) for run in runs])
 
 
 def find_phase(case: Case, now: ScoredModel, part: Part) -> tuple[float, ...]:
     """Return the part of the stride in which an effect is at least half as strong as at its strongest."""
-    names = [one.name for one in case.search.base.inputs]
+    names = [signal.name for signal in case.search.base.inputs]
     push = push_along(case, now, part) if "phase" in names else None
     if push is None:
         return ()
@@ -274,12 +281,12 @@ def find_phase(case: Case, now: ScoredModel, part: Part) -> tuple[float, ...]:
 def exact_inputs(case: Case, now: ScoredModel) -> tuple[Finding, ...]:
     """Say how large an error of the inputs would explain a missing term as well: they were taken as exact."""
     base, found = case.search.base, []
-    for part in now.model.parts:
+    for part in now.parts:
         push, candidate = push_along(case, now, part), part.candidate
         if push is None:
             continue
         unit = places_unit(base, candidate.kind, candidate.place)
-        like = [repr(one.name) for one in base.driving if one.unit == unit and not (one.sd or one.gain)]
+        like = [repr(signal.name) for signal in base.driving if signal.unit == unit and not (signal.sd or signal.gain)]
         if like:
             size = with_unit(amount(float(np.sqrt(np.mean(push**2)))), unit)
             what = (
@@ -301,11 +308,11 @@ def find_region(part: Part) -> str:
     return ""
 
 
-def list_corrections(model: CandidateModel, base: Simulation) -> tuple[Correction, ...]:
+def list_corrections(model: ScoredModel, base: Simulation) -> tuple[Correction, ...]:
     """List the numbers that were fitted within their bounds and moved, each with its 95 % interval inside these."""
     prior, free = model.fit.prior, model.fit.free
     error = np.sqrt(np.diag(model.fit.covariance))
-    units, found = {one.name: one.unit for one in base.parameters}, []
+    units, found = {parameter.name: parameter.unit for parameter in base.parameters}, []
     for name, place, given, low, high in zip(
         prior.names, prior.places, prior.value, prior.low, prior.high, strict=True
     ):
@@ -318,12 +325,15 @@ def list_corrections(model: CandidateModel, base: Simulation) -> tuple[Correctio
 
 def file_bounds(base: Simulation, candidate: Candidate) -> tuple[float, ...]:
     """Return the bounds that the file gives a wrong parameter, infinite where it has but one."""
-    for one in base.parameters if candidate.verdict == "wrong_parameter" else ():
-        if one.name == candidate.place and (one.low is not None or one.high is not None):
-            return (-np.inf if one.low is None else one.low, np.inf if one.high is None else one.high)
+    for parameter in base.parameters if candidate.verdict == "wrong_parameter" else ():
+        if parameter.name == candidate.place and (parameter.low is not None or parameter.high is not None):
+            return (
+                -np.inf if parameter.low is None else parameter.low,
+                np.inf if parameter.high is None else parameter.high,
+            )
     return ()
 
 
 def corrected(base: Simulation, corrections: tuple[Correction, ...]) -> Simulation:
     """Return a simulation with corrected numbers."""
-    return base.with_values({one.parameter: one.found.value for one in corrections})
+    return base.with_values({correction.parameter: correction.found.value for correction in corrections})

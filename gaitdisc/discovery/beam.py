@@ -15,7 +15,6 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 
 from gaitdisc.discovery.candidate import Identity, list_unnamed_terms
-from gaitdisc.discovery.candidate_model import Explanations, Part, fit_model
 from gaitdisc.discovery.case import Case
 from gaitdisc.discovery.criteria import CRITERIA
 from gaitdisc.discovery.gap_share import CONVERGED, TURNS, CrossValidated, GapScale, cross_validated, errs_more
@@ -23,7 +22,7 @@ from gaitdisc.discovery.noise import white_noise
 from gaitdisc.discovery.paired_test import PairedTest
 from gaitdisc.discovery.result import ALPHA
 from gaitdisc.discovery.score import Score
-from gaitdisc.discovery.scored_model import ScoredModel
+from gaitdisc.discovery.scored_model import Explanations, Part, ScoredModel, fit_model
 from gaitdisc.discovery.search import Search
 
 WIDTH = 5  # sets that are extended side by side
@@ -48,7 +47,7 @@ class Beam:
 
     def cost(self, now: CrossValidated) -> float:
         """Return what is left of the gap plus the penalty of what closes the rest, in shares of the gap as read."""
-        return now.gap / self.as_read.gap + now.model.penalty
+        return now.gap / self.as_read.gap + now.penalty
 
     @property
     def best(self) -> CrossValidated:
@@ -58,25 +57,25 @@ class Beam:
     def fit(self, sets: Iterable[tuple[Part, ...]], begun: CrossValidated | None = None) -> list[CrossValidated]:
         """Fit sets, so that they are weighed as well."""
         fitted = [cross_validated(self.scale, begun or self.as_read, parts) for parts in sets]
-        fitted = [one for one in fitted if self.search.sensible(one.model)]
-        self.known.update((one.model.explanations, one) for one in fitted)
+        fitted = [model for model in fitted if self.search.sensible(model)]
+        self.known.update((model.explanations, model) for model in fitted)
         return fitted
 
     def select_forward(self, begin: CrossValidated) -> CrossValidated:
         """Return the best set found by adding explanations to one, or to a far-off number, and exchanging them."""
-        self.known.setdefault(self.as_read.model.explanations, self.as_read)
+        self.known.setdefault(self.as_read.explanations, self.as_read)
         far = self.fit(one.parts for one in self.search.far_off(self.as_read))
-        self.known[begin.model.explanations] = begin
+        self.known[begin.explanations] = begin
         if begin is not self.as_read:
             for one in far:
                 self._extend([one])
         most = min(MOST, max(1, len(begin.errors) // 3))
         beam = [begin]
-        for _ in range(len(begin.model.explanations), most):
+        for _ in range(len(begin.explanations), most):
             longer = self._extend(beam)
             if not longer:
                 break
-            least = min(one.gap for one in beam)
+            least = min(model.gap for model in beam)
             beam = sorted(longer, key=self.cost)[:WIDTH]
             if least - beam[0].gap <= 0.5 * CRITERIA.matters * self.as_read.gap:
                 break
@@ -89,55 +88,53 @@ class Beam:
 
     def _extend(self, beam: list[CrossValidated]) -> list[CrossValidated]:
         """Fit the most promising sets of one explanation more; those that are known already stand beside them."""
-        size = len(beam[0].model.explanations) + 1
+        size = len(beam[0].explanations) + 1
         found = {key: one for key, one in self.known.items() if len(key) == size and np.isfinite(one.gap)}
         for now in beam:
             for score in self._promising(now, FIRST if len(beam) == 1 else NEXT):
                 longer = self._with(now, score)
                 if longer:
-                    found[longer.model.explanations] = longer
+                    found[longer.explanations] = longer
         return list(found.values())
 
     def _promising(self, now: CrossValidated, most: int) -> list[Score]:
         """Explanations that could, to first order, make a set cheaper than the cheapest known."""
-        fit, model = now.model.fit, now.model
         if not np.isfinite(now.gap):
             return []
-        scores = self.search.scorer(now.shooting, model).scores(self.search.open_beside(model))
-        whole = float((fit.projected[0] ** 2).sum())
+        scores = self.search.scorer(now).scores(self.search.open_beside(now))
+        whole = float((now.fit.projected[0] ** 2).sum())
         wanted = self.cost(self.best) + CRITERIA.plain
         promising = []
         for score in scores:
             left = math.sqrt(max(1 - score.gain / whole, 0.0))
-            promised = now.gap / self.as_read.gap * left + model.penalty + score.candidate.penalty(score.values)
+            promised = now.gap / self.as_read.gap * left + now.penalty + score.candidate.penalty(score.values)
             if promised < wanted:
                 promising.append(score)
         return promising[:most]
 
     def _with(self, now: CrossValidated, score: Score) -> CrossValidated | None:
         """Fit a set with one explanation more; None where its numbers would not mean what its name says."""
-        wanted = now.model.explanations | {score.candidate.identity}
+        wanted = now.explanations | {score.candidate.identity}
         if wanted not in self.known:
-            parts = (*now.model.parts, Part(score.candidate, score.values))
-            longer = cross_validated(self.scale, now, parts)
-            if not self.search.sensible(longer.model):
+            longer = cross_validated(self.scale, now, (*now.parts, score))
+            if not self.search.sensible(longer):
                 return None
             self.known[wanted] = longer
         return self.known[wanted]
 
     def without(self, now: CrossValidated, gone: Identity) -> CrossValidated:
         """Fit a set less one of its explanations."""
-        wanted = now.model.explanations - {gone}
+        wanted = now.explanations - {gone}
         if wanted not in self.known:
-            parts = tuple(part for part in now.model.parts if part.candidate.identity != gone)
+            parts = tuple(part for part in now.parts if part.candidate.identity != gone)
             self.known[wanted] = cross_validated(self.scale, now, parts)
         return self.known[wanted]
 
     def _exchange(self, best: CrossValidated) -> None:
         """Fit the sets with another explanation in the place of each of a set's own."""
-        if len(best.model.explanations) < 2:
+        if len(best.explanations) < 2:
             return
-        for gone in sorted(best.model.explanations):
+        for gone in sorted(best.explanations):
             fewer = self.without(best, gone)
             for score in self._promising(fewer, NEXT):
                 self._with(fewer, score)
@@ -145,9 +142,9 @@ class Beam:
     def material(self, now: CrossValidated) -> tuple[CrossValidated, list[Part]]:
         """Return a set less what closes too little of the gap, or not beyond chance; and what went, the last first."""
         small: list[Part] = []
-        while now.model.explanations:
+        while now.explanations:
             losses = []
-            for part in now.model.parts:
+            for part in now.parts:
                 fewer = self.without(now, part.candidate.identity)
                 share = (fewer.gap - now.gap) / self.as_read.gap
                 worth = max(CRITERIA.matters, part.candidate.penalty(part.values))
@@ -164,24 +161,20 @@ class Beam:
         equal = [
             one
             for one in self.known.values()
-            if 0 < len(one.model.explanations) <= len(now.model.explanations)
-            and one.model.penalty < now.model.penalty - 1e-9
+            if 0 < len(one.explanations) <= len(now.explanations)
+            and one.penalty < now.penalty - 1e-9
             and one.gap < self.as_read.gap
             and errs_more(one, now) >= ALPHA
         ]
-        return min(equal, key=lambda one: (round(one.model.penalty, 3), one.gap)) if equal else now
+        return min(equal, key=lambda model: (round(model.penalty, 3), model.gap)) if equal else now
 
     def near(self, now: CrossValidated, within: float) -> list[CrossValidated]:
         """Return other sets that cost hardly more, the cheapest first.
 
         within: how much more, in shares of the gap as read
         """
-        others = [
-            one
-            for one in self.known.values()
-            if one.model.explanations and one.model.explanations != now.model.explanations
-        ]
-        return sorted((one for one in others if self.cost(one) <= self.cost(now) + within), key=self.cost)
+        others = [one for one in self.known.values() if one.explanations and one.explanations != now.explanations]
+        return sorted((model for model in others if self.cost(model) <= self.cost(now) + within), key=self.cost)
 
 
 @dataclass(frozen=True, eq=False)
@@ -210,22 +203,22 @@ def closing_most(case: Case, also: tuple[tuple[Part, ...], ...]) -> Outcome | No
     search, scale = case.search, case.scale
     search = replace(search, candidates=(*search.candidates, *list_unnamed_terms(search.base, search.places)))
     as_read = near_runs(case)
-    if scale.agrees(as_read.model.fit) or not as_read.gap:
+    if scale.agrees(as_read.fit) or not as_read.gap:
         return None
     beam = Beam(search, scale, as_read)
     beam.fit(also)
     best = beam.select_forward(as_read)
-    longer = on_longer_runs(case, best) if best.model.explanations else None
+    longer = on_longer_runs(case, best) if best.explanations else None
     if longer:
         plainest = beam.plainest(best)  # that shorter runs do not distinguish from the best
         beam = Beam(search, scale, as_read_on(scale, as_read, longer))
         if not beam.as_read.gap:
             return None
-        beam.fit((plainest.model.parts,), longer)
+        beam.fit((plainest.parts,), longer)
         best = beam.select_forward(longer)
     now, small = beam.material(best)
     now = beam.plainest(now)
-    if not now.model.explanations:
+    if not now.explanations:
         return None
     near, others = (tuple(beam.near(now, within)) for within in (TIED, np.inf))
     closed = 1 - (now.gap / beam.as_read.gap) ** 2
@@ -246,8 +239,8 @@ def near_runs(case: Case) -> CrossValidated:
         plain = shooting.with_noise(white_noise(scale.spread))  # as if it erred by the whole spread of the channels
         enough, starts = CONVERGED * shooting.seen.size, case.guess.starts(shooting.segments)
         begun = fit_model(plain, case.search.base, (), starts, TURNS, enough)
-        now = cross_validated(scale, ScoredModel(begun, shooting), ())
-        tried.append((scale.relative(now.model.fit), now))
+        now = cross_validated(scale, replace(begun, shooting=shooting), ())
+        tried.append((scale.relative(now.fit), now))
         if tried[-1][0] < CRITERIA.near or samples / 2 < max(FEWEST, HALF_PERIOD * period):
             break
         samples //= 2
@@ -261,13 +254,13 @@ def on_longer_runs(case: Case, now: CrossValidated) -> CrossValidated | None:
     samples = now.shooting.segments.span
     while samples < longest:
         before, samples = found or now, min(2 * samples, longest)
-        guess = guess.with_run(before.shooting.segments, before.model.fit.states)
+        guess = guess.with_run(before.shooting.segments, before.fit.states)
         shooting = replace(case.cut_learned_runs(samples), past=guess.states)
-        shooting = shooting.with_noise(scale.white_error(before.model.fit))
+        shooting = shooting.with_noise(scale.white_error(before.fit))
         starts = guess.starts(shooting.segments)
-        begun = before.model.refitted(shooting, starts=starts, turns=TURNS)
-        longer = cross_validated(scale, ScoredModel(begun, shooting), begun.parts)
-        if not scale.relative(longer.model.fit) < CRITERIA.near:
+        begun = before.refitted(shooting, starts=starts, turns=TURNS)
+        longer = cross_validated(scale, begun, begun.parts)
+        if not scale.relative(longer.fit) < CRITERIA.near:
             break
         found = longer
     return found
@@ -275,10 +268,10 @@ def on_longer_runs(case: Case, now: CrossValidated) -> CrossValidated | None:
 
 def as_read_on(scale: GapScale, as_read: CrossValidated, longer: CrossValidated) -> CrossValidated:
     """Run the simulation as read over the runs of what was found; an error beyond the spread counts as the spread."""
-    shooting = longer.shooting.with_noise(scale.white_error(as_read.model.fit))
-    model = as_read.model.refitted(shooting, starts=longer.model.fit.starts, turns=TURNS)
+    shooting = longer.shooting.with_noise(scale.white_error(as_read.fit))
+    model = as_read.refitted(shooting, starts=longer.fit.starts, turns=TURNS)
     most = CRITERIA.lost * (scale.spread / scale.size) ** 2
     square = np.fmin((model.fit.residual / scale.size) ** 2, most)  # the greater where a run has failed
     mean = float(square[shooting.known].mean())
     errors = np.full(len(longer.errors), mean)
-    return CrossValidated(model, shooting, errors=errors, gap=scale.gap_above(mean))
+    return CrossValidated(**vars(model), errors=errors, gap=scale.gap_above(mean))

@@ -6,8 +6,9 @@ import math
 import re
 from collections.abc import Collection, Iterator, Mapping
 from dataclasses import dataclass, field
+from typing import NamedTuple
 
-from gaitdisc.discovery.catalogue import Shape, with_names
+from gaitdisc.discovery.catalogue import Shape, name_factors, with_names
 from gaitdisc.discovery.criteria import CRITERIA
 from gaitdisc.discovery.places import Place, kinematic_rates
 from gaitdisc.simulation.expression import Tree, parse, substitute, written
@@ -16,15 +17,27 @@ from gaitdisc.simulation.running import compile_simulation
 from gaitdisc.simulation.simulation import Simulation
 from gaitdisc.simulation.unit_check import unit_of_state
 
-# How an error of a signal reads, {s} being the signal: (slot, value when nothing is wrong, expression)
+
+class SignalFault(NamedTuple):
+    """An error of an input or a sensor, {s} being the signal."""
+
+    slot: str  # its number
+    none: float  # value of that when nothing is wrong
+    form: str  # how the signal reads
+    above: str  # how a number above `none` is said, {} being its size
+    below: str = ""  # and one below, where it is said otherwise
+
+
 SIGNAL_ERRORS = {
-    "input_gain": ("gain", 1.0, "{gain}*{s}"),
-    "input_delay": ("seconds", 0.0, "delay({s}, {seconds})"),
-    "input_lag": ("seconds", 0.0, ""),
-    "sensor_gain": ("gain", 1.0, "{gain}*({s})"),
-    "sensor_offset": ("offset", 0.0, "({s}) + {offset}"),
-    "sensor_drift": ("rate", 0.0, "({s}) + {rate}*t"),
-    "sensor_lag": ("seconds", 0.0, "{s}"),
+    "input_gain": SignalFault("gain", 1.0, "{gain}*{s}", "acts {} times as strongly as recorded"),
+    "input_delay": SignalFault(
+        "seconds", 0.0, "delay({s}, {seconds})", "acts later than recorded, by {}", "acts earlier than recorded, by {}"
+    ),
+    "input_lag": SignalFault("seconds", 0.0, "", "acts through a first-order lag of {}"),
+    "sensor_gain": SignalFault("gain", 1.0, "{gain}*({s})", "reads {} times the true value"),
+    "sensor_offset": SignalFault("offset", 0.0, "({s}) + {offset}", "reads high by {}", "reads low by {}"),
+    "sensor_drift": SignalFault("rate", 0.0, "({s}) + {rate}*t", "drifts high by {}", "drifts low by {}"),
+    "sensor_lag": SignalFault("seconds", 0.0, "{s}", "lags by {}"),
 }
 
 # Explanations that can imitate some others, and many others, and so have to close more of a gap than a plain one
@@ -81,24 +94,19 @@ class Candidate:
     @property
     def slots(self) -> tuple[str, ...]:
         """The numbers to be found, by name: factors first."""
-        if self.verdict == "missing_physics":
-            factors = tuple(f"factor_{i}" if i else "factor" for i in range(len(self.pieces)))
-            return (*factors, *(self.constants or {}))
-        if self.verdict == "wrong_parameter":
-            return ("value",)
-        return tuple(self.constants) if self.constants else (SIGNAL_ERRORS[self.name][0],)
+        return (*self.idle, *(self.constants or {})) if self.verdict == "missing_physics" else tuple(self.idle)
 
     @property
     def idle(self) -> dict[str, float]:
         """Values at which the candidate changes nothing (constants of a shape are not among them)."""
         if self.verdict == "missing_physics":
-            return {slot: 0.0 for slot in self.slots if slot.startswith("factor")}
+            return dict.fromkeys(name_factors(self.pieces), 0.0)
         if self.verdict == "wrong_parameter":
             return {"value": self.value}
         if self.constants:
             return dict.fromkeys(self.constants, math.inf)
-        slot, none, _ = SIGNAL_ERRORS[self.name]
-        return {slot: none}
+        error = SIGNAL_ERRORS[self.name]
+        return {error.slot: error.none}
 
     @property
     def label(self) -> str:
@@ -123,7 +131,7 @@ class Candidate:
             return simulation.with_values({self.place: float(numbers["value"])})
         form = self.form
         for name, rate in self.states_at(numbers).items():
-            unit = next(each.unit for each in simulation.inputs if each.name == self.place)
+            unit = next(signal.unit for signal in simulation.inputs if signal.name == self.place)
             late = simulation.with_state(State(name, unit, initial=0.0), "0").with_input(self.place, name)
             return late.with_equation(name, rate)
         if self.verdict == "input_error":
@@ -138,7 +146,7 @@ class Candidate:
     @property
     def form(self) -> str:
         """How an error of a signal reads, {s} being the signal."""
-        return self.pieces[0] if self.pieces else SIGNAL_ERRORS[self.name][2]
+        return self.pieces[0] if self.pieces else SIGNAL_ERRORS[self.name].form
 
     @property
     def is_late(self) -> bool:
@@ -226,7 +234,7 @@ def list_candidates(
         )
         for parameter in simulation.parameters
     ]
-    for name in (one.name for one in simulation.driving):
+    for name in (signal.name for signal in simulation.driving):
         if _occurs(name, used):
             scaled = () if f"gain_of_{name}" in simulation.values() else ("input_gain",)  # a number of the file
             found += [Candidate("input_error", "input", name, error) for error in ("input_delay", *scaled)]
@@ -240,8 +248,8 @@ def list_candidates(
             Candidate("sensor_error", "observation", name, error)
             for error in ("sensor_gain", "sensor_offset", "sensor_lag", "sensor_drift")
         ]
-    driving = tuple(each.name for each in simulation.driving if not each.wraps)
-    has_phase = any(one.name == "phase" for one in simulation.inputs)
+    driving = tuple(signal.name for signal in simulation.driving if not signal.wraps)
+    has_phase = any(signal.name == "phase" for signal in simulation.inputs)
     for place in places:
         for shape in shapes:
             if (shape.needs == "angle" and not place.angle) or (shape.uses_phase and not has_phase):
@@ -250,8 +258,8 @@ def list_candidates(
                 continue  # the states of a Python object are its own
             for role, names in _castings(shape, place, driving):
                 taken = {*simulation.signals, *(name for one in found for name in one.states)}
-                written = names | {one: f"_{one}" for one in shape.constants}
-                written |= {one: free_name(f"{shape.name}_{place.name}", taken) for one in shape.states}
+                written = names | {constant: f"_{constant}" for constant in shape.constants}
+                written |= {state: free_name(f"{shape.name}_{place.name}", taken) for state in shape.states}
                 found.append(
                     Candidate(
                         "missing_physics",
@@ -280,8 +288,8 @@ def saturations(simulation: Simulation) -> tuple[Candidate, ...]:
         "min(max({s}, {lower_limit}), {upper_limit})": two_sizes,
     }
     return tuple(
-        Candidate("input_error", "input", one.name, "input_saturation", (form,), limits, one.name)
-        for one in simulation.inputs
+        Candidate("input_error", "input", signal.name, "input_saturation", (form,), limits, signal.name)
+        for signal in simulation.inputs
         for form, limits in forms.items()
     )
 
@@ -308,7 +316,7 @@ def _castings(shape: Shape, place: Place, driving: tuple[str, ...]) -> list[tupl
     if "u" in roles:
         (x, v), *_ = place.motions
         moving = ({"x": x} if x != v else {}) | ({"v": v} if v else {})
-        return [(each, moving | {"u": each}) for each in driving if roles <= {"u", *moving}]
+        return [(signal, moving | {"u": signal}) for signal in driving if roles <= {"u", *moving}]
     if roles <= {"x", "v"}:
         castings = []
         for x, v in place.motions:
@@ -342,7 +350,7 @@ def no_shape(place: Place, pieces: tuple[str, ...], role: str) -> Candidate:
 def list_unnamed_terms(simulation: Simulation, places: tuple[Place, ...]) -> tuple[Candidate, ...]:
     """List plain terms that no shape is: an input, a state times an input, the acceleration of another body."""
     rate_of = kinematic_rates(simulation, compile_simulation(simulation))
-    inputs = [one.name for one in simulation.driving if one.name != "phase"]
+    inputs = [signal.name for signal in simulation.driving if signal.name != "phase"]
     return tuple(
         no_shape(place, (term,), place.motions[0][0])
         for place in places

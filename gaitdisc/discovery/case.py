@@ -8,7 +8,6 @@ from functools import cached_property, partial
 import numpy as np
 
 from gaitdisc.discovery.candidate import list_candidates
-from gaitdisc.discovery.candidate_model import CandidateModel, fit_model
 from gaitdisc.discovery.catalogue import ALL, Request, read_shapes
 from gaitdisc.discovery.criteria import CRITERIA
 from gaitdisc.discovery.estimated_filter import find_record_filter
@@ -19,13 +18,13 @@ from gaitdisc.discovery.influence import Idle, idle_parts, refuse_idle
 from gaitdisc.discovery.input_errors import with_constant_errors
 from gaitdisc.discovery.linearised import linearise, linearise_along
 from gaitdisc.discovery.matched import match_channels
-from gaitdisc.discovery.noise import sensor_noise, white_noise
+from gaitdisc.discovery.noise import Noise, sensor_noise, white_noise
 from gaitdisc.discovery.places import kinematic_rates, list_places
 from gaitdisc.discovery.record_filter import RecordFilter
 from gaitdisc.discovery.result import ALPHA
-from gaitdisc.discovery.scored_model import ScoredModel, leaves, score
+from gaitdisc.discovery.scored_model import ScoredModel, fit_model, leaves, score
 from gaitdisc.discovery.search import Search
-from gaitdisc.discovery.segments import Segments, cut_segments
+from gaitdisc.discovery.segments import FEWEST_SAMPLES, Segments, cut_segments
 from gaitdisc.discovery.shooting import Shooting
 from gaitdisc.recording import Finding
 from gaitdisc.recording.arrays import Values
@@ -34,7 +33,6 @@ from gaitdisc.simulation.measured import Measured
 from gaitdisc.simulation.running import compile_simulation
 from gaitdisc.simulation.simulation import Simulation
 
-FEWEST_SAMPLES = 16  # of a segment
 FEWEST_COMPARED = 8  # samples of a segment that went through a filter
 SHORT = 6  # margins in a trial, at least
 FIRST_SHARE = 0.3  # of that length, is fitted first, so that the fit of the whole begins near its end
@@ -90,7 +88,7 @@ class Case:
         than by the filter; where the simulation itself errs, and its errors with it, whether it is a small share of the
         spread.
         """
-        if self.search.base.inexact and self.scale.relative(now.model.fit) < CRITERIA.inexact:
+        if self.search.base.inexact and self.scale.relative(now.fit) < CRITERIA.inexact:
             return True
         if not np.isfinite(self.sensor_noise).all():
             return not now.noise.is_autocorrelated
@@ -146,7 +144,7 @@ class Case:
         model = begun.refitted(shooting, starts=guess.starts(shooting.segments))
         if not np.isfinite(model.fit.misfit):  # short runs leave hidden states open, and a long one may end with these
             model = fit_model(shooting, self.search.base, (), self.guess.starts(shooting.segments))
-        return score(shooting.with_past(model.fit.states), model)
+        return score(model.with_own_past())
 
     def predictable_periods(self) -> float:
         """Return how long a run may be, in periods, before a change of its start has grown by `growth`."""
@@ -161,10 +159,11 @@ class Case:
         """Whether runs were cut at a whole period, and not earlier, as chaos demands."""
         return now.shooting.segments.span >= WHOLE_PERIOD * self.rhythm.samples
 
-    def fit_over(self, shooting: Shooting, now: ScoredModel) -> CandidateModel:
-        """Fit a model to other runs, which begin along its own."""
-        starts = self.guess.with_run(now.shooting.segments, now.model.fit.states).starts(shooting.segments)
-        return now.model.refitted(shooting, starts=starts)
+    def fit_over(self, samples: int, model: ScoredModel, noise: Noise) -> ScoredModel:
+        """Fit a model to the learned trials cut into other runs, which begin along its own."""
+        shooting = self.cut_learned_runs(samples).with_noise(noise)
+        starts = self.guess.with_run(model.shooting.segments, model.fit.states).starts(shooting.segments)
+        return model.refitted(shooting, starts=starts)
 
     def lengthen(self, now: ScoredModel, most: int = 10**9) -> ScoredModel:
         """Return a model fitted to runs as long as it can follow.
@@ -174,18 +173,13 @@ class Case:
         longest = min(most, self.longest - 2 * now.shooting.segments.margin)
         followed = np.sqrt(1 + (CRITERIA.follows**2 - 1) / self.record_filter.gains**2)
         while now.shooting.segments.span * 2 < longest:
-            shooting = self.cut_learned_runs(min(LENGTHENED * now.shooting.segments.span, longest))
-            longer = self.fit_over(shooting.with_noise(now.noise), now)
+            longer = self.fit_over(min(LENGTHENED * now.shooting.segments.span, longest), now, now.noise)
             if not np.isfinite(longer.fit.misfit):
                 break
-            longer = replace(score(shooting.with_past(longer.fit.states), longer), gained=now.gained)
-            if (longer.noise.size > followed * now.noise.size).any() or not self.search.sensible(longer.model):
+            longer = replace(score(longer.with_own_past()), gained=now.gained)
+            if (longer.noise.size > followed * now.noise.size).any() or not self.search.sensible(longer):
                 break
-            fit = longer.model.fit
-            if (
-                linearise(longer.shooting, longer.model.simulation, (), fit).first_growth(CRITERIA.chaotic, fit.states)
-                is not None
-            ):
+            if linearise(longer, ()).first_growth(CRITERIA.chaotic, longer.fit.states) is not None:
                 break
             now = longer
         return now
@@ -232,9 +226,9 @@ def _count_substeps(case: Case) -> int:
 
 def hangs_on_step(case: Case, now: ScoredModel) -> bool:
     """Whether a model's runs move by more than a simulation may err where the integration step is halved."""
-    fit, spread = now.model.fit, np.nanstd(case.measured.observed, axis=(0, 1))
+    fit, spread = now.fit, np.nanstd(case.measured.observed, axis=(0, 1))
     finer = replace(now.shooting, substeps=2 * now.shooting.substeps)
-    _, seen = finer.run(now.model.machine, fit.starts[None], fit.values[None])
+    _, seen = finer.run(now.machine, fit.starts[None], fit.values[None])
     moved = (finer.seen - fit.residual - seen[0]) / np.where(spread > 0, spread, 1.0)
     return not np.sqrt(np.nanmean(moved**2)) < CRITERIA.model_error
 
@@ -251,7 +245,7 @@ def _less_idle(case: Case) -> Case:
     kinds = {(place.kind, place.name) for place in search.places if place.name in idle.places}
     kinds |= {("parameter", name) for name in idle.parameters}
     places = tuple(place for place in search.places if place.name not in idle.places)
-    candidates = tuple(one for one in search.candidates if (one.kind, one.place) not in kinds)
+    candidates = tuple(candidate for candidate in search.candidates if (candidate.kind, candidate.place) not in kinds)
     measured, kind = case.measured, "port" if search.base.ports else "equation"
     findings = (*measured.findings, *idle.findings(measured.source or search.base.title, kind))
     return replace(

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 from difflib import get_close_matches
 from functools import cache
@@ -20,7 +20,6 @@ from gaitdisc.toml_text import parse_toml
 
 if TYPE_CHECKING:
     from gaitdisc.discovery.candidate import Candidate
-    from gaitdisc.discovery.candidate_model import CandidateModel
     from gaitdisc.discovery.result import Discovery
     from gaitdisc.discovery.scored_model import ScoredModel
     from gaitdisc.simulation.simulation import Simulation
@@ -92,9 +91,7 @@ class Request:
     progress: Callable[[str], None] = field(default_factory=lambda: lambda _: None, compare=False)
     added: tuple[Candidate, ...] = ()  # explanations beside those of places, numbers and signals
     possible: Callable[[Candidate], bool] = field(default_factory=lambda: lambda _: True, compare=False)
-    refitted: Callable[[ScoredModel], CandidateModel] = field(
-        default_factory=lambda: lambda found: found.model, compare=False
-    )
+    refitted: Callable[[ScoredModel], ScoredModel] = field(default_factory=lambda: lambda model: model, compare=False)
     twins: int = 0  # simulated records of each kind, which are searched as the record was
     answered: Callable[[Discovery, Simulation], object] = field(default_factory=lambda: lambda *_: None, compare=False)
 
@@ -116,6 +113,11 @@ class Request:
 
 
 ALL = Request()  # the effects that come along
+
+
+def name_factors(pieces: Sequence[str]) -> list[str]:
+    """Return the names of the factors of a shape's pieces: `factor`, `factor_1`, ..."""
+    return [f"factor_{number}" if number else "factor" for number in range(len(pieces))]
 
 
 def with_names(expression: str, names: Mapping[str, str]) -> str:
@@ -212,7 +214,7 @@ def _shape(entry: Any, where: str) -> Shape:
     if needs not in NEEDS:
         raise SchemaError('a shape may need only "angle"', f"{where} has {needs!r}", "Remove the line.")
     names = entry.get("names", {})
-    numbers = ["factor", *(f"factor_{number}" for number in range(1, len(pieces))), *constants]
+    numbers = [*name_factors(pieces), *constants]
     if not isinstance(names, dict) or not set(names) <= set(numbers) or not all(map(_is_name, names.values())):
         raise SchemaError(
             f"the names of a shape's numbers must be for {', '.join(numbers)}",

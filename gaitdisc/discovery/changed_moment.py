@@ -125,7 +125,7 @@ def _doubt_number(form: Form, nominal: Walk, device: Walk, change: Change, about
         [replace(both, respect=more * both.respect) for more in RESPECTS],
         [replace(both, own=replace(form, usual=form.usual + shift)) for shift in shifts_of_usual()],
     ]
-    moved = [[_draw_anew(one, change, about, 0)[1] - number for one in each] for each in others]
+    moved = [[_draw_anew(one, change, about, 0)[1] - number for one in kind] for kind in others]
     return float(np.linalg.norm([np.sqrt(np.mean(np.square(one))) for one in moved]))
 
 
@@ -205,7 +205,7 @@ def _draw_anew(both: _Both, change: Change, about: float, draws: int) -> tuple[V
 
 def together(walks: Iterable[Sums], weights: Iterable[Values]) -> Sums:
     """Normal equations of several walks, their strides so many times."""
-    parts = [one.of(weight) for one, weight in zip(walks, weights, strict=True)]
+    parts = [walk.of(weight) for walk, weight in zip(walks, weights, strict=True)]
     return Sums(*(a + b for a, b in zip(*parts, strict=True)))
 
 
@@ -256,7 +256,7 @@ def _weigh_mass(form: Form, nominal: Walk, device: Walk, per_kg: Values, parts: 
     both = first, sums(device, own, per_kg, form.usual)
     value = mass(both, once)
     drawn = [mass(both, weights) for weights in draw_blocks(once)]
-    shifted = [mass((first, sums(device, own, per_kg, form.usual + one)), once) for one in shifts_of_usual()]
+    shifted = [mass((first, sums(device, own, per_kg, form.usual + shift)), once) for shift in shifts_of_usual()]
     return value, float(np.hypot(np.std(drawn), np.std(shifted)))
 
 

@@ -7,7 +7,6 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 
 from gaitdisc.discovery.beam import MOST, closing_most
-from gaitdisc.discovery.candidate_model import Part
 from gaitdisc.discovery.case import Case
 from gaitdisc.discovery.criteria import CRITERIA
 from gaitdisc.discovery.estimates import wrong_starts
@@ -18,7 +17,7 @@ from gaitdisc.discovery.gap_share import cross_validated
 from gaitdisc.discovery.held_out import Proof, free_run_error, free_runs, is_uninformative, prove, strays
 from gaitdisc.discovery.process_noise import MOST_NUMBERS, ProcessNoise, rank_process_noise
 from gaitdisc.discovery.result import Estimate
-from gaitdisc.discovery.scored_model import ScoredModel, compared, ranked, score
+from gaitdisc.discovery.scored_model import Part, ScoredModel, compared, ranked, score
 from gaitdisc.discovery.search import is_certain
 
 MOST_NAMES = 2  # where they leave more than noise; where they leave nothing else, MOST
@@ -29,7 +28,6 @@ MOST_NEAR = 4
 class Verdict:
     """What the search came to."""
 
-    word: str
     found: ScoredModel  # the simulation with what was found in it
     rivals: tuple[ScoredModel, ...]
     process_noise: ProcessNoise | None = None  # for process noise: where, and how strong
@@ -43,6 +41,17 @@ class Verdict:
     # of explanations that a person gave, and none was searched: whether held-out data do without each beside the others
     given: tuple[bool, ...] = ()
 
+    @property
+    def word(self) -> str:
+        """Which of the contract's verdicts it is, but for `unexplained`, which is seen in free runs alone."""
+        if self.process_noise or self.starts:
+            return "process_noise" if self.process_noise else "wrong_initial_condition"
+        return self.found.word if self.found.parts else "no_gap"
+
+    def with_model(self, model: ScoredModel, proof: Proof, *others: ScoredModel) -> Verdict:
+        """Return the verdict on another model; this one's is its first rival, others follow."""
+        return replace(self, found=model, rivals=(self.found, *others, *self.rivals), proof=proof)
+
 
 def decide(case: Case, as_read: ScoredModel) -> Verdict:
     """Search, and decide which of the contract's verdicts the data support."""
@@ -52,7 +61,7 @@ def decide(case: Case, as_read: ScoredModel) -> Verdict:
     plain = None if exact else plainest(case, named)
     if plain:
         return shape_that_leaves_noise(case, as_read, fit_shape(case, as_read), plain) or plain
-    names = len(named.model.parts)
+    names = len(named.parts)
     suspect = named.noise.is_autocorrelated and not (exact and case.search.base.inexact)
     wanted = names > 1 or suspect
     shape = fit_shape(case, as_read) if wanted else None
@@ -65,21 +74,21 @@ def decide(case: Case, as_read: ScoredModel) -> Verdict:
             return unnamed
     if not names:
         wrong = wrong_starts(case.search.base, as_read)
-        return Verdict("wrong_initial_condition" if wrong else "no_gap", as_read, tuple(rivals), starts=wrong)
+        return Verdict(as_read, tuple(rivals), starts=wrong)
     longer, rivals = refit_longer(case, named if exact else prune(case.search, named, np.inf, MOST_NAMES), rivals)
     kept = keep_useful(case, as_read, longer)
     if kept is not longer:  # named anew: the best of fewer is not the best less a part
         alone = refit_longer(case, rivals[0], rivals) if rivals else (kept, rivals)
-        if alone[0] is kept or (len(kept.model.parts) > 1 and prove(case, alone[0], kept, kept).bears_out):
-            longer = score(kept.shooting, kept.model)
+        if alone[0] is kept or (len(kept.parts) > 1 and prove(case, alone[0], kept, kept).bears_out):
+            longer = score(kept)
         else:
             longer, rivals = alone
     proof = prove_held_out(case, as_read, longer)
     if not proof.bears_out or (not exact and names > MOST_NAMES and proof.closed < CRITERIA.half):
         blind = is_uninformative(case, as_read, longer)
         pushed = None if blind else with_random_pushes(case, as_read, as_read, [])
-        return pushed or Verdict("no_gap", as_read, (longer, *rivals), proof=proof)
-    verdict = Verdict(longer.word, longer, tuple(rivals), proof=proof)
+        return pushed or Verdict(as_read, (longer, *rivals), proof=proof)
+    verdict = Verdict(longer, tuple(rivals), proof=proof)
     if not wanted and not case.leaves_noise(longer):
         shape = fit_shape(case, as_read)
     return shape_that_leaves_noise(case, as_read, shape, verdict) or verdict
@@ -95,7 +104,7 @@ def shape_that_leaves_noise(
     """
     if shape is None or not case.leaves_noise(shape):
         return None
-    if len(names.found.model.parts) == 1 and case.leaves_noise(names.found):
+    if len(names.found.parts) == 1 and case.leaves_noise(names.found):
         return None
     if free_run_error(case, shape) > free_run_error(case, names.found):
         return None
@@ -109,14 +118,14 @@ def proven_shape(
 ) -> Verdict | None:
     """Return the verdict on a shape without a name that the held-out data bear out; None where they do not."""
     proof = prove_held_out(case, as_read, shape)
-    return Verdict("unnamed", shape, others, proof=proof) if proof.bears_out else None
+    return Verdict(shape, others, proof=proof) if proof.bears_out else None
 
 
 def keep_useful(case: Case, as_read: ScoredModel, now: ScoredModel) -> ScoredModel:
     """Return what was named without the explanations that the held-out data do not bear out beside the others."""
-    while len(now.model.parts) > 1:
-        fewer = [case.search.without(now, number) for number in range(len(now.model.parts))]
-        tests = [prove_held_out(case, one, now, as_read).test for one in fewer]
+    while len(now.parts) > 1:
+        fewer = [case.search.without(now, number) for number in range(len(now.parts))]
+        tests = [prove_held_out(case, model, now, as_read).test for model in fewer]
         idle = max(range(len(fewer)), key=lambda number: np.nan_to_num(tests[number].p, nan=1.0))
         if tests[idle].bears_out:
             break
@@ -129,7 +138,7 @@ def plainest(case: Case, named: ScoredModel) -> Verdict | None:
 
     named: the simulation with what the search selected, which leaves more than noise
     """
-    found = closing_most(case, (named.model.parts,) if named.model.parts else ())
+    found = closing_most(case, (named.parts,) if named.parts else ())
     if found is None or found.closed < CRITERIA.half:
         return None
     found = replace(found, now=prefer_on_held_out(case, found.now, found.near))
@@ -137,10 +146,10 @@ def plainest(case: Case, named: ScoredModel) -> Verdict | None:
     if likelier.bic > plain.bic:  # unseen data decide; what was learned from must not speak against it
         return None
     now = keep_useful(case, found.as_read, found.now)
-    fit, names = now.model.fit, now.model.size
+    fit, names = now.fit, now.size
     known = fit.starts.shape[1] + names  # names that cancel each other do so whatever the file's numbers are
     alone = replace(fit, free=fit.free[:names], slopes=fit.slopes[..., :known], prior=Prior())
-    if not is_certain(replace(now.model, fit=alone)):
+    if not is_certain(replace(now, fit=alone)):
         return None
     proof = prove_held_out(case, found.as_read, now)
     if now is found.now and proof.closed > CRITERIA.half and not proof.bears_out:  # few pieces are held out
@@ -148,7 +157,7 @@ def plainest(case: Case, named: ScoredModel) -> Verdict | None:
     if not proof.bears_out:
         return None
     likeliest = (named,) if case.search.base.inexact else ()  # what it errs by may choose between two like names
-    return Verdict(now.word, now, (found.now, *likeliest, *found.others), proof=proof, small=found.small)
+    return Verdict(now, (found.now, *likeliest, *found.others), proof=proof, small=found.small)
 
 
 def prefer_on_held_out(case: Case, now: ScoredModel, near: tuple[ScoredModel, ...]) -> ScoredModel:
@@ -156,11 +165,11 @@ def prefer_on_held_out(case: Case, now: ScoredModel, near: tuple[ScoredModel, ..
 
     near: what costs hardly more; of these, what has no more numbers. The plainest of what is preferred is returned
     """
-    equal = [one for one in near if one.model.size <= now.model.size]
-    proofs = [prove(case, now, one, one) for one in equal]
+    equal = [model for model in near if model.size <= now.size]
+    proofs = [prove(case, now, model, model) for model in equal]
     better = [
-        (one.model.penalty, -proof.test.fall, one)
-        for proof, one in zip(proofs, equal, strict=True)
+        (model.penalty, -proof.test.fall, model)
+        for proof, model in zip(proofs, equal, strict=True)
         if proof.bears_out and proof.test.p < case.alpha / len(equal)
     ]
     return min(better, key=lambda one: one[:2])[2] if better else now
@@ -173,13 +182,13 @@ def search_runs(case: Case, as_read: ScoredModel) -> tuple[ScoredModel, ScoredMo
     returns rivals: what else stood for the first place, best first
     """
     named, rivals = select_forward(case.search, as_read, MOST, case.scale)
-    if named.model.parts or not case.spans_a_period(as_read):
+    if named.parts or not case.spans_a_period(as_read):
         return as_read, named, rivals
     longer = case.lengthen(as_read)
     if longer is as_read:
         return as_read, named, rivals
     named, rivals = select_forward(case.search, longer, MOST, case.scale)
-    return (longer, named, rivals) if named.model.parts else (as_read, as_read, rivals)
+    return (longer, named, rivals) if named.parts else (as_read, as_read, rivals)
 
 
 def keep_on_longer_runs(case: Case, as_read: ScoredModel, named: ScoredModel) -> ScoredModel:
@@ -187,13 +196,13 @@ def keep_on_longer_runs(case: Case, as_read: ScoredModel, named: ScoredModel) ->
 
     Where chaos keeps runs short, several explanations together can do what one does with another number.
     """
-    if len(named.model.parts) < 2 or case.spans_a_period(as_read):
+    if len(named.parts) < 2 or case.spans_a_period(as_read):
         return named
     longer = case.lengthen(named)
-    kept = prune(case.search, longer, CRITERIA.margin).model.parts
-    if len(kept) == len(named.model.parts):
+    kept = prune(case.search, longer, CRITERIA.margin).parts
+    if len(kept) == len(named.parts):
         return named
-    return score(named.shooting, named.model.refitted(named.shooting, kept))
+    return score(named.refitted(named.shooting, kept))
 
 
 def with_autocorrelation(
@@ -201,13 +210,13 @@ def with_autocorrelation(
 ) -> Verdict | None:
     """Return a verdict where residuals are autocorrelated, and process noise or a shape explain it better."""
     plain, *found = compared([as_read, named, *([shape] if shape else [])])
-    likelier = [one for one in found if one.model.parts and plain.bic - one.bic >= CRITERIA.margin]
+    likelier = [one for one in found if one.parts and plain.bic - one.bic >= CRITERIA.margin]
     ordered = [one for one in likelier if prove_held_out(case, plain, one).bears_out]
     if not ordered:
         return with_random_pushes(case, as_read, named, rivals)
     worth = CRITERIA.matters * (plain.bic - found[0].bic) + CRITERIA.margin
     if shape and found[1] in ordered and found[1].bic < found[0].bic - worth:
-        return Verdict("unnamed", found[1], (named, *rivals), proof=prove_held_out(case, plain, found[1]))
+        return Verdict(found[1], (named, *rivals), proof=prove_held_out(case, plain, found[1]))
     return None
 
 
@@ -219,16 +228,16 @@ def with_random_pushes(
     The runs, or free runs of unseen data, where pushes add up, must err by more than noise and a simulation may.
     """
     (error, doubt), scale = free_runs(case, as_read), case.scale
-    own_error = case.leaves_noise(as_read) or scale.excess(as_read.model.fit) < CRITERIA.model_error
+    own_error = case.leaves_noise(as_read) or scale.excess(as_read.fit) < CRITERIA.model_error
     noise = case.noise_floor(as_read.noise.size) / scale.spread
     if own_error and error - doubt - np.mean(noise**2) < CRITERIA.model_error**2:
         return None
     longer = runs_that_pushes_move(case, as_read)
-    pushes = rank_process_noise(longer.shooting, longer.model, case.search.places)
+    pushes = rank_process_noise(longer, case.search.places)
     if not pushes[0].rival - pushes[0].bic > CRITERIA.margin + 2 * np.log(len(pushes)):  # noise of the sensors does it
         return None
     term = find_term_before(case, as_read, named, rivals)
-    return term or Verdict("process_noise", as_read, tuple(rivals), pushes[0])
+    return term or Verdict(as_read, tuple(rivals), pushes[0])
 
 
 def find_term_before(case: Case, as_read: ScoredModel, named: ScoredModel, rivals: list[ScoredModel]) -> Verdict | None:
@@ -239,21 +248,21 @@ def find_term_before(case: Case, as_read: ScoredModel, named: ScoredModel, rival
     weighed by its size, with its autocorrelation, and one term was picked among all that were open. A term with states
     of its own begins each held-out run where it suits: free runs must not stray with it.
     """
-    pushes = rank_process_noise(as_read.shooting, as_read.model, case.search.places)[0]
+    pushes = rank_process_noise(as_read, case.search.places)[0]
     scale, among = case.scale, len(case.search.candidates)
     span = as_read.shooting.segments.span
-    others = [one for one in rivals if one.labels != named.labels and one.bic < named.bic + CRITERIA.support]
-    others = [one for one in others if one.shooting.segments.span == span]
+    others = [rival for rival in rivals if rival.labels != named.labels and rival.bic < named.bic + CRITERIA.support]
+    others = [model for model in others if model.shooting.segments.span == span]
     borne: list[tuple[float, ScoredModel, Proof]] = []
     for one in (named, *others[:MOST_NEAR]):
         before, now = compared([as_read, one])
-        beside = rank_process_noise(now.shooting, now.model, case.search.places)[0]
-        likelier = pushes.bic - min(beside.bic, beside.rival) - now.model.size * float(np.log(beside.numbers))
+        beside = rank_process_noise(now, case.search.places)[0]
+        likelier = pushes.bic - min(beside.bic, beside.rival) - now.size * float(np.log(beside.numbers))
         proof = prove_held_out(case, before, now)
         likelier += proof.gained - 2 * float(np.log(among))
         stays = not case.spans_a_period(as_read) or not strays(case, now, free_run_error(case, before))
-        if one.model.parts and likelier > CRITERIA.margin and stays:
-            pair = [cross_validated(scale, now, each.model.parts) for each in (before, now)]
+        if one.parts and likelier > CRITERIA.margin and stays:
+            pair = [cross_validated(scale, now, each.parts) for each in (before, now)]
             if pair[0].errors.sum() > pair[1].errors.sum():  # of pieces left out of the fit
                 borne.append((likelier, now, proof))
     if not borne:
@@ -261,7 +270,7 @@ def find_term_before(case: Case, as_read: ScoredModel, named: ScoredModel, rival
     likelier, now, proof = max(borne, key=lambda one: one[0])
     if not proof.bears_out:  # what is held out hardly shows it: all data together
         proof = replace(proof, test=replace(proof.test, p=float(np.exp(-likelier / 2))))
-    return Verdict(now.word, now, (now, *(one for one in (named, *rivals) if one.labels != now.labels)), proof=proof)
+    return Verdict(now, (now, *(one for one in (named, *rivals) if one.labels != now.labels)), proof=proof)
 
 
 def says_more(shape: ScoredModel, named: ScoredModel) -> bool:
@@ -273,15 +282,15 @@ def says_more(shape: ScoredModel, named: ScoredModel) -> bool:
 def refit_longer(case: Case, named: ScoredModel, rivals: list[ScoredModel]) -> tuple[ScoredModel, list[ScoredModel]]:
     """Return what was named, fitted to long runs; where a rival comes near, the one that long runs prefer."""
     longer = case.lengthen(named)
-    if len(named.model.parts) > 1:
+    if len(named.parts) > 1:
         return longer, rivals
-    near = [one for one in rivals if one is not named and one.bic < named.bic + CRITERIA.support][:MOST_NEAR]
-    near = [case.lengthen(one, longer.shooting.segments.span) for one in near]
-    near = [one for one in near if one.shooting.segments.span == longer.shooting.segments.span]
+    near = [rival for rival in rivals if rival is not named and rival.bic < named.bic + CRITERIA.support][:MOST_NEAR]
+    near = [case.lengthen(model, longer.shooting.segments.span) for model in near]
+    near = [model for model in near if model.shooting.segments.span == longer.shooting.segments.span]
     first, *others = ranked(compared([longer, *near]), case.search.candidates)
-    others = [replace(one, gained=first.gained + first.bic - one.bic) for one in others]
+    others = [replace(model, gained=first.gained + first.bic - model.bic) for model in others]
     decided_on = {one.labels for one in (first, *others)}
-    return first, [first, *others, *(one for one in rivals if one.labels not in decided_on)]
+    return first, [first, *others, *(rival for rival in rivals if rival.labels not in decided_on)]
 
 
 def runs_that_pushes_move(case: Case, as_read: ScoredModel) -> ScoredModel:
@@ -289,13 +298,12 @@ def runs_that_pushes_move(case: Case, as_read: ScoredModel) -> ScoredModel:
 
     Where a small change of the start grows, the runs that the search began with.
     """
-    fit = as_read.model.fit
+    fit = as_read.fit
     samples = min(case.longest, MOST_NUMBERS // fit.residual.shape[2])
     if samples < 2 * as_read.shooting.segments.span or not case.spans_a_period(as_read):
         return as_read
-    shooting = case.cut_learned_runs(samples).with_noise(as_read.noise)
-    model = case.fit_over(shooting, as_read)
-    return ScoredModel(model, shooting) if np.isfinite(model.fit.misfit) else as_read
+    model = case.fit_over(samples, as_read, as_read.noise)
+    return model if np.isfinite(model.fit.misfit) else as_read
 
 
 def prove_held_out(case: Case, before: ScoredModel, now: ScoredModel, as_read: ScoredModel | None = None) -> Proof:

@@ -141,7 +141,7 @@ def weigh_foot(walks: Mapping[str, DeviceWalks]) -> Estimate | None:
 
 def check_kinetics(trial: Trial) -> None:
     """Refuse a walk without EMG, without moments, or whose forces do not carry the body."""
-    wrong = [one for one in trial.findings if one.kind == "force balance" and one.severity == "warning"]
+    wrong = [finding for finding in trial.findings if finding.kind == "force balance" and finding.severity == "warning"]
     if wrong:
         raise SchemaError(
             "moments need ground forces that balance the body weight within 12 %",
@@ -149,7 +149,7 @@ def check_kinetics(trial: Trial) -> None:
             "Correct mass_kg in the study file, or the scale of the plates. Otherwise an effect would be named after "
             "this error.",
         )
-    per_kg = [one for one in trial.findings if one.kind == "per body mass"]
+    per_kg = [finding for finding in trial.findings if finding.kind == "per body mass"]
     if per_kg:
         raise SchemaError(
             "the unit of moments must be the one that is stated, N m",
@@ -161,7 +161,7 @@ def check_kinetics(trial: Trial) -> None:
         ("moments", "joint moments", "Add force plates, a static trial and mass_kg, or a .sto of moments."),
     ):
         if key not in trial.streams:
-            why = next((f": {one.what}" for one in trial.findings if one.kind == "no moments"), "")
+            why = next((f": {finding.what}" for finding in trial.findings if finding.kind == "no moments"), "")
             raise NoMomentsError(
                 f"naming the effect of a device at a joint needs {word} in both walks",
                 f"{trial.name} has no {word}{why if key == 'moments' else ''}",

@@ -10,7 +10,6 @@ from functools import partial
 import numpy as np
 
 from gaitdisc.discovery.answer import answer, augment_with
-from gaitdisc.discovery.candidate_model import Part
 from gaitdisc.discovery.case import FEWEST_SAMPLES, TRIED_SUBSTEPS, Case, hangs_on_step, set_up_case, split_in_time
 from gaitdisc.discovery.catalogue import ALL, Request
 from gaitdisc.discovery.decision import Verdict, decide, prove_held_out
@@ -59,7 +58,7 @@ def explain(simulation: Simulation, measured: Measured, request: Request = ALL) 
     suspected = agreeing_trials(whole, measured)
     case, as_read, verdict = explained(suspected)
     if suspected is not measured:  # a trial is odd where what explains the others says so too
-        explanation = augment_with(whole.search.base, verdict.found.model.parts)
+        explanation = augment_with(whole.search.base, verdict.found.parts)
         kept = agreeing_trials(replace(whole, search=replace(whole.search, base=explanation)), measured)
         if kept.trials != suspected.trials:
             progress("the identified effects explain a trial that was left out: the search is repeated with it")
@@ -99,7 +98,7 @@ def weigh_explanations(
         first = replace(noted(case, first, "shows a gap that the rest does not show"), alpha=case.alpha / 2)
         as_read_first = first.as_read()
         tried = decide(first, as_read_first)
-        if tried.found.model.parts:
+        if tried.found.parts:
             case, as_read, verdict = first, as_read_first, tried
     for step in (prefer_relatives, prefer_delay, read_shape, read_instead):
         verdict = step(case, as_read, verdict)
@@ -131,7 +130,7 @@ def refuse_blow_up(simulation: Simulation, measured: Measured) -> bool:
 
 def refuse_unknown(search: Search, effects: tuple[str, ...]) -> None:
     """Refuse an effect or a place that does not exist, with the nearest."""
-    known = {one.label for one in search.candidates}
+    known = {candidate.label for candidate in search.candidates}
     for given in effects:
         if given not in known:
             near = get_close_matches(given, sorted(known), NEAREST, 0.0)
@@ -146,23 +145,23 @@ def fit_given(case: Case, as_read: ScoredModel, effects: tuple[str, ...]) -> Ver
     """Fit a simulation with exactly these effects in it, each `name@place`, and test it on what is held out."""
     search, now = case.search, as_read
     for given in effects:
-        castings = tuple(one for one in search.open_beside(now.model) if one.label == given)
-        begun = search.scorer(now.shooting, now.model).scores(castings)
-        tried = [search.with_part(now, Part(one.candidate, one.values)) for one in begun]
-        tried = [one for one in tried if np.isfinite(one.fit.misfit)]
+        castings = tuple(candidate for candidate in search.open_beside(now) if candidate.label == given)
+        scores = search.scorer(now).scores(castings)
+        tried = [search.with_part(now, casting) for casting in scores]
+        tried = [model for model in tried if np.isfinite(model.fit.misfit)]
         if not tried:
             raise SchemaError(
                 "an effect to be fitted must change a measured channel, and may be given only once",
                 f"with {given!r} once more the simulation leaves all bounds, or runs as without it",
                 "Give another effect or place.",
             )
-        now = score(now.shooting, min(tried, key=lambda one: one.fit.misfit))
+        now = score(min(tried, key=lambda model: model.fit.misfit))
     now = case.lengthen(now)
-    count = len(now.model.parts)
+    count = len(now.parts)
     idle = [
-        not is_certain(now.model, number, number + 1)
+        not is_certain(now, number, number + 1)
         or (count > 1 and not prove_held_out(case, search.without(now, number), now, as_read).bears_out)
         for number in range(count)
     ]
     proof = prove_held_out(case, as_read, now)
-    return Verdict(now.word, now, (), proof=proof, given=tuple(idle))
+    return Verdict(now, (), proof=proof, given=tuple(idle))

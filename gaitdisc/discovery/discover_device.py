@@ -14,8 +14,7 @@ from gaitdisc.discovery.changed_moment import NORMAL_95, Changed
 from gaitdisc.discovery.device_study import FOOT_SHOWS_AT, DeviceWalks, NoMomentsError, PersonWalks, against, weigh_foot
 from gaitdisc.discovery.discover_files import find_missing
 from gaitdisc.discovery.effect_words import estimate_text, spoken
-from gaitdisc.discovery.joint_and_trials import cut_walk_trials, joint_model
-from gaitdisc.discovery.nominal_model import nominal_and_trials
+from gaitdisc.discovery.joint_and_trials import cut_walk_trials, joint_model, nominal_and_trials
 from gaitdisc.discovery.result import DEVICE, ConditionAnswer, Discovery, Estimate, FoundEffect
 from gaitdisc.errors import ChannelError, GaitdiscError
 from gaitdisc.ingest.public_words import list_words

@@ -66,7 +66,7 @@ def discover_engine(
     mapping, engine = read_mapping(model)
     data = measured(mapping)
     refuse_unmeasured(mapping, engine, data)
-    clean, rate_of = without_spikes(data), {one.name: one.speed for one in engine.coordinates}
+    clean, rate_of = without_spikes(data), {coordinate.name: coordinate.speed for coordinate in engine.coordinates}
     window = (SMOOTH if engine.fibres else NARROW) * find_rhythm(clean.observed, clean.rate).period
     states = guess_states(replace(mapping, model=""), clean, window, rate_of).states  # coordinates, then speeds
     refuse_other_units(mapping, engine, data, states)
@@ -104,7 +104,9 @@ def search(fit: EngineFit, base: EngineAnswer, request: Request, read: dict[Path
     linear, driven = expand(mapping, engine, data, states)
     request = replace(request, added=saturations(mapping))
     if not request.effects:  # a limit is the input's own, and of no force
-        request = replace(request, possible=lambda one: (one.kind, one.name) != ("port", "input_saturation"))
+        request = replace(
+            request, possible=lambda candidate: (candidate.kind, candidate.name) != ("port", "input_saturation")
+        )
     found, answer = find_missing(linear, driven, request, read)
     now, own = answer.values(), {k: one for k, one in mapping.values().items() if engine.as_force(k) is None}
     moved = {name: now[name] for name, value in own.items() if abs(now[name] - value) > MOVED * abs(value)}
@@ -117,7 +119,7 @@ def search(fit: EngineFit, base: EngineAnswer, request: Request, read: dict[Path
     runs = runs.among(np.isin(runs.at.trial, [trial_called(data, name) for name in found.runs.names]))
     augmented, written, _ = fit.written(found, fit.parts)
     hidden = [size[2] for size in found.held_out.channels.values()]  # noise that the record itself may not show
-    pushed = [f"{one.name} at {one.place}" for one in found.effects if one.name == "process_noise"]
+    pushed = [f"{effect.name} at {effect.place}" for effect in found.effects if effect.name == "process_noise"]
     unchecked = " and ".join((*written.absent, *pushed))
     if unchecked:
         why = f"{engine.called} itself has not run {unchecked}: this result is based on the expansion alone."
@@ -155,17 +157,19 @@ def search(fit: EngineFit, base: EngineAnswer, request: Request, read: dict[Path
 
 def without_beside(found: Discovery, effects: tuple[FoundEffect, ...], idle: tuple[FoundEffect, ...]) -> Discovery:
     """Return an answer of some of its effects, and without explanations that only add to these."""
-    kept, others = {(one.name, one.place) for one in effects}, found.explanations[1:]
-    adding = [one for one in others if kept < {(each.name, each.place) for each in one.effects}]
+    kept, others = {(effect.name, effect.place) for effect in effects}, found.explanations[1:]
+    adding = [
+        explanation for explanation in others if kept < {(effect.name, effect.place) for effect in explanation.effects}
+    ]
     added = {(one.effects[-1].name, one.effects[-1].place) for one in adding}
-    rivals = tuple(replace(one, tied=one.tied and (one.name, one.place) not in added) for one in found.rivals)
-    others = (one for one in others if one not in adding)
+    rivals = tuple(replace(rival, tied=rival.tied and (rival.name, rival.place) not in added) for rival in found.rivals)
+    others = (explanation for explanation in others if explanation not in adding)
     return replace(found, effects=effects, rivals=(*idle, *rivals), explanations=(*found.explanations[:1], *others))
 
 
 def withdraw_effects(found: Discovery, runs: OwnRuns) -> Discovery:
     """Take back what the engine's own runs do not bear out: an expansion or an integrator's step can err as well."""
-    named = " and ".join(f"the {named_at(one)}" for one in found.effects)
+    named = " and ".join(f"the {named_at(effect)}" for effect in found.effects)
     sentence = (
         f"Not proven: {named}. {runs.engine}'s own runs have the same error with and without it, above the sensors' "
         "noise; only runs of the expanded model supported it. Trials with other movement can decide."
@@ -214,11 +218,11 @@ def name_augmented(model: Path) -> str:
 def refuse_unmeasured(mapping: Simulation, engine: Engine, data: Measured) -> None:
     """Refuse a record that does not show every free coordinate."""
     seen = {name for channel, text in mapping.observations if channel in data.channels for name in names(parse(text))}
-    for one in engine.coordinates:
-        if one.name not in seen:
+    for coordinate in engine.coordinates:
+        if coordinate.name not in seen:
             raise ChannelError(
                 "every free coordinate of the model must be measured",
-                f"no column shows {one.called!r}; the observations show {', '.join(sorted(seen)) or 'none'}",
+                f"no column shows {coordinate.called!r}; the observations show {', '.join(sorted(seen)) or 'none'}",
                 "Name its column under [observations], or lock the coordinate in the model.",
             )
 
@@ -226,10 +230,10 @@ def refuse_unmeasured(mapping: Simulation, engine: Engine, data: Measured) -> No
 def _report_limits(engine: Engine, states: Values, data: Measured) -> Iterator[Finding]:
     """Say in which samples a limit or a contact of the model acts: its own runs pass through these."""
     inside = np.arange(states.shape[1]) < data.samples[:, None]
-    for one, q in zip(engine.coordinates, states[inside].T, strict=False):
-        if share := 100 * np.mean((q <= one.low) | (q >= one.high)):
-            limits = f"{one.low:.3g} to {one.high:.3g} {one.unit}"
-            what = f"{one.called} is at its limit ({limits}) in {share:.2g} % of samples"
+    for coordinate, q in zip(engine.coordinates, states[inside].T, strict=False):
+        if share := 100 * np.mean((q <= coordinate.low) | (q >= coordinate.high)):
+            limits = f"{coordinate.low:.3g} to {coordinate.high:.3g} {coordinate.unit}"
+            what = f"{coordinate.called} is at its limit ({limits}) in {share:.2g} % of samples"
             yield Finding("note", "limit", "model", f"{what}: the model's own limit acts there", "")
     if touched := getattr(engine, "contacts", 0):
         what = f"bodies touch in the record ({touched} contacts at most): forces there are stiff, expanded as they are"
@@ -239,9 +243,9 @@ def _report_limits(engine: Engine, states: Values, data: Measured) -> Iterator[F
 def _report_saturation(engine: Engine, data: Measured) -> Iterator[Finding]:
     """Say in which samples a control is beyond its range, the model's own or one that was found."""
     driven = data.drive.inputs[np.arange(data.drive.inputs.shape[1]) < data.samples[:, None]]
-    for one, u, (low, high) in zip(engine.controls, driven.T, engine.control_ranges, strict=False):
+    for control, u, (low, high) in zip(engine.controls, driven.T, engine.control_ranges, strict=False):
         if share := 100 * np.mean((u < low) | (u > high)):
-            what = f"{one.name} is beyond its range ({low:.3g} to {high:.3g}) in {share:.2g} % of samples"
+            what = f"{control.name} is beyond its range ({low:.3g} to {high:.3g}) in {share:.2g} % of samples"
             yield Finding("note", "saturated", "model", f"{what}: the engine clips it there", "")
 
 

@@ -52,7 +52,7 @@ def find_missing(
     recall(hash_content((model, data, data.drive), repr((request.shapes, request.effects, request.alpha))))
     request.progress("checking that the simulation stays finite (at its first use, gaitdisc is compiled: about 20 s)")
     if refuse_blow_up(model, data):  # the model moves as slowly as the clock says: no milliseconds
-        data = replace(data, findings=tuple(one for one in data.findings if one.spoils != MILLISECONDS))
+        data = replace(data, findings=tuple(finding for finding in data.findings if finding.spoils != MILLISECONDS))
     try:
         with np.errstate(over="ignore", invalid="ignore"):  # an explanation that runs away explains nothing
             explained = explain(model, data, request)
@@ -85,7 +85,9 @@ def seal(found: Discovery, model: Simulation, data: Measured, files: dict[Path, 
     public = PublicWords(words, {path.name: called for path, called in files.items()})
     numbered = {name: f"trial {number}" for number, name in enumerate(data.trials, 1)}
     trials = {name: called for name, called in numbered.items() if PublicWords().said(name) != name}
-    seen = {one: public.finding(replace(one, what=_without(one.what, trials))) for one in found.findings}
+    seen = {
+        finding: public.finding(replace(finding, what=_without(finding.what, trials))) for finding in found.findings
+    }
     return replace(found, provenance=made, hide=partial(_hidden, trials=trials, findings=seen))
 
 
@@ -104,9 +106,12 @@ def _hidden(found: Discovery, trials: Mapping[str, str], findings: Mapping[Findi
         sentence=_without(found.sentence, trials),
         train=sized(found.train),
         held_out=sized(found.held_out),
-        runs=replace(found.runs, names=tuple(_without(one, trials) for one in found.runs.names)),
-        findings=tuple(findings.get(one, one) for one in found.findings),
-        explanations=tuple(replace(one, held_out=one.held_out and sized(one.held_out)) for one in found.explanations),
+        runs=replace(found.runs, names=tuple(_without(name, trials) for name in found.runs.names)),
+        findings=tuple(findings.get(finding, finding) for finding in found.findings),
+        explanations=tuple(
+            replace(explanation, held_out=explanation.held_out and sized(explanation.held_out))
+            for explanation in found.explanations
+        ),
         hide=None,
     )
 

@@ -86,7 +86,7 @@ def discover_tracked(tracked: Tracked, kinematics: Path, request: Request = ALL)
             number = f"{one.place} = {one.estimates['value'].value:.4g}"
             notes.append(f"{number} belongs to the forces file: only discovery.json contains it")
     said = (stretch_used(walk, kinematics.name), *_gaps(walk, written, found))
-    shown = [summarise_joint(walk, number, one) for number, one in zip(walk.joints, joints, strict=True)]
+    shown = [summarise_joint(walk, number, joint) for number, joint in zip(walk.joints, joints, strict=True)]
     findings += [*shown, *doubts(shown)]
     findings += [Finding("note", "written back", "model", one, "") for one in notes]
     findings += [Finding("note", "own runs" if k else "stretch", "model", one, "") for k, one in enumerate(said)]
@@ -102,35 +102,37 @@ def make_discovery(base: Simulation, joints: list[JointFinding]) -> Discovery:
     """Return what the joints show, as an answer: effects, rivals, the gap before and after."""
     if not joints:
         return write_sentence(Discovery("no_gap", ""), base, ())
-    named = [(one, one.named) for one in joints if one.named is not None]
+    named = [(joint, joint.named) for joint in joints if joint.named is not None]
     effects, rivals = [], []
     for one, best in named:
         left = float(np.sum((one.joint.left - best.predicted) ** 2))
         effects.append(_effect(base, best, 1 - left / max(float(np.sum(one.joint.left**2)), 1e-300)))
-        beside = [replace(_effect(base, each), tied=best.gained - each.gained < CRITERIA.tie) for each in one.rivals]
+        beside = [replace(_effect(base, rival), tied=best.gained - rival.gained < CRITERIA.tie) for rival in one.rivals]
         rivals += beside[1:4]
-    ordered = sorted((one for one in joints if one.rivals), key=lambda one: -one.rivals[0].gained)
+    ordered = sorted((joint for joint in joints if joint.rivals), key=lambda one: -one.rivals[0].gained)
     if not named:
         rivals = [_effect(base, one.rivals[0]) for one in ordered[:1]]
     units = tuple(sensor.unit for sensor in base.sensors)
-    measured, left = (np.column_stack([getattr(one.joint, name) for one in joints]) for name in ("demanded", "left"))
-    closed = np.column_stack([one.named.predicted if one.named else 0.0 * one.joint.left for one in joints])
+    measured, left = (
+        np.column_stack([getattr(joint.joint, name) for joint in joints]) for name in ("demanded", "left")
+    )
+    closed = np.column_stack([joint.named.predicted if joint.named else 0.0 * joint.joint.left for joint in joints])
     walk = [one[None] for one in (measured, measured - left, measured - left + closed)]
     found = Discovery(
-        named[0][1].part.candidate.verdict if named else "no_gap",
+        named[0][1].candidate.verdict if named else "no_gap",
         "",
-        where=tuple(Whereabouts(one.kind, one.place, 1.0 / len(named)) for one in effects),
+        where=tuple(Whereabouts(effect.kind, effect.place, 1.0 / len(named)) for effect in effects),
         effects=tuple(effects),
         rivals=tuple(rivals),
-        train=_gap(joints, [one.named.explained if one.named else 0.0 for one in joints]),
-        held_out=_gap(joints, [one.named.predicted if one.named else 0.0 for one in joints]),
-        channels=tuple(f"net_{one.joint.port}" for one in joints),
+        train=_gap(joints, [joint.named.explained if joint.named else 0.0 for joint in joints]),
+        held_out=_gap(joints, [joint.named.predicted if joint.named else 0.0 for joint in joints]),
+        channels=tuple(f"net_{joint.joint.port}" for joint in joints),
         units=units,
         runs=Runs(np.arange(1), joints[0].joint.time[None], np.zeros((1, 0)), *walk, names=("whole walk",)),
     )
     sizes = found.held_out.channels.values()
     if named or not ordered or all(before < CRITERIA.agrees * floor for before, _, floor in sizes):
-        return write_sentence(found, base, tuple(best.part for _, best in named))
+        return write_sentence(found, base, tuple(best for _, best in named))
     first, (one,) = ordered[0], rivals
     before, after = (np.sqrt(np.mean((first.joint.left - each) ** 2)) for each in (0.0, first.rivals[0].explained))
     unit = units[joints.index(first)]
@@ -143,9 +145,9 @@ def make_discovery(base: Simulation, joints: list[JointFinding]) -> Discovery:
 
 
 def _effect(base: Simulation, one: Named, closed: float = float("nan")) -> FoundEffect:
-    candidate, numbers = one.part.candidate, name_estimates(one.part, one.covariance, base)
+    candidate, numbers = one.candidate, name_estimates(one, one.covariance, base)
     place = candidate.kind, candidate.place, candidate.name
-    return FoundEffect(*place, one.part.term, numbers, closed, one.gained, bounds=candidate.bounds)
+    return FoundEffect(*place, one.term, numbers, closed, one.gained, bounds=candidate.bounds)
 
 
 def _gap(joints: list[JointFinding], taken: list[Values | float]) -> GapSize:
@@ -153,9 +155,9 @@ def _gap(joints: list[JointFinding], taken: list[Values | float]) -> GapSize:
     for one, effect in zip(joints, taken, strict=True):
         before, after = (float(np.sqrt(np.mean(each**2))) for each in (one.joint.left, one.joint.left - effect))
         sizes[f"net_{one.joint.port}"] = (before, after, one.joint.floor)
-    spreads = np.array([max(float(np.std(one.joint.demanded)), 1e-9) for one in joints])
+    spreads = np.array([max(float(np.std(joint.joint.demanded)), 1e-9) for joint in joints])
     before, after, floor = np.sqrt(np.mean((np.array(list(sizes.values())).T / spreads) ** 2, axis=1)).tolist()
-    first = min((one.named.test for one in joints if one.named), key=lambda test: test.p, default=None)
+    first = min((joint.named.test for joint in joints if joint.named), key=lambda test: test.p, default=None)
     return GapSize(before, after, floor, first.p if first else float("nan"), sizes, first.pieces if first else 0)
 
 
@@ -181,8 +183,8 @@ def write_tracked(answer: TrackedAnswer, out: Path) -> list[str]:
 
 def _gaps(walk: Pass, written: WrittenModel, found: Discovery) -> tuple[str, ...]:
     """What the written model leaves by OpenSim itself."""
-    places = {one.port: k for k, one in enumerate(walk.engine.coordinates)}
-    numbers = [places[one.place] for one in found.effects if one.kind == "port"]
+    places = {coordinate.port: k for k, coordinate in enumerate(walk.engine.coordinates)}
+    numbers = [places[effect.place] for effect in found.effects if effect.kind == "port"]
     if not numbers or not isinstance(written.engine, OpensimTracked) or written.engine is walk.engine:
         return ()
     after = written.engine.demanded(walk.motion) - walk.pulls.sum(axis=1)
@@ -240,7 +242,9 @@ def _simulation(walk: Pass) -> Simulation:
 def _candidates(base: Simulation, walk: Pass, more: tuple[Shape, ...]) -> list[Candidate]:
     """What may act at the joints: a device's shapes at their ports, muscles stronger or later, effects of the user."""
     joints = [walk.engine.coordinates[k] for k in walk.joints]
-    places = tuple(Place("port", one.port, ((one.name, one.speed),), (), (), one.unit == "rad") for one in joints)
+    places = tuple(
+        Place("port", joint.port, ((joint.name, joint.speed),), (), (), joint.unit == "rad") for joint in joints
+    )
     effects = {*EFFECTS, *(shape.name for shape in more)}
     every = list_candidates(base, places, (*read_shapes(), *more))
     return [one for one in every if one.kind == "parameter" or (one.name in effects and not one.states)]

@@ -10,12 +10,11 @@ from dataclasses import replace
 
 import numpy as np
 
-from gaitdisc.discovery.candidate_model import fit_model
 from gaitdisc.discovery.first_states import StateGuess
 from gaitdisc.discovery.noise import white_noise
 from gaitdisc.discovery.record_filter import RecordFilter
-from gaitdisc.discovery.scored_model import ScoredModel
-from gaitdisc.discovery.segments import cut_segments
+from gaitdisc.discovery.scored_model import ScoredModel, fit_model
+from gaitdisc.discovery.segments import FEWEST_SAMPLES, cut_segments
 from gaitdisc.discovery.shooting import Shooting
 from gaitdisc.recording import Finding
 from gaitdisc.recording.arrays import Values
@@ -28,7 +27,6 @@ FELT = 1e-3  # times the noise's power at the cut-off, from which on a signal th
 LIKELIER = 10.0  # log likelihood, by which the signal has to be more like the simulation than like any that dies out
 ALIKE = 1.3  # between the cut-offs of channels that went through one filter
 OVERLAP = 4  # times as long a run is as what it shares with the next on either side
-FEWEST_SAMPLES = 16  # of a run
 ROUGH = 1.0  # times the noise's power at the cut-off, from which on a signal there makes the number a rough one
 
 
@@ -49,7 +47,7 @@ def find_record_filter(
         runs = cut_segments(measured.samples, tuple(range(len(measured.trials))), length, length // OVERLAP)
         size = np.nanstd(measured.observed, axis=(0, 1))
         shooting = Shooting(measured, runs, white_noise(size), past=guess.states)
-        as_read = ScoredModel(fit_model(shooting, simulation, (), guess.starts(runs)), shooting)
+        as_read = fit_model(shooting, simulation, (), guess.starts(runs))
         seen = _beside_the_simulation(as_read, seen, inputs)
     units = [simulation.sensor(name).unit for name in measured.channels]
     cutoffs = _as_the_surer(seen, units)
@@ -74,9 +72,9 @@ def _trials(measured: Measured, channel: int) -> list[Values]:
 def _inputs_are_filtered(simulation: Simulation, measured: Measured) -> bool:
     """Whether an input went through a filter: of a linear system, the record has then gone through no other."""
     drive = measured.drive
-    trials = [each[:samples] for each, samples in zip(drive.inputs, drive.samples, strict=True)]
-    numbers = [number for number, one in enumerate(simulation.inputs) if not one.computed]
-    found = [find_filter([each[:, number] for each in trials], drive.rate) for number in numbers]
+    trials = [signal[:samples] for signal, samples in zip(drive.inputs, drive.samples, strict=True)]
+    numbers = [number for number, signal in enumerate(simulation.inputs) if not signal.computed]
+    found = [find_filter([trial[:, number] for trial in trials], drive.rate) for number in numbers]
     return any(one is not None and one.signal < SURE for one in found)
 
 
@@ -113,13 +111,13 @@ def _beside_the_simulation(
         return found
     cutoffs = tuple(found[number].cutoff_hz if number in found else None for number in range(len(measured.channels)))
     filtered = replace(now.shooting, record_filter=RecordFilter(cutoffs, measured.rate))
-    return found if now.model.refitted(filtered).fit.misfit < now.model.fit.misfit else {}
+    return found if now.refitted(filtered).fit.misfit < now.fit.misfit else {}
 
 
 def _stitch(now: ScoredModel) -> Values:
     """Overlapping runs as whole trials (trial, sample, channel): one fades out while the next fades in."""
-    segments, observed, fit = now.shooting.segments, now.shooting.measured.observed, now.model.fit
-    runs = now.shooting.unfiltered(now.model.machine, fit.states[None], fit.values[None])[0]
+    segments, observed, fit = now.shooting.segments, now.shooting.measured.observed, now.fit
+    runs = now.shooting.unfiltered(now.machine, fit.states[None], fit.values[None])[0]
     weight, shared = np.ones(segments.length), 2 * segments.margin
     ramp = np.sin(np.linspace(0, np.pi / 2, shared + 2)[1:-1]) ** 2
     weight[:shared], weight[segments.length - shared :] = ramp, ramp[::-1]

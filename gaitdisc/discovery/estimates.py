@@ -7,10 +7,9 @@ import re
 import numpy as np
 
 from gaitdisc.discovery.candidate import Candidate, free_name
-from gaitdisc.discovery.candidate_model import CandidateModel, Part
 from gaitdisc.discovery.criteria import CRITERIA
 from gaitdisc.discovery.result import Estimate
-from gaitdisc.discovery.scored_model import ScoredModel
+from gaitdisc.discovery.scored_model import Part, ScoredModel
 from gaitdisc.recording.arrays import Values
 from gaitdisc.simulation.simulation import Simulation
 from gaitdisc.simulation.unit_check import divide, find_unit, places_unit, unit_of_channel, unit_of_state
@@ -23,7 +22,7 @@ _WANING = re.compile(r"max\(0, (-|_\w+ - )")  # max(0, x0 - x), max(0, -v)
 _WAVE = re.compile(r"(sin|cos)\((.*)\)")
 
 
-def list_estimates(model: CandidateModel, number: int, base: Simulation) -> dict[str, Estimate]:
+def list_estimates(model: ScoredModel, number: int, base: Simulation) -> dict[str, Estimate]:
     """Return the numbers of one explanation.
 
     returns: by name: `stiffness`, `engagement`, ... A stiffness, a damping, a drag and a friction are positive where
@@ -68,7 +67,7 @@ def wrong_starts(simulation: Simulation, as_read: ScoredModel) -> dict[str, Esti
 
     returns: state -> where the trials begin on average, weighted by how well each shows it, with its 95 % interval
     """
-    fit, segments = as_read.model.fit, as_read.shooting.segments
+    fit, segments = as_read.fit, as_read.shooting.segments
     first = np.flatnonzero(segments.begin == 0)
     slopes = fit.slopes[first][..., : fit.starts.shape[1]]
     variance = np.stack([np.diag(np.linalg.pinv(one.T @ one)) for one in slopes])

@@ -39,7 +39,7 @@ def discovery_figures(discovery: Discovery) -> list[Figure]:
 @in_style
 def explanations_figure(discovery: Discovery) -> list[Figure]:
     """Draw what each explanation leaves of one held-out run, side by side; nothing where there is but one."""
-    explanations = [one for one in discovery.explanations if one.time]
+    explanations = [explanation for explanation in discovery.explanations if explanation.time]
     if len(explanations) < 2:
         return []
     channel = discovery.held_out.ranked[0]
@@ -54,7 +54,10 @@ def explanations_figure(discovery: Discovery) -> list[Figure]:
         axes.tick_params(labelleft=number == 1)
         axes.set_xlabel("time [s]", labelpad=1)
     cells[0].set_ylabel(f"[{unit}]", labelpad=1)
-    columns = {str(number): pd.Series(factor * np.array(one.left)) for number, one in enumerate(explanations, 1)}
+    columns = {
+        str(number): pd.Series(factor * np.array(explanation.left))
+        for number, explanation in enumerate(explanations, 1)
+    }
     caption = (
         f"Residual of each explanation in the table, for {channel}: measured minus simulated, over the first held-out "
         "run. Grey band: two standard deviations of the noise."

@@ -190,7 +190,7 @@ def isolate_equations(simulation: Simulation, own: tuple[int, ...]) -> Simulatio
         simulation,
         states=tuple(states),
         inputs=(*(Input(state.name, state.unit) for state in others), *simulation.inputs),
-        parameters=tuple(replace(one, low=None, high=None) for one in simulation.parameters),
+        parameters=tuple(replace(parameter, low=None, high=None) for parameter in simulation.parameters),
         equations=tuple((state.name, equations[state.name]) for state in states),
         ports=(),
         definitions=(*((port.name, "0") for port in simulation.ports), *simulation.definitions),

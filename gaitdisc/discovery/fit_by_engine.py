@@ -9,7 +9,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 from gaitdisc.discovery.answer import left_out
-from gaitdisc.discovery.candidate_model import CandidateModel, Part
 from gaitdisc.discovery.criteria import CRITERIA
 from gaitdisc.discovery.estimates import name_estimates
 from gaitdisc.discovery.grids import find_rhythm
@@ -19,7 +18,7 @@ from gaitdisc.discovery.noise import sensor_noise
 from gaitdisc.discovery.paired_test import compare_errors, sum_error
 from gaitdisc.discovery.record_filter import RecordFilter
 from gaitdisc.discovery.result import Discovery, Runs
-from gaitdisc.discovery.scored_model import ScoredModel
+from gaitdisc.discovery.scored_model import Part, ScoredModel
 from gaitdisc.discovery.wording import write_sentence
 from gaitdisc.engines.engine import Engine
 from gaitdisc.engines.mapping import replace_inputs, with_input_changed, with_strength
@@ -51,14 +50,16 @@ class EngineFit:
     progress: Callable[[str], None] = field(default_factory=lambda: lambda _: None)
     native: bool = True  # whether what was found is written into the model, or acts beside it at each step
 
-    def noted(self, found: ScoredModel) -> CandidateModel:
+    def noted(self, found: ScoredModel) -> ScoredModel:
         """Return what was found as it is, once its parts and the record's filter are kept."""
-        self.parts, self.low_pass = found.model.parts, found.shooting.record_filter or NO_FILTER
-        return found.model
+        self.parts, self.low_pass = found.parts, found.shooting.record_filter or NO_FILTER
+        return found
 
     def in_mapping(self, found: Discovery, parts: tuple[Part, ...]) -> Simulation:
         """What was found, in the model's mapping; with the states that effects bring along behind the model's own."""
-        changed = self.mapping.with_values({one.parameter: one.found.value for one in found.corrections})
+        changed = self.mapping.with_values(
+            {correction.parameter: correction.found.value for correction in found.corrections}
+        )
         for part in parts:
             one, numbers = part.candidate, {slot: repr(value) for slot, value in part.values.items()}
             form = one.form if one.verdict == "input_error" else ""
@@ -68,17 +69,17 @@ class EngineFit:
                 changed = with_input_changed(changed, one.place, form.format(s=one.place, **numbers))
             elif one.verdict != "input_error":
                 changed = one.written(changed, numbers)
-        starts = {one.place: one.estimates["initial"].value for one in found.effects if one.kind == "state"}
+        starts = {effect.place: effect.estimates["initial"].value for effect in found.effects if effect.kind == "state"}
         return changed.with_starts(starts)
 
     def written(self, found: Discovery, parts: tuple[Part, ...]) -> tuple[Simulation, WrittenModel, Driven]:
         """Return the mapping with what was found, the model with it, and that as the engine runs it."""
         whole, data = self.in_mapping(found, parts), self.measured
         written = write_model(self.engine, whole, self.native)
-        own = {one.name for one in whole.states[len(self.mapping.states) :]}
-        kept = tuple(one for one in whole.effects if not own & set(names(parse(one.term))))
+        own = {state.name for state in whole.states[len(self.mapping.states) :]}
+        kept = tuple(effect for effect in whole.effects if not own & set(names(parse(effect.term))))
         augmented = replace(whole, states=self.mapping.states, equations=self.mapping.equations, effects=kept)
-        controls, lags, called = data.drive.inputs.copy(), {}, [one.name for one in self.engine.controls]
+        controls, lags, called = data.drive.inputs.copy(), {}, [control.name for control in self.engine.controls]
         driving = replace(augmented, definitions=written.definitions)
         for trial, samples in enumerate(data.samples):
             time, u = data.time(trial)[:samples], data.drive.inputs[trial, :samples]
@@ -97,7 +98,7 @@ class EngineFit:
         self, found: Discovery, parts: tuple[Part, ...], runs: OwnRuns, near: dict[int, Values] | None = None
     ) -> Values:
         """Measured minus the engine's runs (run, sample, channel) with some of what was found."""
-        known = recall(repr([one.values for one in parts]))
+        known = recall(repr([part.values for part in parts]))
         if known is None:
             left = residual_by(self.written(found, parts)[2], self.measured, runs.at, self.states, near)
             keep((left.tolist(), {row: start.tolist() for row, start in (near or {}).items()}))
@@ -131,8 +132,8 @@ class EngineFit:
 
         def parts_at(values: Values) -> tuple[Part, ...]:
             each = dict(zip(slots, values.tolist(), strict=True))
-            of_part = ({slot: each[number, slot] for slot in one.values} for number, one in enumerate(self.parts))
-            return tuple(replace(one, values=own) for one, own in zip(self.parts, of_part, strict=True))
+            of_part = ({slot: each[number, slot] for slot in part.values} for number, part in enumerate(self.parts))
+            return tuple(replace(part, values=own) for part, own in zip(self.parts, of_part, strict=True))
 
         def white(values: Values, near: dict[int, Values]) -> Values:
             left = self.left(found, parts_at(values), runs, near) / runs.floor
@@ -180,7 +181,7 @@ def base_runs(engine: Engine, fit: EngineFit) -> OwnRuns:
     at = spread_stretches(data, find_rhythm(data.observed, data.rate).samples, engine.fibres, fit.low_pass.margin)
     left = residual_by(Driven(engine, mapping, data.drive.inputs, {}, recorded, fit.progress), data, at, fit.states)
     sensors = {name: mapping.sensor(name) for name in data.channels}
-    given = np.array([one.sd or np.nan for one in sensors.values()], float)
+    given = np.array([sensor.sd or np.nan for sensor in sensors.values()], float)
     floor = np.where(np.isnan(given), sensor_noise(data.observed), given)
     units = {name: one.unit for name, one in sensors.items()}
     return OwnRuns(left, left, at, engine.called, units, floor=floor, states=fit.states.shape[2])
@@ -205,8 +206,10 @@ def with_own_runs(found: Discovery, runs: OwnRuns, fit: EngineFit, base: Simulat
         whole = np.sqrt(np.mean((rows / spread) ** 2, axis=1)).tolist()
         channels = dict(zip(data.channels, map(tuple, rows.T.tolist()), strict=True))
         sizes.append(replace(size, before=whole[0], after=whole[1], noise_floor=whole[2], channels=channels))
-    effects = tuple(replace(one, held_out=1 - sizes[1].unexplained) for one in found.effects)
-    named = [replace(one, effects=effects, held_out=sizes[1]) for one in found.explanations[:1] if effects]
+    effects = tuple(replace(effect, held_out=1 - sizes[1].unexplained) for effect in found.effects)
+    named = [
+        replace(explanation, effects=effects, held_out=sizes[1]) for explanation in found.explanations[:1] if effects
+    ]
     shown = np.flatnonzero(held if held.any() else ~held)[:DRAWN]
     seen = data.observed[at.trial[shown, None], at.first[shown, None] + np.arange(at.length)]
     time = times[shown, None] + np.arange(at.length) / data.rate

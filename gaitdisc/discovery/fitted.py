@@ -132,11 +132,15 @@ class Fitted:
         return replace(self, stated=None, **parts)
 
     @property
+    def start_basis(self) -> Values:
+        """Orthonormal basis, segment by segment, of what the start states can explain (segment, number, state)."""
+        return find_basis(self.slopes[..., : self.starts.shape[1]])
+
+    @property
     def projected(self) -> tuple[Values, Values]:
         """What the start states cannot explain: of `white` (segment, number), and of the constants' slopes."""
-        n = self.starts.shape[1]
-        basis = start_basis(self.slopes[..., :n])
-        return without(basis, self.white[..., None])[..., 0], without(basis, self.slopes[..., n:])
+        basis, constants = self.start_basis, self.slopes[..., self.starts.shape[1] :]
+        return without(basis, self.white[..., None])[..., 0], without(basis, constants)
 
     @property
     def stacked(self) -> tuple[Values, Values]:
@@ -153,7 +157,7 @@ class Fitted:
         effects (segment, number, effect): what each changes of `white`
         """
         flat = np.column_stack(self.stacked)
-        effects = without(start_basis(self.slopes[..., : self.starts.shape[1]]), effects)
+        effects = without(self.start_basis, effects)
         strength, axes = np.linalg.eigh(np.swapaxes(effects, 1, 2) @ effects)
         along = np.swapaxes(effects @ axes, 1, 2) @ flat[: self.white.size].reshape(*self.white.shape, -1)
         return RandomEffects(flat.T @ flat, along, np.maximum(strength, 0.0))
@@ -182,9 +186,12 @@ def read_prior(simulation: Simulation, exact: frozenset[str] = frozenset()) -> P
     (('inertia', 'k'), [0.049, 19.5])
     """
     found = [
-        (place, one.name, one.value, one.low, one.high)
-        for place, one in enumerate(simulation.parameters)
-        if one.low is not None and one.high is not None and one.low < one.high and one.name not in exact
+        (place, parameter.name, parameter.value, parameter.low, parameter.high)
+        for place, parameter in enumerate(simulation.parameters)
+        if parameter.low is not None
+        and parameter.high is not None
+        and parameter.low < parameter.high
+        and parameter.name not in exact
     ]
     if not found:
         return Prior()
@@ -192,7 +199,7 @@ def read_prior(simulation: Simulation, exact: frozenset[str] = frozenset()) -> P
     return Prior(names, np.array(places, dtype=np.intp), *(np.array(each, float) for each in numbers))
 
 
-def start_basis(slopes: Values) -> Values:
+def find_basis(slopes: Values) -> Values:
     """Return an orthonormal basis, segment by segment, of what the start states can explain.
 
     slopes (segment, number, state): slopes of the whitened residual
@@ -206,7 +213,7 @@ def start_basis(slopes: Values) -> Values:
 def without(basis: Values, columns: Values) -> Values:
     """Return columns less what a basis explains of them.
 
-    basis (segment, number, state): orthonormal, from `start_basis`
+    basis (segment, number, state): orthonormal, from `find_basis`
     columns (segment, number, column): whitened
     """
     return columns - basis @ (np.swapaxes(basis, 1, 2) @ columns)

@@ -10,12 +10,12 @@ from itertools import product
 import numpy as np
 
 from gaitdisc.discovery.candidate import Candidate, no_shape
-from gaitdisc.discovery.candidate_model import CandidateModel, Part
 from gaitdisc.discovery.case import Case
 from gaitdisc.discovery.criteria import CRITERIA
 from gaitdisc.discovery.gap_share import CrossValidated, cross_validated
 from gaitdisc.discovery.places import Place
-from gaitdisc.discovery.scored_model import ScoredModel, score
+from gaitdisc.discovery.score import Score
+from gaitdisc.discovery.scored_model import Part, ScoredModel, score
 from gaitdisc.discovery.search import Search
 from gaitdisc.recording.arrays import Values
 
@@ -37,7 +37,7 @@ def shapes_at(place: Place, now: ScoredModel, search: Search) -> list[Candidate]
     At a place between bodies the states may be differences of two, and another body's.
     """
     shapes = [one for motion in place.motions for one in _shapes_over(place, *motion, now, search)]
-    if any(one.name == "phase" for one in search.base.inputs):
+    if any(signal.name == "phase" for signal in search.base.inputs):
         centres = (np.arange(STRIDE_BUMPS) + 0.5) / STRIDE_BUMPS
         sharp = (STRIDE_BUMPS / (SHARPNESS * 2 * np.pi)) ** 2 * 2
         pieces = [f"exp({sharp:.4g}*(cos(6.283185307179586*(phase - {c:.4g})) - 1))" for c in centres]
@@ -49,7 +49,7 @@ def _shapes_over(place: Place, x: str, v: str, now: ScoredModel, search: Search)
     """Shapes over a position and its rate; where it has none, over it and another state."""
     v = "" if v == x else v
     axes = [x, v] if v else [x, *place.others[:1]]
-    ranges = {axis: np.quantile(search.along(now.model, axis), VISITED) for axis in axes}
+    ranges = {axis: np.quantile(search.along(now, axis), VISITED) for axis in axes}
     shapes = [_bumps(ranges, {one: count}) for one in axes for count in (FLAT_BUMPS, FINE_BUMPS)]
     name, across = _bracket(v or x), _bumps(ranges, {x: FLAT_BUMPS})
     shapes.append([f"{piece}*tanh({name}/{SHARE_OF_SPEED * max(map(abs, ranges[v or x])):.4g})" for piece in across])
@@ -76,32 +76,34 @@ def fit_shape(case: Case, now: ScoredModel) -> ScoredModel | None:
     tried = [cross_validated(scale, plain, (part,)) for part in _promising(now, search, plain)]
     best = _cheapest(tried, plain)[:2]
     tried = best + [
-        cross_validated(scale, plain, (part,)) for one in best for part in (*_thin_shape(one.model), *_local(one.model))
+        cross_validated(scale, plain, (part,)) for one in best for part in (*_thin_shape(one), *_local(one))
     ]
-    kept = _cheapest([one for one in tried if search.sensible(one.model)], plain)
-    return score(now.shooting, kept[0].model) if kept else None
+    kept = _cheapest([model for model in tried if search.sensible(model)], plain)
+    return score(replace(kept[0], shooting=now.shooting)) if kept else None
 
 
 def find_cost(one: CrossValidated, plain: CrossValidated) -> float:
     """Return what a model leaves of the gap on runs left out of the fit, and a little for each of its numbers."""
-    return one.gap / plain.gap + CRITERIA.each_number * one.model.size if plain.gap > 0 else np.inf
+    return one.gap / plain.gap + CRITERIA.each_number * one.size if plain.gap > 0 else np.inf
 
 
 def _cheapest(tried: list[CrossValidated], plain: CrossValidated) -> list[CrossValidated]:
-    return sorted((one for one in tried if np.isfinite(one.gap)), key=lambda one: find_cost(one, plain))
+    return sorted((model for model in tried if np.isfinite(model.gap)), key=lambda one: find_cost(one, plain))
 
 
-def _promising(now: ScoredModel, search: Search, plain: CrossValidated) -> list[Part]:
+def _promising(now: ScoredModel, search: Search, plain: CrossValidated) -> list[Score]:
     """Shapes that promise most, to first order, and more than their numbers cost if what is left were mere noise."""
-    scorer = search.scorer(plain.shooting, plain.model)
+    scorer = search.scorer(plain)
     shapes = tuple(shape for place in search.places for shape in shapes_at(place, now, search))
     numbers, each = plain.shooting.known.sum(), CRITERIA.independent
-    worth = [one for one in scorer.scores(shapes) if each * one.gain > np.log(numbers) * len(one.candidate.slots)]
+    worth = [
+        score for score in scorer.scores(shapes) if each * score.gain > np.log(numbers) * len(score.candidate.slots)
+    ]
     scores = sorted(worth, key=lambda one: np.log(numbers / each) * len(one.candidate.slots) - one.gain)
-    return [Part(one.candidate, one.values) for one in scores[:FITTED]]
+    return scores[:FITTED]
 
 
-def _thin_shape(model: CandidateModel) -> Iterator[Part]:
+def _thin_shape(model: ScoredModel) -> Iterator[Part]:
     """Yield the shape without the bumps whose factor is lost in its error."""
     (part,) = model.parts
     error = np.sqrt(np.diag(model.fit.covariance))[: model.size]
@@ -113,7 +115,7 @@ def _thin_shape(model: CandidateModel) -> Iterator[Part]:
         yield Part(fewer, dict(zip(fewer.slots, value[keep].tolist(), strict=True)))
 
 
-def _local(model: CandidateModel) -> Iterator[Part]:
+def _local(model: ScoredModel) -> Iterator[Part]:
     """Yield one bump whose place and width are free, from each of the two strongest of a shape over one state."""
     (part,) = model.parts
     strongest = sorted(part.candidate.pieces, key=lambda piece: -abs(part.values[_find_slot(part, piece)]))[:2]

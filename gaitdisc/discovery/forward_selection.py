@@ -6,12 +6,13 @@ Miller 2002, Subset Selection in Regression (replacement of one at a time).
 
 from __future__ import annotations
 
-from gaitdisc.discovery.candidate_model import Explanations
+from dataclasses import dataclass, field
+
 from gaitdisc.discovery.criteria import CRITERIA
 from gaitdisc.discovery.effect_words import named_at
 from gaitdisc.discovery.gap_share import GapScale
 from gaitdisc.discovery.kept_work import note_found
-from gaitdisc.discovery.scored_model import ScoredModel, compared, leaves, ranked
+from gaitdisc.discovery.scored_model import Explanations, ScoredModel, compared, leaves, ranked
 from gaitdisc.discovery.search import Search, is_certain
 
 MOST_TURNS = 5  # explanations added, those that were eliminated again included
@@ -22,47 +23,76 @@ SETTLED = 3  # turns of exchange and elimination
 
 
 def select_forward(
-    search: Search, now: ScoredModel, most: int, scale: GapScale | None = None
+    search: Search, begun: ScoredModel, most: int, scale: GapScale | None = None
 ) -> tuple[ScoredModel, list[ScoredModel]]:
-    """Add explanations while the information criterion falls by enough.
+    """Add explanations while the information criterion falls by enough: step 3 of docs/discover.md.
 
-    scale: what is left is measured against: two explanations that leave far more than the sensors' noise are not
-        refined, for no set of names is exact then; beside one that leaves less than a simulation's own error above that
-        noise, no other stays, but another may stand in its place
+    scale: what is left is measured against; without it the criterion alone decides
     returns rivals: what else stood for the first place, best first
     """
-    rivals: list[ScoredModel] = []
-    explored = {now.model.explanations}
-    explained, alone = 0.0, not now.model.parts
+    selection = Selection(search, scale, begun, {begun.explanations}, from_nothing=not begun.parts)
     for turn in range(MOST_TURNS):
-        number = len(now.model.parts) + 1
-        if number > most:
+        if len(selection.model.parts) >= most or selection.is_far:
             break
         search.progress(f"round {turn + 1} of {MOST_TURNS} at most")
-        before, *more = search.extended(now) or [now]
-        more = ranked(more, search.candidates)
-        rivals = rivals or more
-        worth = max(CRITERIA.margin, CRITERIA.material * explained)
-        least = CRITERIA.margin if number == 2 else worth  # two together may explain what neither does
-        if not more or before.bic - more[0].bic < least:
+        if not selection.add_one():
             break
-        better = more[0]
-        if number == 2 and alone:
-            better = beside_others(search, better, [one for one in rivals if one is not now], explored)
-        far = scale is not None and number > 1 and leaves(better, scale.noise) > FAR
-        if number > 1:
-            better = better if far else settle(search, better, worth, explored)
-            before, better = compared([before, better])
-        enough = scale is not None and scale.excess(now.model.fit) < CRITERIA.model_error
-        gained = before.bic - better.bic
-        if gained < worth or not is_certain(better.model) or (enough and 1 < number == len(better.model.parts)):
-            break
-        explained, now = max(explained, gained), better
-        explored.add(now.model.explanations)
-        note_found(" and ".join(named_at(part.candidate) for part in now.model.parts))
-        if far:
-            break
-    return now, rivals
+    return selection.model, selection.rivals
+
+
+@dataclass
+class Selection:
+    """A forward selection on its way, and the conditions under which it goes on."""
+
+    search: Search
+    scale: GapScale | None
+    model: ScoredModel  # with what is selected so far
+    explored: set[Explanations]  # beside which another was sought
+    from_nothing: bool
+    rivals: list[ScoredModel] = field(default_factory=list)  # for the first place, best first
+    explained: float = 0.0  # greatest fall of the criterion by one explanation
+    is_far: bool = False  # whether two explanations leave far more than noise: no set of names is exact then
+
+    def add_one(self) -> bool:
+        """Add the best explanation and exchange the others, if that meets the conditions."""
+        before, *longer = self.search.extended(self.model) or [self.model]
+        longer = ranked(longer, self.search.candidates)
+        self.rivals = self.rivals or longer
+        if not longer or before.bic - longer[0].bic < self.promise:
+            return False
+        best = longer[0]
+        if len(best.parts) > 1:
+            before, best = compared([before, self.refine(best)])
+        gained = before.bic - best.bic
+        if gained < self.worth or not is_certain(best) or self.leaves_nothing_for(best):
+            return False
+        self.explained, self.model = max(self.explained, gained), best
+        self.explored.add(best.explanations)
+        note_found(" and ".join(named_at(part.candidate) for part in best.parts))
+        return True
+
+    @property
+    def worth(self) -> float:
+        """By how much the criterion must fall for one more: strong evidence, and a share of what was explained."""
+        return max(CRITERIA.margin, CRITERIA.material * self.explained)
+
+    @property
+    def promise(self) -> float:
+        """By how much it must fall before the others are exchanged; two together may explain what neither does."""
+        return CRITERIA.margin if len(self.model.parts) == 1 else self.worth
+
+    def leaves_nothing_for(self, longer: ScoredModel) -> bool:
+        """Whether what is selected leaves less than a simulation may err by: another may only stand in its place."""
+        more = 0 < len(self.model.parts) < len(longer.parts)
+        return more and self.scale is not None and self.scale.excess(self.model.fit) < CRITERIA.model_error
+
+    def refine(self, pair: ScoredModel) -> ScoredModel:
+        """Exchange what two or more explanations are, unless these leave far more than the sensors' noise."""
+        if len(pair.parts) == 2 and self.from_nothing:
+            firsts = [rival for rival in self.rivals if rival is not self.model]
+            pair = beside_others(self.search, pair, firsts, self.explored)
+        self.is_far = self.scale is not None and leaves(pair, self.scale.noise) > FAR
+        return pair if self.is_far else settle(self.search, pair, self.worth, self.explored)
 
 
 def beside_others(
@@ -77,13 +107,13 @@ def beside_others(
     pairs = [pair]
     # the same model may stand under two names: a wrong damping, and damping that is missing
     unlike = [
-        one
-        for number, one in enumerate(firsts)
-        if not any(one.model.size == other.model.size and abs(one.bic - other.bic) < SAME for other in firsts[:number])
+        first
+        for number, first in enumerate(firsts)
+        if not any(first.size == other.size and abs(first.bic - other.bic) < SAME for other in firsts[:number])
     ]
     for first in unlike[: FIRST_PLACES - 1]:
         pairs += ranked(search.extended(first)[1:], search.candidates)[:1]
-        explored.add(first.model.explanations)
+        explored.add(first.explanations)
     return ranked(compared(pairs), search.candidates)[0]
 
 
@@ -102,11 +132,11 @@ def settle(search: Search, now: ScoredModel, worth: float, explored: set[Explana
 
 def exchange(search: Search, now: ScoredModel, explored: set[Explanations]) -> ScoredModel:
     """Return the model after each explanation was tried against all others in its place."""
-    for number in range(len(now.model.parts)):
+    for number in range(len(now.parts)):
         rest = search.without(now, number)
-        if rest.model.explanations in explored:
+        if rest.explanations in explored:
             continue
-        explored.add(rest.model.explanations)
+        explored.add(rest.explanations)
         others = search.extended(rest)[1:]
         if others:
             now, *others = compared([now, *others])
@@ -118,9 +148,9 @@ def exchange(search: Search, now: ScoredModel, explored: set[Explanations]) -> S
 
 def prune(search: Search, now: ScoredModel, worth: float, fewest: int = 1) -> ScoredModel:
     """Return the model without the explanations that are missed least, by less than a worth, while it has others."""
-    while len(now.model.parts) > fewest:
-        fewer = [search.without(now, number) for number in range(len(now.model.parts))]
-        best = min(fewer, key=lambda one: one.bic)
+    while len(now.parts) > fewest:
+        fewer = [search.without(now, number) for number in range(len(now.parts))]
+        best = min(fewer, key=lambda model: model.bic)
         if best.bic > now.bic + worth:
             break
         now = best

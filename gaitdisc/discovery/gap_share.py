@@ -11,12 +11,11 @@ from dataclasses import dataclass, field, replace
 
 import numpy as np
 
-from gaitdisc.discovery.candidate_model import Part
 from gaitdisc.discovery.criteria import CRITERIA
 from gaitdisc.discovery.fitted import Fitted
 from gaitdisc.discovery.noise import Noise, white_noise
 from gaitdisc.discovery.paired_test import errors_rise_p
-from gaitdisc.discovery.scored_model import ScoredModel
+from gaitdisc.discovery.scored_model import Part, ScoredModel
 from gaitdisc.recording.arrays import Values
 
 CONVERGED = 1e-4  # of a number's share of the misfit
@@ -90,19 +89,16 @@ def cross_validated(scale: GapScale, begun: ScoredModel, parts: tuple[Part, ...]
 
     begun: on the same segments: where start states and numbers with bounds begin
     """
-    model, shooting = begun.model, begun.shooting
-    enough = CONVERGED * shooting.seen.size / CRITERIA.independent
-    shooting = shooting.with_noise(scale.white_error(model.fit))
-    model = model.refitted(shooting, parts, turns=TURNS, enough=enough)
+    enough = CONVERGED * begun.shooting.seen.size / CRITERIA.independent
+    model = begun.refitted(begun.shooting.with_noise(scale.white_error(begun.fit)), parts, turns=TURNS, enough=enough)
+    if np.isfinite(model.fit.misfit):
+        shooting = model.with_own_past().shooting.with_noise(scale.white_error(model.fit))
+        model = model.refitted(shooting, turns=AGAIN, enough=enough)
     if not np.isfinite(model.fit.misfit):
-        return CrossValidated(model, shooting)
-    shooting = shooting.with_noise(scale.white_error(model.fit)).with_past(model.fit.states)
-    model = model.refitted(shooting, turns=AGAIN, enough=enough)
-    if not np.isfinite(model.fit.misfit):
-        return CrossValidated(model, shooting)
-    square = float(np.mean((shooting.noise.size / scale.size) ** 2))
-    errors = errors_left_out(model.fit) * square / shooting.known.mean()
-    return CrossValidated(model, shooting, errors=errors, gap=scale.gap_above(float(errors.mean())))
+        return CrossValidated(**vars(model))
+    square = float(np.mean((model.noise.size / scale.size) ** 2))
+    errors = errors_left_out(model.fit) * square / model.shooting.known.mean()
+    return CrossValidated(**vars(model), errors=errors, gap=scale.gap_above(float(errors.mean())))
 
 
 def errs_more(one: CrossValidated, other: CrossValidated) -> float:

@@ -8,8 +8,7 @@ import numpy as np
 
 from gaitdisc.discovery.case import LENGTHENED, Case
 from gaitdisc.discovery.criteria import CRITERIA
-from gaitdisc.discovery.first_states import with_own_states
-from gaitdisc.discovery.fitted import Fitted
+from gaitdisc.discovery.first_states import StateGuess, with_own_states
 from gaitdisc.discovery.input_errors import wandering, with_drawn_errors
 from gaitdisc.discovery.noise import white_noise
 from gaitdisc.discovery.paired_test import PairedTest, compare_errors
@@ -25,38 +24,17 @@ ALIKE = "runs alike with and without the identified effect"
 DRAWN = 20  # times, inputs with their stated errors: the mean square to some 10 % where their effects are independent
 
 
-@dataclass(frozen=True)
-class Trial:
-    """Runs over some trials, with the constants of a model and start states of their own."""
+def run_trials(case: Case, model: ScoredModel, trials: tuple[int, ...], like: ScoredModel) -> ScoredModel:
+    """Run a model over trials, finding nothing but the start states.
 
-    segments: Segments
-    fit: Fitted
-    measured: Values  # (run, sample, channel), the measurement
-
-    @property
-    def misfits(self) -> Values:
-        """Misfit of each run (run,)."""
-        return self.fit.misfits
-
-
-@dataclass(frozen=True)
-class FirstSamples:
-    """A trial as one run, whose start is found by its first samples."""
-
-    shooting: Shooting  # of the whole trial
-    fit: Fitted  # to the first samples
-    first: int  # sample before which the start is fitted
-
-
-def run_trials(case: Case, now: ScoredModel, trials: tuple[int, ...], like: ScoredModel) -> Trial:
-    """Run a model over trials, finding nothing but the start states."""
-    guess, runs = case.guess, []
+    like: under whose noise, in runs as long as its
+    """
+    guess, run = case.guess, model
     for length in _lengths(like.shooting.segments.span / case.rhythm.samples):
-        segments = case.segments(trials, length)
-        shooting = replace(case.shooting(segments).with_noise(like.noise), past=guess.states)
-        runs.append(Trial(segments, _start_runs(shooting, now, guess.starts(segments)), shooting.seen))
-        guess = guess.with_run(segments, runs[-1].fit.states)
-    return runs[-1]
+        shooting = replace(case.shooting(case.segments(trials, length)).with_noise(like.noise), past=guess.states)
+        run = _start_runs(shooting, model, guess)
+        guess = guess.with_run(shooting.segments, run.fit.states)
+    return run
 
 
 def free_run_error(case: Case, now: ScoredModel) -> float:
@@ -76,10 +54,11 @@ def free_runs(case: Case, now: ScoredModel) -> tuple[float, float]:
     for trial in case.held_out:
         begun = begin_by_first_samples(case, now, trial)
         shooting, segments = begun.shooting, begun.shooting.segments
-        whole = shooting.at(now.model.machine, (), begun.fit.values, begun.fit.starts)
+        whole = shooting.at(now.machine, (), begun.fit.values, begun.fit.starts)
         error = np.where(np.isfinite(whole.residual), (whole.residual / scale.spread) ** 2, CRITERIA.lost)
         slopes = np.nan_to_num(whole.slopes.reshape(*whole.residual.shape, -1))
-        late = (segments.samples[:, segments.compared] >= begun.first)[..., None] & shooting.known
+        first = count_first_samples(case, segments)
+        late = (segments.samples[:, segments.compared] >= first)[..., None] & shooting.known
         early = slopes[~late & shooting.known]
         doubt = (
             np.einsum("...i,ij,...j", slopes, np.linalg.pinv(early.T @ early), slopes)
@@ -88,7 +67,7 @@ def free_runs(case: Case, now: ScoredModel) -> tuple[float, float]:
         moved = np.zeros_like(whole.residual)  # mean square that the stated errors of inputs move the run by
         for seed in range(DRAWN if wandering(case.search.base) else 0):
             drawn = with_drawn_errors(case.measured, case.search.base, seed)
-            _, there = replace(shooting, measured=drawn).run(now.model.machine, whole.starts[None], whole.values[None])
+            _, there = replace(shooting, measured=drawn).run(now.machine, whole.starts[None], whole.values[None])
             moved += (shooting.seen - whole.residual - there[0]) ** 2 / DRAWN
         doubt = doubt + moved / scale.spread**2
         found.append([np.fmin(error, CRITERIA.lost)[late].mean(), np.fmin(doubt, CRITERIA.lost)[late].mean()])
@@ -96,16 +75,23 @@ def free_runs(case: Case, now: ScoredModel) -> tuple[float, float]:
     return float(error), float(doubt)
 
 
-def begin_by_first_samples(case: Case, now: ScoredModel, trial: int) -> FirstSamples:
-    """Find the start of a whole trial by its first samples alone."""
-    samples = int(case.measured.drive.samples[trial])
-    segments = case.segments((trial,), samples / case.rhythm.samples)
-    first = segments.margin + max(min(round(case.rhythm.samples), samples // 3), 1)
+def begin_by_first_samples(case: Case, model: ScoredModel, trial: int) -> ScoredModel:
+    """Find the start of a whole trial, as one run, by its first samples alone."""
+    periods = int(case.measured.drive.samples[trial]) / case.rhythm.samples
+    shooting = case.shooting(case.segments((trial,), periods)).with_noise(white_noise(case.scale.size))
     seen = case.measured.observed.copy()
-    seen[trial, first:] = np.nan
-    shooting = case.shooting(segments).with_noise(white_noise(case.scale.size))
+    seen[trial, count_first_samples(case, shooting.segments) :] = np.nan
     begun = replace(shooting, measured=replace(case.measured, observed=seen))
-    return FirstSamples(shooting, _start_runs(begun, now, case.guess.starts(segments)), first)
+    return replace(_start_runs(begun, model, case.guess), shooting=shooting)
+
+
+def count_first_samples(case: Case, trial: Segments) -> int:
+    """Return the samples of a trial that say where it begins: a period, or a third of it.
+
+    trial: as one run
+    """
+    samples = int(case.measured.drive.samples[trial.trial[0]])
+    return trial.margin + max(min(round(case.rhythm.samples), samples // 3), 1)
 
 
 def strays(case: Case, now: ScoredModel, before: float) -> bool:
@@ -129,7 +115,7 @@ def grows_along_runs(case: Case, now: ScoredModel) -> bool:
     if not case.spans_a_period(now):
         return False
     (error, doubt), scale = free_runs(case, now), case.scale
-    short = max(scale.relative(now.model.fit), CRITERIA.model_error) ** 2
+    short = max(scale.relative(now.fit), CRITERIA.model_error) ** 2
     noise = float(np.mean((case.noise_floor(now.noise.size) / scale.spread) ** 2))
     return error > min(CRITERIA.grown**2 * (short + doubt), CRITERIA.half + noise + doubt)
 
@@ -140,7 +126,7 @@ def is_uninformative(case: Case, as_read: ScoredModel, now: ScoredModel) -> bool
     A spring that engages beyond where a trial goes changes nothing in it. What counts is how far the two runs are
     apart, never which of them the measurement prefers.
     """
-    if not now.model.parts or now.gained < CRITERIA.support:
+    if not now.parts or now.gained < CRITERIA.support:
         return False
     return _apart(case, as_read, now, case.held_out) <= CRITERIA.support and bool(_informative(case, as_read, now))
 
@@ -178,10 +164,11 @@ def _apart(case: Case, as_read: ScoredModel, now: ScoredModel, trials: tuple[int
     return float(((before.fit.white - after.fit.white) ** 2).sum())
 
 
-def _start_runs(shooting: Shooting, now: ScoredModel, starts: Values) -> Fitted:
+def _start_runs(shooting: Shooting, model: ScoredModel, guess: StateGuess) -> ScoredModel:
     """Return a model run over segments from the start states that suit it best, its constants as they are."""
-    machine, values = now.model.machine, now.model.fit.values
-    return shooting.fitted(machine, (), values, with_own_states(shooting, machine, values, starts), TURNS)
+    machine, values = model.machine, model.fit.values
+    starts = with_own_states(shooting, machine, values, guess.starts(shooting.segments))
+    return replace(model, shooting=shooting, fit=shooting.fitted(machine, (), values, starts, TURNS))
 
 
 def _lengths(periods: float) -> list[float]:
@@ -202,8 +189,8 @@ def _lengths(periods: float) -> list[float]:
 class Proof:
     """Held-out runs of two models, and whether the second is better by more than chance."""
 
-    before: Trial  # the same runs without
-    after: Trial  # and with what is to be borne out
+    before: ScoredModel  # the same runs without
+    after: ScoredModel  # and with what is to be borne out
     test: PairedTest
 
     @property
@@ -214,12 +201,12 @@ class Proof:
     @property
     def gained(self) -> float:
         """Fall of the misfit under autocorrelated noise."""
-        return float(np.nan_to_num(self.before.misfits - self.after.misfits, nan=0.0).sum())
+        return float(np.nan_to_num(self.before.fit.misfits - self.after.fit.misfits, nan=0.0).sum())
 
     @property
     def closed(self) -> float:
         """Share of the plain squared error that goes, each channel over its spread."""
-        spread = np.nanstd(self.before.measured, axis=(0, 1))
+        spread = np.nanstd(self.before.shooting.seen, axis=(0, 1))
         before, after = (np.nanmean((one.fit.residual / spread) ** 2) for one in (self.before, self.after))
         return float(1 - after / before)
 
@@ -230,34 +217,36 @@ def prove(case: Case, before: ScoredModel, now: ScoredModel, like: ScoredModel) 
     return Proof(first, second, compare_runs(case, first, second, like))
 
 
-def compare_runs(case: Case, before: Trial, after: Trial, like: ScoredModel) -> PairedTest:
+def compare_runs(case: Case, before: ScoredModel, after: ScoredModel, like: ScoredModel) -> PairedTest:
     """Test whether the same runs of two models err less in the second."""
     return replace(compare_errors(before.fit.residual, after.fit.residual, like.noise.size), alpha=case.alpha)
 
 
-def gap_size(before: Trial, after: Trial, floor: Values, channels: tuple[str, ...], test: PairedTest) -> GapSize:
+def gap_size(
+    before: ScoredModel, after: ScoredModel, floor: Values, channels: tuple[str, ...], test: PairedTest
+) -> GapSize:
     """Measure the gap before and after.
 
     floor (channel,): standard deviation of the noise [the channel's unit]
     """
-    spread = np.nanstd(after.measured, axis=(0, 1))
+    spread = np.nanstd(after.shooting.seen, axis=(0, 1))
     rms = [np.sqrt(np.nanmean(one.fit.residual**2, axis=(0, 1))) for one in (before, after)]
     sizes = {name: (float(rms[0][i]), float(rms[1][i]), float(floor[i])) for i, name in enumerate(channels)}
     whole = [float(np.sqrt(np.mean((one / spread) ** 2))) for one in (*rms, floor)]
     return GapSize(whole[0], whole[1], whole[2], test.p, sizes, test.pieces, alpha=test.alpha)
 
 
-def tabulate_runs(case: Case, before: Trial, after: Trial) -> Runs:
+def tabulate_runs(case: Case, before: ScoredModel, after: ScoredModel) -> Runs:
     """Return the runs as a report draws them."""
-    segments, drive = before.segments, case.measured.drive
-    names = [one.name for one in case.search.base.inputs]
+    segments, drive, seen = before.shooting.segments, case.measured.drive, before.shooting.seen
+    names = [signal.name for signal in case.search.base.inputs]
     phase = segments.of(drive.inputs)[:, :, names.index("phase")] if "phase" in names else np.zeros((len(segments), 0))
     return Runs(
         segments.trial,
         segments.times(drive)[:, segments.compared],
         phase[:, segments.compared],
-        before.measured,
-        before.measured - before.fit.residual,
-        after.measured - after.fit.residual,
+        seen,
+        seen - before.fit.residual,
+        seen - after.fit.residual,
         names=case.measured.trials,
     )

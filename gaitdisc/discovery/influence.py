@@ -97,9 +97,9 @@ def refuse_idle(idle: Idle, simulation: Simulation, places: tuple[Place, ...]) -
 def nearly_off(effects: tuple[FoundEffect, ...], source: str) -> tuple[Finding, ...]:
     """Warn where an answer takes several inputs nearly away: what nothing acts on follows its record by itself."""
     gains = {
-        one.place: one.estimates["gain"].value
-        for one in effects
-        if one.name == "input_gain" and abs(one.estimates["gain"].value) < NEARLY_OFF
+        effect.place: effect.estimates["gain"].value
+        for effect in effects
+        if effect.name == "input_gain" and abs(effect.estimates["gain"].value) < NEARLY_OFF
     }
     if len(gains) < 2:
         return ()

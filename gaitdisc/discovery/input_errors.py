@@ -16,7 +16,7 @@ BOUNDS = 2.0  # standard deviations, as of every number with bounds (prior.py)
 
 def wandering(simulation: Simulation) -> list[tuple[int, Input]]:
     """List the inputs whose stated error changes in time, each with its column."""
-    return [(column, one) for column, one in enumerate(simulation.inputs) if one.wander]
+    return [(column, signal) for column, signal in enumerate(simulation.inputs) if signal.wander]
 
 
 def with_constant_errors(simulation: Simulation) -> Simulation:
@@ -27,17 +27,19 @@ def with_constant_errors(simulation: Simulation) -> Simulation:
     >>> with_constant_errors(fed).equations, with_constant_errors(fed).parameters[0].high
     ((('x', 'gain_of_u*u - x'),), 1.2)
     """
-    for one in simulation.inputs:
-        text = one.name
+    for signal in simulation.inputs:
+        text = signal.name
         for name, error, value, unit in (
-            (f"gain_of_{one.name}", one.gain, 1.0, "1"),
-            (f"offset_of_{one.name}", one.sd, 0.0, one.unit),
+            (f"gain_of_{signal.name}", signal.gain, 1.0, "1"),
+            (f"offset_of_{signal.name}", signal.sd, 0.0, signal.unit),
         ):
-            if error and not one.wander and name not in simulation.values():  # a file that was written has it already
+            if (
+                error and not signal.wander and name not in simulation.values()
+            ):  # a file that was written has it already
                 bounds = value - BOUNDS * error, value + BOUNDS * error
                 simulation = simulation.with_parameter(Parameter(name, value, unit, *bounds))
                 text = f"{name}*{text}" if value else f"{text} + {name}"
-        simulation = simulation.with_input(one.name, text) if text != one.name else simulation
+        simulation = simulation.with_input(signal.name, text) if text != signal.name else simulation
     return simulation
 
 

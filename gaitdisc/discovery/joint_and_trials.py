@@ -1,15 +1,19 @@
-"""One joint of a device walk as a tracked simulation: muscles driven by EMG against the moment of inverse dynamics."""
+"""One joint of a device walk as a simulation and trials of some strides.
+
+Muscles driven by EMG stand against the moment of inverse dynamics; without moments, the motion of both walks is all.
+"""
 
 from __future__ import annotations
 
 from dataclasses import replace
 from functools import partial
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from gaitdisc.discovery.candidate import Candidate
 from gaitdisc.discovery.changed_moment import Change, Walk
-from gaitdisc.errors import StrideError
+from gaitdisc.errors import SchemaError, StrideError
 from gaitdisc.processing.joint_record import JointRecord
 from gaitdisc.processing.muscle_moment import JOINTS, Driven, MuscleMoment, drives, fit_moment, sign_at
 from gaitdisc.recording.arrays import Values
@@ -18,7 +22,11 @@ from gaitdisc.simulation.measured import Measured, check_measured
 from gaitdisc.simulation.parts import Input, Parameter, Port, Sensor, State
 from gaitdisc.simulation.simulation import Simulation
 
-STRIDES = 3  # of one trial of the search
+if TYPE_CHECKING:
+    from gaitdisc.ingest.study import Study
+    from gaitdisc.processing.process import Walk as ProcessedWalk
+
+STRIDES, MOTION_STRIDES = 3, 4  # of one trial of the search: with moments, and of the motion alone
 FEWEST_TRIALS = 4
 KNOWN = 0.3  # of the samples of a trial, with a known load of the foot
 BLOCKS = 4  # of the Nominal walk, each left out of the calibration once
@@ -28,6 +36,7 @@ DELAYS_S, STRENGTHS = np.arange(-0.08, 0.081, 0.01), np.arange(0.5, 1.51, 0.05) 
 ENGAGED, ENGAGED_STEP = (0.02, 0.9), np.radians(1.0)  # quantiles of the angle between which a spring may engage
 STRENGTH = 0.06  # by which a muscle group may differ from the Nominal walk's before it is a finding
 SEEN_RAD = 0.005  # noise of an angle, where it follows its own reference
+HARMONICS = 8  # of the motion that a person has by habit
 # joint -> what a clinician calls the groups that turn it towards its negative and its positive angle
 GROUPS = {
     "ankle_angle": ("plantarflexors", "dorsiflexors"),
@@ -156,7 +165,7 @@ def cut_walk_trials(record: JointRecord, model: MuscleMoment, simulation: Simula
         "phase": record.phase,
         "per_kg": record.per_kg,
     }
-    inputs = np.column_stack([columns[one.name] for one in simulation.inputs])
+    inputs = np.column_stack([columns[signal.name] for signal in simulation.inputs])
     known, at = np.isfinite(record.moment), np.arange(len(record.moment))
     late = lag_signal(np.interp(at, at[known], record.moment[known])[None], driven.rate_hz / RATE_HZ)[0]  # as its state
     seen = np.column_stack([record.seen, np.where(known, late, np.nan)])
@@ -178,7 +187,7 @@ def cut_walk_trials(record: JointRecord, model: MuscleMoment, simulation: Simula
             f"{record.subject} {record.condition} has {last + 1} strides, {len(trials)} times {STRIDES} in a row",
             "Record longer, and keep each foot on its own plate.",
         )
-    driving = [one.name for one in simulation.inputs]
+    driving = [signal.name for signal in simulation.inputs]
     return check_measured(trials, driving, [name for name, _ in simulation.observations], record.subject)
 
 
@@ -204,3 +213,85 @@ def weighed(candidate: Candidate) -> bool:
     if candidate.kind == "observation":
         return candidate.place == "net_moment" and candidate.name in ("sensor_gain", "sensor_lag")
     return candidate.kind == "parameter" or candidate.name in EFFECTS
+
+
+def nominal_and_trials(
+    study: Study, participant: str, joint: str = "ankle_angle", strides: int = MOTION_STRIDES
+) -> tuple[Simulation, Measured]:
+    """Nominal model of one joint of a participant, and the device walk cut into trials of some strides.
+
+    The model is the Nominal model of chapter 4 in a form that can be read: the joint's acceleration is linear in its
+    angle and its rate and periodic in percent stride, fitted to the Nominal walk by least squares. What differs on the
+    device is therefore an acceleration, not a moment: without moments in the study no inertia is known, and what the
+    person changes on purpose cannot be distinguished from what the device does.
+
+    study: with both walks; its filters and its detector are used
+    joint: angle, without its side; the side is that of the study's strides
+    returns simulation: states theta [rad] and omega [rad/s], input phase, port `acceleration` [rad/s^2]
+    """
+    from gaitdisc.processing.processed_walks import process_walks
+
+    walks, refusals = process_walks(study, study.participant(participant))
+    if refusals:
+        raise SchemaError(
+            f"both walks of {participant} are required",
+            "; ".join(f"{one.condition}: {one.reason}" for one in refusals),
+            "Correct the walk, or choose another participant.",
+        )
+    nominal, device = (walks[word] for word in study.conditions.both)
+    name = f"{joint}_{study.strides.side}"
+    return nominal_model(nominal, name), stride_trials(device, name, strides)
+
+
+def nominal_model(walk: ProcessedWalk, name: str) -> Simulation:
+    """Joint acceleration of a walk, linear in angle and rate and periodic in percent stride."""
+    angle, rate, speedup, phase = _motion(walk, name)
+    known = np.isfinite(np.column_stack([angle, rate, speedup, phase])).all(axis=1)
+    turn = 2 * np.pi * np.outer(phase[known], np.arange(1, HARMONICS + 1))
+    library = np.column_stack([-angle[known], -rate[known], np.ones(known.sum()), np.sin(turn), np.cos(turn)])
+    stiffness, damping, mean, *waves = (float(one) for one in np.linalg.lstsq(library, speedup[known], rcond=None)[0])
+    pieces = [f"{mean:.6g}"]
+    for order in range(HARMONICS):
+        about = f"{2 * np.pi * (order + 1):.9g}*phase"
+        pieces.append(f"{waves[order]:.6g}*sin({about}) + {waves[HARMONICS + order]:.6g}*cos({about})")
+    return Simulation(
+        title=f"{name} of {walk.trial.subject} as in the {walk.trial.condition} walk",
+        states=(State("theta", "rad", meaning=name), State("omega", "rad/s")),
+        inputs=(Input("phase", "1", meaning="percent stride / 100"),),
+        parameters=(Parameter("stiffness", stiffness, "1/s^2"), Parameter("damping", damping, "1/s")),
+        ports=(Port("acceleration", "rad/s^2", meaning="moment of the device and of the person's adaptation"),),
+        definitions=(("habit", " + ".join(pieces)),),
+        equations=(("theta", "omega"), ("omega", "habit - stiffness*theta - damping*omega + acceleration")),
+        observations=(("theta", "theta"),),
+    )
+
+
+def stride_trials(walk: ProcessedWalk, name: str, strides: int = MOTION_STRIDES) -> Measured:
+    """Cut a walk into trials of so many strides in a row."""
+    angle, _, _, phase = _motion(walk, name)
+    time = np.asarray(walk.state.time)
+    own = walk.strides[walk.side]
+    trials: list[TrialColumns] = []
+    first = 0
+    while first + strides <= len(own):
+        inside = (time >= own.start[first]) & (time < own.end[first + strides - 1])
+        whole = np.isfinite(phase[inside]).all() and np.isfinite(angle[inside]).all()
+        if whole:
+            label = str(len(trials) + 1)
+            trials.append(TrialColumns(label, time[inside], phase[inside, None], angle[inside, None]))
+        first += strides if whole else 1
+    if len(trials) < FEWEST_TRIALS:
+        raise StrideError(
+            f"`discover` needs {FEWEST_TRIALS * strides} strides, with {strides} in a row in each trial",
+            f"{walk.trial.name} has {len(own)}, in a row {len(trials)} times {strides}",
+            "Record longer, or use fewer strides in a trial.",
+        )
+    return check_measured(trials, ("phase",), ("theta",), walk.trial.name)
+
+
+def _motion(walk: ProcessedWalk, name: str) -> tuple[Values, ...]:
+    """Angle, rate, acceleration [rad, s] and share of the stride, sample by sample."""
+    column = walk.state.names.index(name)
+    trajectory = walk.trajectory
+    motion = (np.radians(each[:, column]) for each in (trajectory.x, trajectory.xdot, trajectory.xddot))
+    return (*motion, np.asarray(trajectory.phi) / 100)

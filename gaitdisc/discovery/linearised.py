@@ -9,10 +9,9 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
-from gaitdisc.discovery.fitted import Fitted
 from gaitdisc.discovery.places import Place
+from gaitdisc.discovery.scored_model import ScoredModel
 from gaitdisc.discovery.shooting import Shooting
 from gaitdisc.recording.arrays import Values
 from gaitdisc.simulation.compiled_simulation import Compiled
@@ -55,10 +54,6 @@ class Linearised:
                 return step + 1
         return None
 
-    def among(self, some: NDArray[np.intp]) -> Linearised:
-        """Return the maps of some of the segments."""
-        return Linearised(self.onward[some], self.pushed[some], self.landed[some])
-
     def of_push(self, place: int, push: Values) -> Values:
         """Return the change of state (segment, sample, state, candidate) that pushes at a place cause.
 
@@ -79,9 +74,9 @@ class Linearised:
         return out
 
 
-def linearise(shooting: Shooting, simulation: Simulation, places: tuple[Place, ...], fit: Fitted) -> Linearised:
+def linearise(model: ScoredModel, places: tuple[Place, ...]) -> Linearised:
     """Linearise every step of a fitted run."""
-    return linearise_along(shooting, simulation, places, fit.states, fit.values)
+    return linearise_along(model.shooting, model.simulation, places, model.fit.states, model.fit.values)
 
 
 def linearise_along(
@@ -120,11 +115,12 @@ def pushable(simulation: Simulation, places: tuple[Place, ...]) -> Compiled:
     return compile_simulation(simulation)
 
 
-def carry_change(shooting: Shooting, machine: Compiled, fit: Fitted, change: Values) -> Values:
+def carry_change(model: ScoredModel, change: Values) -> Values:
     """Return what changes of state change in the measured channels (segment, sample, channel, candidate).
 
     change (segment, sample, state, candidate): to first order
     """
+    machine, fit, shooting = model.machine, model.fit, model.shooting
     if machine.observation.delays:  # what is measured depends on states some time ago: each candidate by itself
         spans = np.maximum(np.abs(fit.states).max(axis=(0, 1)), 1e-3)
         size = (np.abs(change).max(axis=(0, 1)) / spans[:, None]).max(axis=0)
@@ -142,12 +138,13 @@ def carry_change(shooting: Shooting, machine: Compiled, fit: Fitted, change: Val
     return shooting.filtered(slopes @ change, 1)
 
 
-def propagate_push(shooting: Shooting, simulation: Simulation, places: tuple[Place, ...], fit: Fitted) -> Values:
+def propagate_push(model: ScoredModel, places: tuple[Place, ...]) -> Values:
     """Return what a unit push changes at once in what the sensors see (segment, sample, channel, place).
 
     Before any filter, states as they are: an input may stand in what is measured.
     """
     pushed = np.concatenate([np.zeros((1, len(places))), PUSH * np.eye(len(places))])
-    many = np.concatenate([np.repeat(fit.values[None], len(pushed), axis=0), pushed], axis=1)
-    seen = shooting.unfiltered(pushable(simulation, places), np.repeat(fit.states[None], len(pushed), axis=0), many)
+    values, states = (np.repeat(each[None], len(pushed), axis=0) for each in (model.fit.values, model.fit.states))
+    machine = pushable(model.simulation, places)
+    seen = model.shooting.unfiltered(machine, states, np.concatenate([values, pushed], axis=1))
     return np.moveaxis(seen[1:] - seen[0], 0, -1) / PUSH

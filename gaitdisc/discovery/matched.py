@@ -62,7 +62,7 @@ def _check_trials(measured: Measured, where: str) -> None:
 
 
 def _check_inputs(simulation: Simulation, measured: Measured, where: str) -> None:
-    names = [one.name for one in simulation.inputs]
+    names = [signal.name for signal in simulation.inputs]
     given = measured.drive.inputs
     if given.shape[2] != len(names):
         raise ShapeError(

@@ -13,15 +13,14 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
-from gaitdisc.discovery.candidate_model import fit_model
 from gaitdisc.discovery.case import FEWEST_SAMPLES, MOST_SEARCHED, Case
 from gaitdisc.discovery.criteria import CRITERIA
 from gaitdisc.discovery.first_states import guess_states
-from gaitdisc.discovery.fitted import Fitted, start_basis, without
-from gaitdisc.discovery.forward_selection import leaves
+from gaitdisc.discovery.fitted import find_basis, without
 from gaitdisc.discovery.noise import white_noise
 from gaitdisc.discovery.places import kinematic_rates
-from gaitdisc.discovery.segments import Segments, cut_segments
+from gaitdisc.discovery.scored_model import ScoredModel, fit_model, leaves
+from gaitdisc.discovery.segments import cut_segments
 from gaitdisc.discovery.shooting import Shooting
 from gaitdisc.recording import Finding
 from gaitdisc.recording.arrays import Values
@@ -90,12 +89,12 @@ def agreeing_trials(case: Case, measured: Measured) -> Measured:
 def odd_trials(case: Case) -> tuple[Odd, ...]:
     """Find the trials that are turned in sign or shifted in time."""
     count = len(case.measured.trials)
-    bench = _Bench(case)
-    fit, segments = bench.fitted(case.measured)
-    before = bench.errors(fit, segments)
+    samples = max(int(case.predictable_periods() * case.rhythm.samples), FEWEST_SAMPLES)
+    as_read = fit_trials(case, case.measured, samples)
+    before = trial_errors(as_read)
     found: dict[int, list[Odd]] = {}
-    for change in (*_turn(case), *_shift(bench, fit, segments)):
-        after = bench.errors(*bench.fitted(change.measured))
+    for change in (*_turn(case), *_shift(case, as_read)):
+        after = trial_errors(fit_trials(case, change.measured, samples))
         for trial in range(count):
             then, now = (float(np.median(np.delete(each, trial))) for each in (before, after))
             errors = (float(before[trial]), float(after[trial]), then, now)
@@ -117,30 +116,23 @@ def _either(found: list[Odd]) -> Odd:
     return replace([*turned, *moved][0], change=", or ".join(words))
 
 
-class _Bench:
-    """What runs the simulation as read over all trials and measures how far it misses each."""
+def fit_trials(case: Case, measured: Measured, samples: int) -> ScoredModel:
+    """Fit the start states of the simulation as read to runs of so many samples, over all trials."""
+    simulation = case.search.base
+    rate_of = kinematic_rates(simulation, compile_simulation(simulation))
+    guess = guess_states(simulation, measured, case.rhythm.period, rate_of)
+    segments = cut_segments(measured.samples, tuple(range(len(measured.trials))), samples).spread(MOST_SEARCHED)
+    spread = white_noise(np.nanstd(case.measured.observed, axis=(0, 1)))
+    shooting = Shooting(measured, segments, spread, case.substeps, guess.states)
+    return fit_model(shooting, simulation, (), guess.starts(segments))
 
-    def __init__(self, case: Case) -> None:
-        self.simulation, self.rhythm = case.search.base, case.rhythm
-        self.rate_of = kinematic_rates(self.simulation, compile_simulation(self.simulation))
-        self.spread = np.nanstd(case.measured.observed, axis=(0, 1))
-        self.samples = max(int(case.predictable_periods() * self.rhythm.samples), FEWEST_SAMPLES)
-        self.measured, self.substeps = case.measured, case.substeps
 
-    def fitted(self, measured: Measured) -> tuple[Fitted, Segments]:
-        """The fit of the start states, run by run."""
-        guess = guess_states(self.simulation, measured, self.rhythm.period, self.rate_of)
-        segments = cut_segments(measured.samples, tuple(range(len(measured.trials))), self.samples).spread(
-            MOST_SEARCHED
-        )
-        shooting = Shooting(measured, segments, white_noise(self.spread), self.substeps, guess.states)
-        return fit_model(shooting, self.simulation, (), guess.starts(segments)).fit, segments
-
-    def errors(self, fit: Fitted, segments: Segments) -> Values:
-        """Root mean square of what is left of each trial [standard deviations]; infinite where a run failed."""
-        square = (fit.residual / self.spread) ** 2
-        square[~np.isfinite(fit.white).all(axis=1)] = np.inf
-        return np.sqrt([np.nanmean(square[segments.trial == trial]) for trial in np.unique(segments.trial)])
+def trial_errors(model: ScoredModel) -> Values:
+    """Root mean square of what is left of each trial [standard deviations]; infinite where a run failed."""
+    square = (model.fit.residual / model.noise.size) ** 2
+    square[~np.isfinite(model.fit.white).all(axis=1)] = np.inf
+    trials = model.shooting.segments.trial
+    return np.sqrt([np.nanmean(square[trials == trial]) for trial in np.unique(trials)])
 
 
 def _turn(case: Case) -> Iterator[Change]:
@@ -159,18 +151,18 @@ def _turn(case: Case) -> Iterator[Change]:
             yield Change(f"{SIGN}{part.name}", part.name, replace(measured, drive=drive))
 
 
-def _shift(bench: _Bench, fit: Fitted, segments: Segments) -> Iterator[Change]:
+def _shift(case: Case, as_read: ScoredModel) -> Iterator[Change]:
     """Yield the trials with all channels shifted against the inputs, by what serves one of the trials."""
-    if not bench.simulation.driving:  # a system that is left to itself has no clock to be shifted against
+    if not case.search.base.driving:  # a system that is left to itself has no clock to be shifted against
         return
-    measured = bench.measured
-    most = min(int(LONGEST_SHIFT * bench.rhythm.samples), int(measured.samples.min()) // 3)
+    measured, fit, segments, spread = case.measured, as_read.fit, as_read.shooting.segments, as_read.noise.size
+    most = min(int(LONGEST_SHIFT * case.rhythm.samples), int(measured.samples.min()) // 3)
     shifts = [shift for shift in range(-most, most + 1) if abs(shift) >= SMALLEST_SHIFT]
     likely = set()
     for trial in range(len(measured.trials)):
         mine = np.flatnonzero(segments.trial == trial)
-        seen = measured.observed[trial, : measured.samples[trial]] / bench.spread
-        run = segments.of(measured.observed)[mine] / bench.spread - fit.residual[mine] / bench.spread
+        seen = measured.observed[trial, : measured.samples[trial]] / spread
+        run = segments.of(measured.observed)[mine] / spread - fit.residual[mine] / spread
         slopes, begin = fit.slopes[mine], segments.begin[mine]
         now, *left = (_left(seen, run, slopes, begin + shift) for shift in (0, *shifts))
         padded = np.array([np.inf, *left, np.inf])  # local minima, the least first
@@ -204,7 +196,7 @@ def _left(seen: Values, run: Values, slopes: Values, begin: NDArray[np.intp]) ->
     residual = np.where(inside[..., None], seen[np.clip(samples, 0, len(seen) - 1)] - run, 0.0)
     flat = np.nan_to_num(residual).reshape(len(begin), -1)
     kept = np.repeat(inside, run.shape[2], axis=1)
-    rest = without(start_basis(slopes * kept[..., None]), flat[..., None])[..., 0]
+    rest = without(find_basis(slopes * kept[..., None]), flat[..., None])[..., 0]
     return float((rest**2).sum() / max(kept.sum(), 1))
 
 
@@ -223,13 +215,13 @@ def without_trial_apart(case: Case) -> Measured:
         return measured
     spread = np.nanstd(measured.observed, axis=(0, 1))
     as_read = replace(case, learned=tuple(range(count))).as_read()
-    search, model = case.search, as_read.model
-    promised = search.scorer(as_read.shooting, model).leave_out_each(search.open_beside(model))  # to first order
+    search = case.search
+    promised = search.scorer(as_read).leave_out_each(search.open_beside(as_read))  # to first order
     trial, other = np.argsort(promised)[:2].tolist()
     least = _leave_out_each(case, trial, spread)
     wanted = max(CRITERIA.apart * least, CRITERIA.model_error)
     others = as_read.shooting.segments.trial != other
-    if np.sqrt(np.nanmean((model.fit.residual[others] / spread) ** 2)) < wanted:  # a search leaves no more of these
+    if np.sqrt(np.nanmean((as_read.fit.residual[others] / spread) ** 2)) < wanted:  # a search leaves no more of these
         return measured
     next_least = _leave_out_each(case, other, spread)
     if next_least < wanted:

@@ -93,17 +93,17 @@ def conditions_table(discovery: Discovery) -> Table:
     """Return the conditions of a study side by side: what each was found to change, with its interval."""
     models = ("Nominal", "Nominal + named effect")
     rows, records = [], []
-    for one in discovery.conditions:
-        errors = [one.beside.get(model, math.nan) for model in models]
-        cells = [with_unit(amount(each, 0.1), "N m") if math.isfinite(each) else NONE for each in errors]
-        for effect in one.effects:
-            rows.append((one.condition, f"{spoken(effect.name)}, {effect.place}", _numbers(effect), *cells))
-            named = (one.condition, effect.name, effect.place)
+    for condition in discovery.conditions:
+        errors = [condition.beside.get(model, math.nan) for model in models]
+        cells = [with_unit(amount(error, 0.1), "N m") if math.isfinite(error) else NONE for error in errors]
+        for effect in condition.effects:
+            rows.append((condition.condition, f"{spoken(effect.name)}, {effect.place}", _numbers(effect), *cells))
+            named = (condition.condition, effect.name, effect.place)
             records += [(*named, name, *asdict(each).values(), *errors) for name, each in effect.estimates.items()]
-        if not one.effects:
-            why = VERDICTS[one.verdict] if one.verdict else f"refused: {one.sentence}"
-            rows.append((one.condition, why, NONE, *cells))
-            records.append((one.condition, why, "", "", *[math.nan] * 3, "", *errors))
+        if not condition.effects:
+            why = VERDICTS[condition.verdict] if condition.verdict else f"refused: {condition.sentence}"
+            rows.append((condition.condition, why, NONE, *cells))
+            records.append((condition.condition, why, "", "", *[math.nan] * 3, "", *errors))
     caption = (
         f"Conditions of the study, n = {len(discovery.conditions)}, each compared with the Nominal walk, which "
         "calibrates one moment model for all. In brackets: 95 % interval. Nominal, Nominal + named effect: root mean "
@@ -122,7 +122,7 @@ def trials_table(discovery: Discovery) -> Table:
         name = runs.names[number] if runs.names else str(number + 1)
         for place, (channel, unit) in enumerate(zip(discovery.channels, discovery.units, strict=True)):
             shown, factor = display_unit(unit)
-            of_trial = (one[runs.trial == number][:, :, place] for one in errors)
+            of_trial = (error[runs.trial == number][:, :, place] for error in errors)
             before, after = (float(np.sqrt(np.nanmean(one))) for one in of_trial)
             amounts = (with_unit(amount(factor * one, factor * before / 20), shown) for one in (before, after))
             rows.append((name, channel, *amounts))
@@ -145,7 +145,7 @@ def where_table(discovery: Discovery) -> Table:
         records.append((one.kind, one.place, one.share_of_gap, begin, end, one.region))
     caption = "Where the gap arises. Share: of the mean squared gap that an effect at this place removes."
     headings = ("place", "share of the gap", "stride", "region")
-    if not any(one.phase for one in discovery.where):  # a machine has no stride
+    if not any(place.phase for place in discovery.where):  # a machine has no stride
         headings, rows = (*headings[:2], headings[3]), [(*row[:2], row[3]) for row in rows]
     columns = ("kind", "place", "share_of_gap", "phase_from", "phase_to", "region")
     return Table("where", caption, headings, tuple(rows), _frame(records, columns))
@@ -154,10 +154,10 @@ def where_table(discovery: Discovery) -> Table:
 def corrections_table(discovery: Discovery) -> Table:
     """Numbers of the file that moved within their own bounds."""
     rows, records = [], []
-    for one in discovery.corrections:
-        found, unit = one.found, "" if one.found.unit == "1" else one.found.unit
-        rows.append((one.parameter, with_unit(f"{one.given:.6g}", unit), *_amounts(found)))
-        records.append((one.parameter, one.given, found.value, found.low, found.high, found.unit))
+    for correction in discovery.corrections:
+        found, unit = correction.found, "" if correction.found.unit == "1" else correction.found.unit
+        rows.append((correction.parameter, with_unit(f"{correction.given:.6g}", unit), *_amounts(found)))
+        records.append((correction.parameter, correction.given, found.value, found.low, found.high, found.unit))
     caption = (
         "Parameters of the file that changed within their bounds. These are not effects: every explanation, and the "
         "initial model, was fitted with them. Low and high: 95 % interval."
@@ -170,8 +170,8 @@ def corrections_table(discovery: Discovery) -> Table:
 def explanations_table(discovery: Discovery) -> Table:
     """What explains the gap, what was named first, and what would distinguish the others from it."""
     named = discovery.effects[:1]
-    weighed = discovery.explanations or tuple(Explanation((one,)) for one in discovery.rivals)
-    small = [Explanation((one,)) for one in discovery.rivals if one.small and discovery.explanations]
+    weighed = discovery.explanations or tuple(Explanation((rival,)) for rival in discovery.rivals)
+    small = [Explanation((rival,)) for rival in discovery.rivals if rival.small and discovery.explanations]
     rows, records = [], []
     for number, one in enumerate((*weighed, *small), 1):
         first, size = one.effects[0], one.held_out
@@ -179,7 +179,7 @@ def explanations_table(discovery: Discovery) -> Table:
         apart = NONE if own or not named else would_distinguish(named[0].name, one.effects[-1].name)
         closed = share_closed(size.before, size.after, size.noise_floor) if size else math.nan
         tied = "named" if own else "small" if first.small else "yes" if one.tied else "no"
-        numbers = "; ".join(_numbers(each) for each in one.effects)
+        numbers = "; ".join(_numbers(effect) for effect in one.effects)
         bic = f"{first.bic:.0f}".replace("-", "−") if math.isfinite(first.bic) else NONE
         rows.append((str(number), one.as_given, numbers, _percent(closed), bic, tied, apart))
         records.append((number, one.as_given, closed, size.p if size else math.nan, first.bic, tied, apart))
@@ -234,7 +234,7 @@ def _amounts(one: Estimate) -> list[str]:
 
 def _numbers(one: FoundEffect) -> str:
     numbers = [f"{name.replace('_', ' ')} {estimate_text(each)}" for name, each in one.estimates.items()]
-    outside = [text for each in one.estimates.values() if (text := outside_text(one, each))]
+    outside = [text for estimate in one.estimates.values() if (text := outside_text(one, estimate))]
     return ", ".join([*numbers[:2], *outside]) + (f", and {len(numbers) - 2} more" if len(numbers) > 2 else "")
 
 

@@ -102,9 +102,9 @@ def is_speed(simulation: Simulation, kind: str, name: str, state: str) -> bool:
     unit = next(each.unit for each in simulation.states if each.name == state)
     if unit and unit != "1":
         return SPEEDS.fullmatch(unit) is not None
-    inertias = [each.name for each in simulation.parameters if INERTIAS.fullmatch(each.unit or "")]
+    inertias = [parameter.name for parameter in simulation.parameters if INERTIAS.fullmatch(parameter.unit or "")]
     equation = dict(simulation.equations).get(state, "")
-    forces = [each.name for each in simulation.ports if FORCES.fullmatch(each.unit or "")]
+    forces = [port.name for port in simulation.ports if FORCES.fullmatch(port.unit or "")]
     return kind == "port" and name in forces and any(re.search(rf"/ *\(?{one}\b", equation) for one in inertias)
 
 

@@ -17,13 +17,12 @@ from numpy.typing import NDArray
 from scipy.optimize import minimize
 from scipy.stats import norm
 
-from gaitdisc.discovery.candidate_model import Part
 from gaitdisc.discovery.case import Case, set_up_case
 from gaitdisc.discovery.catalogue import Request
 from gaitdisc.discovery.discover import fit_given, refuse_unknown
 from gaitdisc.discovery.effect_words import amount, spoken, with_unit
 from gaitdisc.discovery.estimates import name_estimates
-from gaitdisc.discovery.scored_model import ScoredModel
+from gaitdisc.discovery.scored_model import Part, ScoredModel
 from gaitdisc.discovery.spiked_samples import without_spikes
 from gaitdisc.discovery.twins import TwinSource, search_records
 from gaitdisc.errors import SchemaError
@@ -110,14 +109,14 @@ def find_power_for(effect: str, case: Case, as_read: ScoredModel, model: Simulat
     """
     request.progress(f"fitting {effect}")
     now = fit_given(case, as_read, (effect,)).found
-    (part,), fit = now.model.parts, now.model.fit
+    (part,), fit = now.parts, now.fit
     if not part.candidate.idle:
         raise SchemaError(
             "a plan needs an effect with a number for its size", f"{effect} has none", "Give another effect."
         )
     slot, none = next(iter(part.candidate.idle.items()))
-    name = now.model.names[0][slot]
-    row, place = fit.free.index(name), now.model.machine.parameters.index(name)
+    name = now.names[0][slot]
+    row, place = fit.free.index(name), now.machine.parameters.index(name)
     sizes = math.sqrt(fit.covariance[row, row]) * SIZES
     one_more = Part(part.candidate, part.values | {slot: none + 1.0})
     exactly = np.zeros((len(part.candidate.slots), len(part.candidate.slots)))
@@ -126,7 +125,7 @@ def find_power_for(effect: str, case: Case, as_read: ScoredModel, model: Simulat
     for size in sizes:
         values = fit.values.copy()
         values[place] = none + (size if estimate.value >= 0 else -size)
-        grown = replace(now, model=replace(now.model, fit=replace(fit, values=values)))
+        grown = replace(now, fit=replace(fit, values=values))
         sources.append(TwinSource(case, grown, as_read.noise))
     answers = np.array([*search_records([*product(sources, range(request.twins))], model, request)])
     answers = answers.reshape(len(sizes), request.twins)

@@ -15,11 +15,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from gaitdisc.discovery.candidate import Candidate
-from gaitdisc.discovery.candidate_model import Part
 from gaitdisc.discovery.criteria import CRITERIA
 from gaitdisc.discovery.grids import Rhythm, cells
 from gaitdisc.discovery.noise import Noise, find_noise
 from gaitdisc.discovery.paired_test import PairedTest, compare_errors
+from gaitdisc.discovery.scored_model import Part
 from gaitdisc.recording.arrays import Values
 
 LATEST_S, DELAYS = 0.12, 25
@@ -74,10 +74,9 @@ class ResidualMoment:
 
 
 @dataclass(frozen=True, eq=False)
-class Named:
+class Named(Part):
     """An explanation of what is left at a joint, and how it fares on time that was held out."""
 
-    part: Part
     covariance: Values  # (slot, slot)
     explained: Values  # (sample,) [N m]
     predicted: Values  # (sample,), each block of the time from the rest of it [N m]
@@ -105,8 +104,8 @@ class JointFinding:
 
     def weigh(self, candidates: tuple[Candidate, ...], refined: bool) -> list[Named]:
         """Fit candidates to all of the record, the best first."""
-        fitted = [self._fitted(each, refined) for each in candidates]
-        return sorted((one for one in fitted if one is not None), key=lambda one: -one.gained)
+        fitted = [self._fitted(candidate, refined) for candidate in candidates]
+        return sorted((named for named in fitted if named is not None), key=lambda one: -one.gained)
 
     def _fitted(self, candidate: Candidate, refined: bool) -> Named | None:
         """Numbers of a candidate on all of the record, None where it is nowhere in it."""
@@ -121,15 +120,15 @@ class JointFinding:
         variance = max(after / max(samples - count, 1), 1.0)
         covariance = np.asarray(variance * np.linalg.pinv(jacobian.T @ jacobian), np.float64)
         gained = _fall(before, after, samples) - self._price(count)
-        return Named(Part(candidate, values), covariance, explained, np.zeros(samples), gained)
+        return Named(candidate, values, covariance, explained, np.zeros(samples), gained)
 
     def prove(self, one: Named) -> Named:
         """Predict each block of the time with numbers of the rest."""
         joint, predicted = self.joint, np.zeros(len(self.joint.time))
         for held, learned in joint.blocks:
-            values = self._numbers(one.part.candidate, learned)
+            values = self._numbers(one.candidate, learned)
             if values is not None:
-                predicted[held] = joint.explained(one.part.candidate, values)[held]
+                predicted[held] = joint.explained(one.candidate, values)[held]
         after = joint.left - predicted
         test = compare_errors(joint.left[None, :, None], after[None, :, None], np.array([joint.floor or 1.0]))
         before, after = (float((self._white(each) ** 2).sum()) for each in (joint.left, after))
@@ -199,17 +198,19 @@ def joint_finding(joint: ResidualMoment, candidates: tuple[Candidate, ...], join
     ordered: list[Named] = []
     for _ in range(ROUNDS):
         coarse = found.weigh(candidates, refined=False)
-        best = tuple(one.part.candidate for one in coarse[:REFINED])
+        best = tuple(one.candidate for one in coarse[:REFINED])
         ordered = found.weigh(best, refined=True)
-        rest = min((joint.left - one.explained for one in ordered), key=np.linalg.norm, default=joint.left)
+        rest = min((joint.left - named.explained for named in ordered), key=np.linalg.norm, default=joint.left)
         if np.sqrt(np.mean(rest**2)) <= found.noise.size[0]:
             break
         found = replace(found, noise=find_noise(rest[None, :, None], used=2, least=floor))
-    near = [one for one in ordered if one.gained > max(ordered[0].gained - CRITERIA.margin, CRITERIA.margin)]
+    near = [named for named in ordered if named.gained > max(ordered[0].gained - CRITERIA.margin, CRITERIA.margin)]
     proven = sorted(map(found.prove, near), key=lambda one: -one.held_out)
-    alike = [one for one in proven if one.held_out > proven[0].held_out - CRITERIA.tie]  # of these the plainest
-    order = [one.identity for one in candidates]  # of two with one penalty the first in the catalogue is the simpler
-    alike.sort(key=lambda one: (one.part.candidate.penalty(one.part.values), order.index(one.part.candidate.identity)))
+    alike = [named for named in proven if named.held_out > proven[0].held_out - CRITERIA.tie]  # of these the plainest
+    order = [
+        candidate.identity for candidate in candidates
+    ]  # of two with one penalty the first in the catalogue is the simpler
+    alike.sort(key=lambda one: (one.candidate.penalty(one.values), order.index(one.candidate.identity)))
     ordered = [*alike, *proven[len(alike) :], *ordered[len(near) :]]
     first = ordered[0] if proven and is_supported(joint, ordered[0]) else None
     return replace(found, named=first, rivals=tuple(ordered))
@@ -217,8 +218,8 @@ def joint_finding(joint: ResidualMoment, candidates: tuple[Candidate, ...], join
 
 def is_supported(joint: ResidualMoment, one: Named) -> bool:
     """Whether an explanation is of a size that matters, and closes enough on held-out time."""
-    left, candidate = float(np.sum((joint.left - one.predicted) ** 2)), one.part.candidate
-    matters = not candidate.bounds or candidate.beyond_bounds(one.part.values["value"]) > 0
+    left, candidate = float(np.sum((joint.left - one.predicted) ** 2)), one.candidate
+    matters = not candidate.bounds or candidate.beyond_bounds(one.values["value"]) > 0
     return matters and left < (1 - CLOSED) * float(np.sum(joint.left**2))
 
 

@@ -13,11 +13,11 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
-from gaitdisc.discovery.candidate_model import CandidateModel
 from gaitdisc.discovery.fitted import Fitted
 from gaitdisc.discovery.linearised import carry_change, linearise
 from gaitdisc.discovery.noise import Noise, find_noise, sensor_noise, white_noise
 from gaitdisc.discovery.places import Place
+from gaitdisc.discovery.scored_model import ScoredModel
 from gaitdisc.discovery.shooting import Shooting
 from gaitdisc.recording.arrays import Values
 
@@ -40,12 +40,12 @@ class ProcessNoise:
     numbers: int  # how many measured numbers were looked at
 
 
-def rank_process_noise(shooting: Shooting, model: CandidateModel, places: tuple[Place, ...]) -> list[ProcessNoise]:
+def rank_process_noise(model: ScoredModel, places: tuple[Place, ...]) -> list[ProcessNoise]:
     """Weigh random pushes at every place against noise of the sensors; the best place first.
 
     returns: pushes are independent from sample to sample; the sensors' noise beside them is white
     """
-    fit = model.fit
+    fit, shooting = model.fit, model.shooting
     length = min(fit.residual.shape[1], max(MOST_NUMBERS // fit.residual.shape[2], 8))
     some = np.unique(np.linspace(0, len(shooting.segments) - 1, MOST_SEGMENTS).astype(int))
     known = shooting.known[some, :length]
@@ -68,12 +68,13 @@ def rank_process_noise(shooting: Shooting, model: CandidateModel, places: tuple[
     unmoved = now.beside(np.zeros((*now.white.shape, 0))).likelihood(0.0, numbers)[0] + constant
     noise = find_noise(fit.residual, now.starts.shape[1] / fit.residual.shape[2], white_share=0.0)
     rival = min(_autoregressive(noise, plain, columns[..., 1:] * size[:, None], now, known), unmoved)
-    line, found = linearise(few, model.simulation, places, now), []
+    few_runs = replace(model, shooting=few, fit=now)
+    line, found = linearise(few_runs, places), []
     for number, place in enumerate(places):
         steps = fit.states.shape[1] - 1
         last = min((length - 1) * segments.every + 2 * segments.margin, steps)  # later pushes change nothing here
         change = line.pushed[:, :, :, number, None] * np.eye(steps)[None, :, None, :last]
-        seen = carry_change(few, model.machine, now, line.of_change(change))[:, :length]
+        seen = carry_change(few_runs, line.of_change(change))[:, :length]
         pushes = (seen / size[:, None] * known[..., None]).reshape(flat)
         unit = (pushes**2).sum() / count.sum()
         if unit == 0:  # pushes there change nothing of what is measured
@@ -83,7 +84,7 @@ def rank_process_noise(shooting: Shooting, model: CandidateModel, places: tuple[
         best, level, share = min((*pushed.likelihood(share / unit, numbers), share) for share in SHARES)
         best += constant + float(np.log(count.sum()))
         found.append(ProcessNoise(place, best, rival, float(np.sqrt(level * share / unit)), int(count.sum())))
-    return sorted(found, key=lambda one: one.bic)
+    return sorted(found, key=lambda pushes: pushes.bic)
 
 
 def sensor_covariance(shooting: Shooting, known: NDArray[np.bool_]) -> Values:

@@ -140,12 +140,12 @@ class Explanation:
     @property
     def as_given(self) -> str:
         """What `--effects` takes to fit exactly this."""
-        return ", ".join(f"{one.name}@{one.place}" for one in self.effects)
+        return ", ".join(f"{effect.name}@{effect.place}" for effect in self.effects)
 
     @property
     def tied(self) -> bool:
         """Whether these data cannot distinguish it from what was named."""
-        return any(one.tied for one in self.effects)
+        return any(effect.tied for effect in self.effects)
 
 
 @dataclass(frozen=True)
@@ -305,34 +305,34 @@ class Discovery(Saved, file="discovery.json"):
             f"{self.held_out.before:.3g} before, {self.held_out.after:.3g} after, noise {self.held_out.noise_floor:.3g}"
         )
         rows = [("verdict", self.verdict.replace("_", " ")), ("held-out gap", gap)]
-        for one in self.effects:
+        for effect in self.effects:
             amounts = (
                 f"{name} {each.value:.3g} ({each.low:.3g} to {each.high:.3g}) {each.unit}".strip()
-                for name, each in one.estimates.items()
+                for name, each in effect.estimates.items()
             )
-            rows.append((f"{one.name} at {one.place}", "; ".join(amounts)))
+            rows.append((f"{effect.name} at {effect.place}", "; ".join(amounts)))
         return as_html(self.sentence, rows)
 
     def to_json(self) -> dict[str, Any]:
         """Return the content of `discovery.json`; a number that is not finite is null."""
         found = {
             "verdict": self.verdict,
-            "where": [_place_fields(one) for one in self.where],
-            "effects": [_effect(one) | ({"small": True} if one.small else {}) for one in self.effects],
+            "where": [_place_fields(place) for place in self.where],
+            "effects": [_effect(effect) | ({"small": True} if effect.small else {}) for effect in self.effects],
             "corrections": [
-                {"parameter": one.parameter, "from": one.given, "to": one.found.value}
-                | {"low": one.found.low, "high": one.found.high, "unit": one.found.unit}
-                for one in self.corrections
+                {"parameter": correction.parameter, "from": correction.given, "to": correction.found.value}
+                | {"low": correction.found.low, "high": correction.found.high, "unit": correction.found.unit}
+                for correction in self.corrections
             ],
-            "rivals": [_effect(one) | {"tied": one.tied, "small": one.small} for one in self.rivals],
+            "rivals": [_effect(rival) | {"tied": rival.tied, "small": rival.small} for rival in self.rivals],
             "gap": {"train": _gap(self.train), "held_out": _gap(self.held_out)},
             "explanations": [
                 {
-                    "effects": [_effect(each) | {"tied": each.tied} for each in one.effects],
-                    "held_out": _gap(one.held_out) if one.held_out else None,
-                    "left": {"time": one.time, "measured_minus_run": one.left},
+                    "effects": [_effect(effect) | {"tied": effect.tied} for effect in explanation.effects],
+                    "held_out": _gap(explanation.held_out) if explanation.held_out else None,
+                    "left": {"time": explanation.time, "measured_minus_run": explanation.left},
                 }
-                for one in self.explanations
+                for explanation in self.explanations
             ],
             **({"given": self.given} if self.given else {}),
             **({"twins": asdict(self.twins)} if self.twins else {}),
@@ -340,13 +340,18 @@ class Discovery(Saved, file="discovery.json"):
             "channels": dict(zip(self.channels, self.units, strict=True)),
             **({"beside": self.beside} if self.beside else {}),
             **(
-                {"conditions": [asdict(one) | {"effects": [*map(_effect, one.effects)]} for one in self.conditions]}
+                {
+                    "conditions": [
+                        asdict(condition) | {"effects": [*map(_effect, condition.effects)]}
+                        for condition in self.conditions
+                    ]
+                }
                 if self.conditions
                 else {}
             ),
         }
         return _finite(found) | {
-            "findings": [asdict(one) for one in self.findings],
+            "findings": [asdict(finding) for finding in self.findings],
             "provenance": asdict(self.provenance) if self.provenance else None,
         }
 

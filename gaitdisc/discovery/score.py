@@ -9,17 +9,15 @@ from collections.abc import Iterator
 from dataclasses import dataclass, replace
 
 import numpy as np
-from numpy.typing import NDArray
 
 from gaitdisc.discovery.candidate import Candidate
-from gaitdisc.discovery.candidate_model import CandidateModel
 from gaitdisc.discovery.first_states import follow
-from gaitdisc.discovery.fitted import start_basis, without
+from gaitdisc.discovery.fitted import Fitted, without
 from gaitdisc.discovery.grids import Rhythm, cells, delays
 from gaitdisc.discovery.kept_work import keep, recall
 from gaitdisc.discovery.linearised import Linearised, carry_change, linearise
 from gaitdisc.discovery.places import Place
-from gaitdisc.discovery.shooting import Shooting
+from gaitdisc.discovery.scored_model import Part, ScoredModel
 from gaitdisc.recording.arrays import Values
 from gaitdisc.simulation.compiled_simulation import Compiled
 from gaitdisc.simulation.evaluating import Points, evaluate_many
@@ -33,138 +31,110 @@ TRIED = "tried"  # begins the names of the numbers of what is scored
 
 
 @dataclass(frozen=True)
-class Score:
-    """What a candidate promises."""
+class Score(Part):
+    """A candidate with its best numbers to first order, and what they promise."""
 
-    candidate: Candidate
-    values: dict[str, float]
-    gain: float  # fall of the misfit (twice the log likelihood) that they promise
+    gain: float  # fall of the misfit (twice the log likelihood)
 
 
 @dataclass(frozen=True)
 class _Cell:
     """One point of a candidate's grid, and the columns that stand for it."""
 
-    candidate: int
+    candidate: Candidate
     constants: dict[str, float]
     idle: dict[str, float]  # the slots that columns stand for, and where they change nothing
     whole: bool = False  # whether its column is all that its constants change, and no slope
+
+    @property
+    def pieces(self) -> tuple[str, ...]:
+        """The pieces of a missing term, with the constants in them."""
+        return self.candidate.pieces_at({slot: f"{value:.9g}" for slot, value in self.constants.items()})
 
 
 @dataclass(frozen=True)
 class Scorer:
     """A fitted simulation, linearised, against which candidates are scored."""
 
-    shooting: Shooting
-    model: CandidateModel
+    model: ScoredModel
     places: tuple[Place, ...]
     rhythm: Rhythm
 
     def scores(self, candidates: tuple[Candidate, ...]) -> list[Score]:
         """Return the best score of each candidate, the greatest gain first; of a great many, those worth it alone."""
         if len(candidates) > MOST:
-            count = len(self.shooting.segments)  # some of the segments, evenly from all
+            count = len(self.model.shooting.segments)  # some of the segments, evenly from all
             some = np.unique(np.linspace(0, count - 1, min(max(round(PART * count), FEWEST), count)).astype(np.intp))
-            few = replace(self.shooting, segments=self.shooting.segments.among(some))
-            part = replace(self, shooting=few, model=replace(self.model, fit=self.model.fit.among(some)))
-            candidates = tuple(one.candidate for one in part._scores(candidates)[:KEPT])
+            few = replace(self.model.shooting, segments=self.model.shooting.segments.among(some))
+            part = replace(self, model=replace(self.model, shooting=few, fit=self.model.fit.among(some)))
+            candidates = tuple(score.candidate for score in part._scores(candidates)[:KEPT])
         known = recall(repr(len(candidates)), self.model.fit.values.tobytes(), self.model.fit.starts.tobytes())
         if known is not None:
             return [Score(candidates[number], values, gain) for number, values, gain in known]
-        places = {id(one): number for number, one in enumerate(candidates)}
-        found = self._scores(candidates)
-        keep([(places[id(one.candidate)], one.values, one.gain) for one in found])
-        return found
+        numbers = {id(candidate): number for number, candidate in enumerate(candidates)}
+        scores = self._scores(candidates)
+        keep([(numbers[id(score.candidate)], score.values, score.gain) for score in scores])
+        return scores
 
     def _scores(self, candidates: tuple[Candidate, ...]) -> list[Score]:
-        basis, known, left = self._explain()
-        best: dict[int, Score] = {}
+        explained, best = _Explained.by(self.model.fit), dict[int, Score]()
         for some, columns in self._columns(candidates):
-            own = without(basis, columns).reshape(-1, columns.shape[2])
-            own = np.vstack([own, np.zeros((left.size - len(own), own.shape[1]))])
-            own -= known @ (known.T @ own)
-            for score, number in _gains(own.T @ own, own.T @ left, some, candidates):
-                if number not in best or score.gain > best[number].gain:
-                    best[number] = score
+            for score in explained.gains(some, columns):
+                known = best.setdefault(id(score.candidate), score)
+                if score.gain > known.gain:
+                    best[id(score.candidate)] = score
         return sorted(best.values(), key=lambda score: -score.gain)
 
     def leave_out_each(self, candidates: tuple[Candidate, ...]) -> Values:
         """Mean square that the best candidate leaves of all other trials, for each trial (trial,), to first order."""
-        basis = start_basis(self.model.fit.slopes[..., : self.model.fit.starts.shape[1]])
-        left, slopes = self.model.fit.projected
-        others = _Others(self.shooting.segments.trial)
-        prior = self.model.fit.prior
-        weights = np.concatenate([np.zeros(len(self.model.fit.free) - len(prior.names)), 1 / prior.sd**2])
-        known = others.product(slopes, slopes) + np.diag(weights)
-        match = others.product(slopes, left[..., None])[..., 0]
-        gained = np.zeros(others.count)
+        fit, trials = self.model.fit, self.model.shooting.segments.trial
+        as_in_file = fit.values.copy()  # of how far numbers are from the file's no candidate takes anything away
+        as_in_file[fit.prior.places] = fit.prior.value
+        others = [np.flatnonzero(trials != trial) for trial in np.unique(trials)]
+        explained = [_Explained.by(replace(fit.among(rest), values=as_in_file)) for rest in others]
+        gained = np.zeros(len(others))
         for some, columns in self._columns(candidates):
-            own = without(basis, columns)
-            shared = np.linalg.pinv(known, rcond=1e-12, hermitian=True) @ others.product(slopes, own)
-            normal = others.product(own, own) - np.swapaxes(others.product(slopes, own), 1, 2) @ shared
-            aim = others.product(own, left[..., None])[..., 0] - (match[:, None] @ shared)[:, 0]
-            for number in range(others.count):
-                gains = [one.gain for one, _ in _gains(normal[number], aim[number], some, candidates)]
-                gained[number] = max([gained[number], *gains])
-        square = others.product(left[..., None], left[..., None])[:, 0, 0]
-        return (square - gained) / (others.segments * left.shape[1])
-
-    def _explain(self) -> tuple[Values, Values, Values]:
-        """Basis of the start states, basis of the constants already in (row, constant), what is left (row,).
-
-        After the measured numbers come the rows of the prior, in which no candidate changes anything.
-        """
-        basis = start_basis(self.model.fit.slopes[..., : self.model.fit.starts.shape[1]])
-        left, flat = self.model.fit.stacked
-        size = np.linalg.norm(flat, axis=0)
-        known = np.linalg.qr(flat[:, size > 0] / size[size > 0])[0]
-        return basis, known, left - known @ (known.T @ left)
+            for place, rest in enumerate(others):
+                gains = (score.gain for score in explained[place].gains(some, columns[rest]))
+                gained[place] = max([gained[place], *gains])
+        left = fit.projected[0]
+        return np.array([(left[rest] ** 2).mean() for rest in others]) - gained / [left[rest].size for rest in others]
 
     def _columns(self, candidates: tuple[Candidate, ...]) -> Iterator[tuple[list[_Cell], Values]]:
         """Yield cells and what each of their slots would change, whitened (segment, number, column)."""
-        line = linearise(self.shooting, self.model.simulation, self.places, self.model.fit)
-        roles = sorted({one.role for one in candidates if one.constants})
+        line = linearise(self.model, self.places)
+        roles = sorted({candidate.role for candidate in candidates if candidate.constants})
         along = dict(zip(roles, np.moveaxis(self._along(roles), -1, 0), strict=True))
         for number, place in enumerate(self.places):
-            all_here = [i for i, one in enumerate(candidates) if (one.kind, one.place) == (place.kind, place.name)]
-            here = [i for i in all_here if not candidates[i].states]
-            for i in all_here:
-                if candidates[i].states:
-                    some, push = self._with_own_states(i, candidates[i], along)
+            here = [one for one in candidates if (one.kind, one.place) == (place.kind, place.name)]
+            for candidate in here:
+                if candidate.states:
+                    some, push = self._with_own_states(candidate, along)
                     yield some, self._white(line.of_push(number, push))
-            jobs = [(cell, pieces) for i in here for cell, pieces in self._cells(i, candidates[i], along)]
-            for first in range(0, len(jobs), AT_ONCE):
-                some = jobs[first : first + AT_ONCE]
-                push = self._along([piece for _, pieces in some for piece in pieces])
-                yield [cell for cell, _ in some], self._white(line.of_push(number, push))
-        for i, one in enumerate(candidates):
-            late = one.name == "sensor_lag" and "delay(" in dict(self.model.simulation.observations)[one.place]
-            if one.verdict != "missing_physics" and not late:  # a signal that is late already is not delayed again
-                yield self._signal_columns(line, i, one, along)
+            plain = [cell for candidate in here if not candidate.states for cell in self._cells(candidate, along)]
+            for first in range(0, len(plain), AT_ONCE):
+                some = plain[first : first + AT_ONCE]
+                push = self._along([piece for cell in some for piece in cell.pieces])
+                yield some, self._white(line.of_push(number, push))
+        seen = dict(self.model.simulation.observations)
+        for candidate in candidates:
+            late = candidate.name == "sensor_lag" and "delay(" in seen[candidate.place]
+            if candidate.verdict != "missing_physics" and not late:  # a signal that is late already: not once more
+                yield self._signal_columns(line, candidate, along)
 
-    def _cells(
-        self, number: int, candidate: Candidate, along: dict[str, Values]
-    ) -> list[tuple[_Cell, tuple[str, ...]]]:
+    def _cells(self, candidate: Candidate, along: dict[str, Values]) -> list[_Cell]:
         constants = dict(candidate.constants or {})
         x = along[candidate.role].ravel() if constants else np.zeros(1)
-        return [
-            (
-                _Cell(number, cell, candidate.idle),
-                candidate.pieces_at({slot: f"{value:.9g}" for slot, value in cell.items()}),
-            )
-            for cell in cells(constants, x, self.rhythm)
-        ]
+        return [_Cell(candidate, cell, candidate.idle) for cell in cells(constants, x, self.rhythm)]
 
-    def _with_own_states(
-        self, number: int, candidate: Candidate, along: dict[str, Values]
-    ) -> tuple[list[_Cell], Values]:
+    def _with_own_states(self, candidate: Candidate, along: dict[str, Values]) -> tuple[list[_Cell], Values]:
         """Cells of a term with states of its own, and its pieces along the run (segment, sample, cell times piece)."""
-        some = [cell for cell, _ in self._cells(number, candidate, along)]
+        some = self._cells(candidate, along)
         machine, values, states = self._extend(candidate, [candidate.idle | cell.constants for cell in some])
         pieces = candidate.pieces_at({slot: candidate.named(TRIED)[slot] for slot in candidate.constants or {}})
         seen = tuple((f"piece_{i}", piece) for i, piece in enumerate(pieces))
         observing = compile_simulation(replace(machine.simulation, observations=seen, sensors=()))
-        push = np.moveaxis(self.shooting.unfiltered(observing, states, values), 0, -2)
+        push = np.moveaxis(self.model.shooting.unfiltered(observing, states, values), 0, -2)
         return some, push.reshape(*push.shape[:2], -1)
 
     def _extend(self, candidate: Candidate, tried: list[dict[str, float]]) -> tuple[Compiled, Values, Values]:
@@ -181,13 +151,13 @@ class Scorer:
                 values[version, machine.parameters.index(names[slot])] = value
         states = np.repeat(self.model.fit.states[None], len(tried), axis=0)
         if candidate.states:
-            own = follow(self.shooting, simulation, values)[..., -len(candidate.states) :]
-            states = np.concatenate([states, np.stack([self.shooting.segments.of(one) for one in own])], axis=-1)
+            own = follow(self.model.shooting, simulation, values)[..., -len(candidate.states) :]
+            states = np.concatenate([states, np.stack([self.model.shooting.segments.of(one) for one in own])], axis=-1)
         return machine, values, states
 
     def _along(self, expressions: list[str]) -> Values:
         """Return expressions along the run (segment, sample, expression)."""
-        segments, drive = self.shooting.segments, self.shooting.measured.drive
+        segments, drive = self.model.shooting.segments, self.model.shooting.measured.drive
         out = np.zeros((len(segments), segments.length, len(expressions)))
         for trial in np.unique(segments.trial):
             mine = np.flatnonzero(segments.trial == trial)
@@ -200,73 +170,71 @@ class Scorer:
         return np.nan_to_num(out, nan=0.0, posinf=0.0, neginf=0.0)
 
     def _white(self, change: Values) -> Values:
-        return self.shooting.whiten(carry_change(self.shooting, self.model.machine, self.model.fit, change))
+        return self.model.shooting.whiten(carry_change(self.model, change))
 
     def _signal_columns(
-        self, line: Linearised, number: int, candidate: Candidate, along: dict[str, Values]
+        self, line: Linearised, candidate: Candidate, along: dict[str, Values]
     ) -> tuple[list[_Cell], Values]:
         """What a wrong number, input or sensor changes: in each step's landing, and in what is seen."""
+        model, shooting = self.model, self.model.shooting
         (slot, none), limited = next(iter(candidate.idle.items())), bool(candidate.constants)
         if candidate.verdict == "wrong_parameter":
-            none = float(self.model.fit.values[self.model.machine.parameters.index(candidate.place)])
+            none = float(model.fit.values[model.machine.parameters.index(candidate.place)])
         tried = [{slot: none + NUDGE * max(abs(none), 1e-2)}]
         if limited:
-            tried = [cell.constants for cell, _ in self._cells(number, candidate, along)]
+            tried = [cell.constants for cell in self._cells(candidate, along)]
         elif candidate.is_late:
             either_way = candidate.name == "input_delay"
-            tried = [{slot: float(one)} for one in delays(self.rhythm, either_way)]
+            tried = [{slot: float(delay)} for delay in delays(self.rhythm, either_way)]
         whole = limited or candidate.is_late
         over = np.ones(len(tried)) if whole else np.array([tried[0][slot] - none])
         machine, values, states = self._extend(candidate, tried)
-        seen = self.shooting.observed(machine, states, values)  # what changes though no state does
-        seen -= self.shooting.observed(self.model.machine, self.model.fit.states[None], self.model.fit.values[None])
-        columns = self.shooting.whiten(np.moveaxis(seen / over[:, None, None, None], 0, -1))
+        seen = shooting.observed(machine, states, values)  # what changes though no state does
+        seen -= shooting.observed(model.machine, model.fit.states[None], model.fit.values[None])
+        columns = shooting.whiten(np.moveaxis(seen / over[:, None, None, None], 0, -1))
         if candidate.verdict != "sensor_error":
-            landed = (
-                self.shooting.landed(machine, states[:, :, :-1], values)[..., : line.landed.shape[-1]] - line.landed
-            )
+            landed = shooting.landed(machine, states[:, :, :-1], values)[..., : line.landed.shape[-1]] - line.landed
             columns += self._white(line.of_change(np.moveaxis(landed / over[:, None, None, None], 0, -1)))
-        return [_Cell(number, one if whole else {}, {slot: none}, whole) for one in tried], columns
+        return [_Cell(candidate, cell if whole else {}, {slot: none}, whole) for cell in tried], columns
 
 
 @dataclass(frozen=True)
-class _Others:
-    """Sums over all segments but those of one trial, for each trial in turn."""
+class _Explained:
+    """What start states and the constants that are in already explain; candidates have to explain something else.
 
-    trial: NDArray[np.intp]
-
-    @property
-    def count(self) -> int:
-        """How many trials there are."""
-        return len(np.unique(self.trial))
-
-    @property
-    def segments(self) -> NDArray[np.intp]:
-        """How many segments the others have (trial,)."""
-        return len(self.trial) - np.unique(self.trial, return_counts=True)[1]
-
-    def product(self, one: Values, other: Values) -> Values:
-        """Products of columns (segment, number, column), summed (trial, column, column)."""
-        each = np.swapaxes(one, 1, 2) @ other
-        return each.sum(axis=0) - np.stack([each[self.trial == trial].sum(axis=0) for trial in np.unique(self.trial)])
-
-
-def _gains(
-    normal: Values, match: Values, some: list[_Cell], candidates: tuple[Candidate, ...]
-) -> Iterator[tuple[Score, int]]:
-    """Yield each cell's score, from the products of the columns with each other and with what is left.
-
-    A cell has as many columns as slots that columns stand for.
+    After the measured numbers come the rows of the prior, in which no candidate changes anything.
     """
-    size = np.maximum(np.sqrt(np.maximum(np.diag(normal), 0)), 1e-150)
-    normal = normal / np.outer(size, size)
-    first = 0
-    for cell in some:
-        mine = slice(first, first + len(cell.idle))
-        first = mine.stop
-        found = np.linalg.lstsq(normal[mine, mine], match[mine] / size[mine], rcond=1e-10)[0] / size[mine]
-        gain = float(found @ match[mine])
-        if size[mine].max() <= 1e-9 or (cell.whole and found[0] <= 0):
-            continue
-        values = {slot: none + float(one) for (slot, none), one in zip(cell.idle.items(), found, strict=True)}
-        yield Score(candidates[cell.candidate], values | cell.constants, gain), cell.candidate
+
+    starts: Values  # (segment, number, state), basis of the start states
+    constants: Values  # (row, constant), basis of the constants
+    left: Values  # (row,), what is left
+
+    @classmethod
+    def by(cls, fit: Fitted) -> _Explained:
+        """What is explained in a fit."""
+        left, flat = fit.stacked
+        size = np.linalg.norm(flat, axis=0)
+        known = np.linalg.qr(flat[:, size > 0] / size[size > 0])[0]
+        return cls(fit.start_basis, known, left - known @ (known.T @ left))
+
+    def gains(self, some: list[_Cell], columns: Values) -> Iterator[Score]:
+        """Yield the score of each cell that changes anything.
+
+        columns (segment, number, column): a cell has as many as slots that columns stand for
+        """
+        own = without(self.starts, columns).reshape(-1, columns.shape[2])
+        own = np.vstack([own, np.zeros((self.left.size - len(own), own.shape[1]))])
+        own -= self.constants @ (self.constants.T @ own)
+        normal, match = own.T @ own, own.T @ self.left
+        size = np.maximum(np.sqrt(np.maximum(np.diag(normal), 0)), 1e-150)
+        normal = normal / np.outer(size, size)
+        first = 0
+        for cell in some:
+            mine = slice(first, first + len(cell.idle))
+            first = mine.stop
+            found = np.linalg.lstsq(normal[mine, mine], match[mine] / size[mine], rcond=1e-10)[0] / size[mine]
+            gain = float(found @ match[mine])
+            if size[mine].max() <= 1e-9 or (cell.whole and found[0] <= 0):
+                continue
+            values = {slot: none + float(factor) for (slot, none), factor in zip(cell.idle.items(), found, strict=True)}
+            yield Score(cell.candidate, values | cell.constants, gain)

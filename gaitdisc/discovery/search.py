@@ -10,13 +10,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from gaitdisc.discovery.candidate import PASSIVE, Candidate
-from gaitdisc.discovery.candidate_model import CandidateModel, Explanations, Part
 from gaitdisc.discovery.criteria import CRITERIA
 from gaitdisc.discovery.grids import Rhythm
 from gaitdisc.discovery.places import Place
 from gaitdisc.discovery.score import Score, Scorer
-from gaitdisc.discovery.scored_model import ScoredModel, compared
-from gaitdisc.discovery.shooting import Shooting
+from gaitdisc.discovery.scored_model import Explanations, Part, ScoredModel, compared
 from gaitdisc.simulation.evaluating import Points, evaluate
 from gaitdisc.simulation.simulation import Simulation
 
@@ -42,73 +40,73 @@ class Search:
     rhythm: Rhythm
     progress: Callable[[str], None] = field(default_factory=lambda: lambda _: None, compare=False)
 
-    def extended(self, now: ScoredModel, most: int = MOST_COMPARED) -> list[ScoredModel]:
+    def extended(self, now: ScoredModel) -> list[ScoredModel]:
         """Return the model and, after it, others with one explanation more, all under the noise that the best leaves.
 
-        most: how many of the most promising, once refitted, are put under that noise
         returns: empty where no explanation fits; in no order after the first
         """
-        model, shooting = now.model, now.shooting
-        scorer = self.scorer(shooting, model)
-        open_ones = self.open_beside(model)
-        penalty = float(np.log(model.fit.white.size))
-        scores = sorted(scorer.scores(open_ones), key=lambda one: penalty * len(one.candidate.slots) - one.gain)
-        worth = [one for one in scores if one.gain > penalty * len(one.candidate.slots)][:REFITTED]
-        tried = [self.with_part(now, Part(one.candidate, one.values)) for one in self._report(worth)]
-        far = [] if model.parts else self.far_off(now)
-        tried = [*(one for one in tried if self.sensible(one) and is_certain(one, -1)), *far]
-        likeliest: dict[Explanations, CandidateModel] = {}
-        for one in sorted(tried, key=lambda one: one.bic):
-            likeliest.setdefault(one.explanations, one)
-        if not tried:
+        penalty = float(np.log(now.fit.white.size))
+
+        def price(score: Score) -> float:
+            """By how much the criterion would rise, to first order."""
+            return penalty * len(score.candidate.slots) - score.gain
+
+        scores = self.scorer(now).scores(self.open_beside(now))
+        worth = sorted((score for score in scores if price(score) < 0), key=price)[:REFITTED]
+        fitted = [self.with_part(now, score) for score in self._report(worth)]
+        fitted = [model for model in fitted if self.sensible(model) and is_certain(model, -1)]
+        fitted += [] if now.parts else self.far_off(now)
+        likeliest: dict[Explanations, ScoredModel] = {}
+        for model in sorted(fitted, key=lambda model: model.bic):
+            likeliest.setdefault(model.explanations, model)
+        if not likeliest:
             return []
-        tried = list(likeliest.values())[:most]
-        before, *more = compared([now, *(ScoredModel(one, shooting) for one in tried)])
-        return [before, *(replace(one, gained=before.bic - one.bic) for one in more)]
+        before, *longer = compared([now, *[*likeliest.values()][:MOST_COMPARED]])
+        return [before, *(replace(model, gained=before.bic - model.bic) for model in longer)]
 
-    def with_part(self, now: ScoredModel, part: Part, turns: int = TURNS) -> CandidateModel:
+    def with_part(self, now: ScoredModel, part: Part, turns: int = TURNS) -> ScoredModel:
         """Fit a model with one explanation more to the same runs."""
-        return now.model.refitted(now.shooting, (*now.model.parts, part), turns=turns, enough=NEARLY)
+        return now.refitted(now.shooting, (*now.parts, part), turns=turns, enough=NEARLY)
 
-    def far_off(self, now: ScoredModel) -> list[CandidateModel]:
+    def far_off(self, now: ScoredModel) -> list[ScoredModel]:
         """Fit each number without bounds from other orders of magnitude: a slope at the file's does not reach these."""
-        found = []
-        for one in self.open_beside(now.model):
-            if one.verdict != "wrong_parameter" or one.bounds or not one.value:
-                continue
-            begun = [self.with_part(now, Part(one, {"value": one.value * factor}), FEW_TURNS) for factor in DECADES]
-            best = min(begun, key=lambda each: each.fit.misfit if np.isfinite(each.fit.misfit) else np.inf)
-            if best.fit.misfit < now.model.fit.misfit:
-                found.append(now.model.refitted(now.shooting, best.parts, best.fit.starts, TURNS, NEARLY))
-        return found
+        fitted = []
+        for candidate in self.open_beside(now):
+            if candidate.verdict == "wrong_parameter" and not candidate.bounds and candidate.value:
+                parts = [Part(candidate, {"value": candidate.value * factor}) for factor in DECADES]
+                begun = [self.with_part(now, part, FEW_TURNS) for part in parts]
+                best = min(begun, key=lambda model: model.fit.misfit if np.isfinite(model.fit.misfit) else np.inf)
+                if best.fit.misfit < now.fit.misfit:
+                    fitted.append(now.refitted(now.shooting, best.parts, best.fit.starts, TURNS, NEARLY))
+        return fitted
 
     def _report(self, worth: list[Score]) -> Iterator[Score]:
         """Yield each in turn, and say now and then how many are fitted and how long the others will take."""
         began = last = time.perf_counter()
-        for done, one in enumerate(worth):
+        for done, score in enumerate(worth):
             now = time.perf_counter()
             if done and now - last >= EVERY:
                 left = (now - began) / done * (len(worth) - done)
                 self.progress(f"{done} of {len(worth)} explanations fitted, {left:.0f} s remain in this round")
                 last = now
-            yield one
+            yield score
 
-    def scorer(self, shooting: Shooting, model: CandidateModel) -> Scorer:
+    def scorer(self, model: ScoredModel) -> Scorer:
         """Return what scores further explanations beside a model, to first order."""
-        return Scorer(shooting, model, self.places, self.rhythm)
+        return Scorer(model, self.places, self.rhythm)
 
-    def open_beside(self, model: CandidateModel) -> tuple[Candidate, ...]:
+    def open_beside(self, model: ScoredModel) -> tuple[Candidate, ...]:
         """Return the explanations that are not in a model."""
         present = model.explanations
-        return tuple(one for one in self.candidates if one.identity not in present)
+        return tuple(candidate for candidate in self.candidates if candidate.identity not in present)
 
-    def sensible(self, model: CandidateModel) -> bool:
+    def sensible(self, model: ScoredModel) -> bool:
         """Whether every number of a model lies where it means what its name says."""
         return bool(np.isfinite(model.fit.misfit)) and all(
             low < value < high for value, (low, high) in self._limits(model)
         )
 
-    def shows(self, model: CandidateModel) -> bool:
+    def shows(self, model: ScoredModel) -> bool:
         """Whether each relaxation is shorter than the longest trial, each yield narrower than what a run can show."""
         return all(
             part.values[slot] < (self.rhythm.duration if kind == "delays" else self._widest(model, part.candidate.role))
@@ -117,7 +115,7 @@ class Search:
             for slot, kind in (part.candidate.constants or {}).items()
         )
 
-    def _limits(self, model: CandidateModel) -> Iterator[tuple[float, tuple[float, float]]]:
+    def _limits(self, model: ScoredModel) -> Iterator[tuple[float, tuple[float, float]]]:
         """Yield each constant of a model, and between which limits it means what its name says."""
         lagging = {part.candidate.place for part in model.parts if part.candidate.name == "input_lag"}
         for part in model.parts:
@@ -144,33 +142,33 @@ class Search:
                 early = part.candidate.name == "input_delay" and part.candidate.place not in lagging
                 yield part.values["seconds"], (-self.rhythm.period * early, self.rhythm.period)
 
-    def _visited(self, model: CandidateModel, role: str) -> tuple[float, float]:
+    def _visited(self, model: ScoredModel, role: str) -> tuple[float, float]:
         """Return where the run goes: a threshold beyond makes a one-sided spring a linear one, or nothing."""
         low, high = np.quantile(self.along(model, role), VISITED)
         return float(low), float(high)
 
-    def along(self, model: CandidateModel, role: str) -> NDArray[np.float64]:
+    def along(self, model: ScoredModel, role: str) -> NDArray[np.float64]:
         """Return what stands for x in an explanation, along the runs."""
         known = len(self.base.states)
         states = model.fit.states[..., :known].reshape(-1, known)
         nothing = np.zeros((len(states), len(self.base.inputs)))
         return np.asarray(evaluate(self.base, role, Points(np.zeros(len(states)), states, nothing)))
 
-    def _widest(self, model: CandidateModel, role: str) -> float:
+    def _widest(self, model: ScoredModel, role: str) -> float:
         """Return the half width that a run can show; of an input, one that it never reaches does nothing anyway."""
-        driven = any(each.name == role for each in self.base.inputs)
+        driven = any(signal.name == role for signal in self.base.inputs)
         return np.inf if driven else CRITERIA.widest * max(map(abs, self._visited(model, role)))
 
     def without(self, now: ScoredModel, number: int) -> ScoredModel:
         """Return the model less one explanation."""
-        return self.with_others(now, now.model.parts[:number] + now.model.parts[number + 1 :])
+        return self.with_others(now, now.parts[:number] + now.parts[number + 1 :])
 
     def with_others(self, now: ScoredModel, parts: tuple[Part, ...]) -> ScoredModel:
         """Return the simulation with other explanations, fitted to the runs of a model under its noise."""
-        return ScoredModel(now.model.refitted(now.shooting, parts, turns=TURNS), now.shooting)
+        return now.refitted(now.shooting, parts, turns=TURNS)
 
 
-def is_certain(model: CandidateModel, first: int = 0, end: int | None = None) -> bool:
+def is_certain(model: ScoredModel, first: int = 0, end: int | None = None) -> bool:
     """Whether no explanation from `first` to before `end` could as well be idle, its number lost in its error.
 
     A wrong parameter with bounds is idle at the nearer of these.
@@ -187,7 +185,7 @@ def is_certain(model: CandidateModel, first: int = 0, end: int | None = None) ->
     )
 
 
-def may_vanish(model: CandidateModel, number: int) -> bool:
+def may_vanish(model: ScoredModel, number: int) -> bool:
     """Whether a constant of an explanation could as well be 0, where the shape is a simpler one."""
     part, names = model.parts[number], model.names[number]
     variance = dict(zip(model.fit.free, np.diag(model.fit.covariance), strict=True))

@@ -7,7 +7,6 @@ from dataclasses import replace
 import numpy as np
 
 from gaitdisc.discovery.candidate import Candidate
-from gaitdisc.discovery.candidate_model import Part
 from gaitdisc.discovery.case import Case
 from gaitdisc.discovery.criteria import CRITERIA
 from gaitdisc.discovery.decision import MOST_NEAR, Verdict, prove_held_out
@@ -16,7 +15,7 @@ from gaitdisc.discovery.gap_share import cross_validated, errs_more
 from gaitdisc.discovery.grids import delays
 from gaitdisc.discovery.held_out import free_run_error, gap_size, grows_along_runs, is_uninformative, prove, strays
 from gaitdisc.discovery.result import ALPHA
-from gaitdisc.discovery.scored_model import ScoredModel, compared, ranked, score
+from gaitdisc.discovery.scored_model import Part, ScoredModel, compared, ranked, score
 from gaitdisc.discovery.search import TURNS, is_certain, may_vanish
 
 AT_ONCE, LATE = "linear_stiffness", "delayed_feedback"
@@ -43,23 +42,23 @@ def prefer_relatives(case: Case, as_read: ScoredModel, verdict: Verdict) -> Verd
     """
     shows = case.search.shows
     if verdict.word in ("unnamed", "process_noise", "no_gap") or not verdict.proof:
-        return replace(verdict, rivals=tuple(one for one in verdict.rivals if shows(one.model)))
-    for number in range(len(verdict.found.model.parts)):
+        return replace(verdict, rivals=tuple(rival for rival in verdict.rivals if shows(rival)))
+    for number in range(len(verdict.found.parts)):
         found = verdict.found
-        tried = [in_its_place(case, found, number, one) for one in list_relatives(case, found, number)]
-        for now in sorted((one for one in tried if one), key=lambda one: one.bic):
-            idle = not shows(found.model) or may_vanish(found.model, number)
-            if found.model.parts[number].candidate.kind == "input":  # what is added takes half of what a number leaves
+        tried = [in_its_place(case, found, number, candidate) for candidate in list_relatives(case, found, number)]
+        for now in sorted((model for model in tried if model), key=lambda model: model.bic):
+            idle = not shows(found) or may_vanish(found, number)
+            if found.parts[number].candidate.kind == "input":  # what is added takes half of what a number leaves
                 idle = idle or free_run_error(case, found) > CRITERIA.half * free_run_error(case, now)
             if not idle and is_needed(case, now, found):
                 continue
             proof = prove_held_out(case, as_read, now)
             if proof.bears_out:
-                verdict = replace(verdict, word=now.word, found=now, rivals=(found, *verdict.rivals), proof=proof)
+                verdict = verdict.with_model(now, proof)
                 break
-    rivals = tuple(one for one in verdict.rivals if shows(one.model))
-    if not shows(verdict.found.model):
-        return Verdict("no_gap", as_read, rivals, proof=verdict.proof)
+    rivals = tuple(rival for rival in verdict.rivals if shows(rival))
+    if not shows(verdict.found):
+        return Verdict(as_read, rivals, proof=verdict.proof)
     return replace(verdict, rivals=rivals)
 
 
@@ -69,15 +68,16 @@ def prefer_delay(case: Case, as_read: ScoredModel, verdict: Verdict) -> Verdict:
     Whatever answers with a delay (a person, a controller) looks like a spring to a search that begins without one: run
     freely, the simulation as read leaves the data, and no delay of it says anything. Beside the spring it does not.
     """
-    parts = verdict.found.model.parts
+    parts = verdict.found.parts
     firsts = {place.motions[0] for place in case.search.places}
     springs = [one for one in parts if one.candidate.name == AT_ONCE and (one.candidate.role, "") in firsts]
     if len(parts) != 1 or not springs or not verdict.proof:
         return verdict
     late = [
-        one
-        for one in case.search.candidates
-        if one.name == LATE and (one.place, one.role) == (springs[0].candidate.place, springs[0].candidate.role)
+        candidate
+        for candidate in case.search.candidates
+        if candidate.name == LATE
+        and (candidate.place, candidate.role) == (springs[0].candidate.place, springs[0].candidate.role)
     ]
     found, search = verdict.found, case.search
     begun = [
@@ -85,16 +85,16 @@ def prefer_delay(case: Case, as_read: ScoredModel, verdict: Verdict) -> Verdict:
         for one in late
         for delay in delays(case.rhythm)[::STEP]
     ]
-    tried = [search.with_others(found, (part,)).model for part in begun]
-    tried = [one for one in tried if search.sensible(one) and is_certain(one) and not may_vanish(one, 0)]
+    tried = [search.with_others(found, (part,)) for part in begun]
+    tried = [model for model in tried if search.sensible(model) and is_certain(model) and not may_vanish(model, 0)]
     if not tried:
         return verdict
-    now = ScoredModel(min(tried, key=lambda one: one.bic), found.shooting, found.gained)
+    now = replace(min(tried, key=lambda model: model.bic), gained=found.gained)
     _, now = compared([found, now])
     proof = prove_held_out(case, as_read, now)
     if not prove(case, found, now, now).bears_out or not proof.bears_out:
         return verdict
-    return replace(verdict, found=now, rivals=(found, *verdict.rivals), proof=proof)
+    return verdict.with_model(now, proof)
 
 
 def look_at_whole_runs(case: Case, as_read: ScoredModel, verdict: Verdict) -> tuple[ScoredModel, Verdict]:
@@ -106,18 +106,18 @@ def look_at_whole_runs(case: Case, as_read: ScoredModel, verdict: Verdict) -> tu
     if verdict.word == "process_noise" or verdict.starts or not case.spans_a_period(as_read):
         return as_read, verdict
     base, named = fit_whole_runs(case, as_read), verdict.found
-    if not named.model.parts:
+    if not named.parts:
         return base, replace(verdict, found=base)
     most = free_run_error(case, base)
     for one in (named, *verdict.rivals):
-        if not one.model.parts or strays(case, one, most):
+        if not one.parts or strays(case, one, most):
             continue
         if one is named:
             return base, complete_on_whole_runs(case, as_read, verdict)
         proof = prove_held_out(case, as_read, one)
         if proof.bears_out:
-            return base, replace(verdict, word=one.word, found=one, rivals=(named, *verdict.rivals), proof=proof)
-    return base, Verdict("no_gap", base, (named, *verdict.rivals), proof=verdict.proof)
+            return base, verdict.with_model(one, proof)
+    return base, Verdict(base, (named, *verdict.rivals), proof=verdict.proof)
 
 
 def fit_whole_runs(case: Case, now: ScoredModel) -> ScoredModel:
@@ -125,9 +125,8 @@ def fit_whole_runs(case: Case, now: ScoredModel) -> ScoredModel:
 
     All errors weigh alike: the autocorrelation of what short runs leave takes a slow drift away for noise.
     """
-    shooting = case.cut_learned_runs(case.longest).with_noise(case.scale.white_error(now.model.fit))
-    model = case.fit_over(shooting, now)
-    return ScoredModel(model, shooting.with_past(model.fit.states)) if case.search.sensible(model) else now
+    model = case.fit_over(case.longest, now, case.scale.white_error(now.fit))
+    return model.with_own_past() if case.search.sensible(model) else now
 
 
 def complete_on_whole_runs(case: Case, as_read: ScoredModel, verdict: Verdict) -> Verdict:
@@ -136,14 +135,14 @@ def complete_on_whole_runs(case: Case, as_read: ScoredModel, verdict: Verdict) -
     if verdict.word == "unnamed" or not grows_along_runs(case, found):
         return verdict
     whole = fit_whole_runs(case, found)
-    whole = score(whole.shooting, whole.model)
-    own_error = case.scale.excess(whole.model.fit) < CRITERIA.model_error
+    whole = score(whole)
+    own_error = case.scale.excess(whole.fit) < CRITERIA.model_error
     if own_error or case.leaves_noise(whole):
         return verdict
-    named, rivals = select_forward(search, whole, len(found.model.parts) + 1)
+    named, rivals = select_forward(search, whole, len(found.parts) + 1)
     if named is whole:
         return verdict
-    tried = [one for one in rivals if len(one.model.parts) == len(named.model.parts)]
+    tried = [rival for rival in rivals if len(rival.parts) == len(named.parts)]
     left = [(free_run_error(case, one), one) for one in (named, *tried[:MOST_NEAR])]
     least, before = min(error for error, _ in left), min(free_run_error(case, one) for one in (found, whole))
     closed = (np.sqrt(before) - np.sqrt(least)) / np.sqrt(free_run_error(case, as_read))
@@ -153,7 +152,7 @@ def complete_on_whole_runs(case: Case, as_read: ScoredModel, verdict: Verdict) -
     beside, proof = prove_held_out(case, whole, more, as_read), prove_held_out(case, as_read, more)
     if not beside.bears_out or not proof.bears_out:
         return verdict
-    return replace(verdict, word=more.word, found=more, rivals=(found, *tried, *verdict.rivals), proof=proof)
+    return verdict.with_model(more, proof, *tried)
 
 
 def without_small(case: Case, as_read: ScoredModel, verdict: Verdict) -> Verdict:
@@ -162,18 +161,18 @@ def without_small(case: Case, as_read: ScoredModel, verdict: Verdict) -> Verdict
     The gap is that of unseen data above the sensors' noise; data that run alike without it say nothing.
     """
     found, proof = verdict.found, verdict.proof
-    if not found.model.parts or not proof or case.leaves_noise(found) or is_uninformative(case, as_read, found):
+    if not found.parts or not proof or case.leaves_noise(found) or is_uninformative(case, as_read, found):
         return verdict
     size = gap_size(proof.before, proof.after, case.noise_floor(found.noise.size), case.measured.channels, proof.test)
     if 1 - np.sqrt(size.unexplained) >= CRITERIA.matters:
         return verdict
-    return Verdict("no_gap", as_read, (found, *verdict.rivals), proof=proof)
+    return Verdict(as_read, (found, *verdict.rivals), proof=proof)
 
 
 def list_relatives(case: Case, now: ScoredModel, number: int) -> list[Candidate]:
     """List the simpler relatives of one of a model's explanations: at its place, of the same motion."""
-    own = now.model.parts[number].candidate
-    names, present = RELATIVES.get(own.name, ()), now.model.explanations
+    own = now.parts[number].candidate
+    names, present = RELATIVES.get(own.name, ()), now.explanations
     found = []
     for one in case.search.candidates:
         if one.name not in names or one.identity in present:
@@ -188,13 +187,13 @@ def list_relatives(case: Case, now: ScoredModel, number: int) -> list[Candidate]
 def in_its_place(case: Case, now: ScoredModel, number: int, relative: Candidate) -> ScoredModel | None:
     """Return a model with a relative in the place of one of its explanations; None where it does not fit."""
     search, fewer = case.search, case.search.without(now, number)
-    scores = search.scorer(fewer.shooting, fewer.model).scores((relative,))
+    scores = search.scorer(fewer).scores((relative,))
     if not scores:
         return None
-    parts = [*fewer.model.parts]
-    parts.insert(number, Part(scores[0].candidate, scores[0].values))
-    model = fewer.model.refitted(now.shooting, tuple(parts), now.model.fit.starts, TURNS)
-    return ScoredModel(model, now.shooting, now.gained) if search.sensible(model) else None
+    parts = [*fewer.parts]
+    parts.insert(number, scores[0])
+    model = fewer.refitted(now.shooting, tuple(parts), now.fit.starts, TURNS)
+    return replace(model, gained=now.gained) if search.sensible(model) else None
 
 
 def is_needed(case: Case, relative: ScoredModel, general: ScoredModel) -> bool:
@@ -205,5 +204,5 @@ def is_needed(case: Case, relative: ScoredModel, general: ScoredModel) -> bool:
     proof = prove(case, first, second, second)
     if proof.bears_out:
         return True
-    left = [cross_validated(case.scale, one, one.model.parts) for one in (first, second)]
+    left = [cross_validated(case.scale, one, one.parts) for one in (first, second)]
     return proof.test.fall > 0 and errs_more(*left) < ALPHA

@@ -15,6 +15,8 @@ from gaitdisc.errors import SamplingError
 from gaitdisc.recording.arrays import Values
 from gaitdisc.simulation.compiled_simulation import Drive, Rows
 
+FEWEST_SAMPLES = 16  # of a segment
+
 
 @dataclass(frozen=True)
 class Segments:

@@ -24,7 +24,7 @@ from gaitdisc.simulation.measured import Measured
 
 DAMPING = 1e-3
 MOST_DAMPING = 1e6
-NUDGE = 1e-5
+NUDGE = 1e-5  # of states and constants, as a share of their size, for slopes
 STUCK = 5.0  # times the median misfit of a segment
 FREED = 0.5  # of their misfit, which another start must leave at most
 TURNS, FEW_TURNS = 12, 6
@@ -43,7 +43,6 @@ class Shooting:
     past: Values | None = None
     prior: Prior = field(default_factory=Prior)  # of the parameters that have bounds and are fitted
     record_filter: RecordFilter | None = None
-    nudge: float = NUDGE  # of states and constants, as a share of their size, for slopes
 
     @cached_property
     def seen(self) -> Values:
@@ -131,7 +130,7 @@ class Shooting:
         """
         n, index = starts.shape[1], [machine.parameters.index(name) for name in free]
         spans = np.maximum(np.abs(starts).max(axis=0), 1e-3)
-        nudges = self.nudge * np.concatenate([spans, np.maximum(np.abs(values[index]), 1e-2)])
+        nudges = NUDGE * np.concatenate([spans, np.maximum(np.abs(values[index]), 1e-2)])
         many_starts = np.repeat(starts[None], 1 + len(nudges), axis=0)
         many_values = np.repeat(values[None], 1 + len(nudges), axis=0)
         for state in range(n):

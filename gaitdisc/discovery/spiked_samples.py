@@ -12,6 +12,7 @@ import numpy as np
 from numpy.lib.stride_tricks import sliding_window_view
 from numpy.typing import NDArray
 
+from gaitdisc.discovery.noise import MAD_OF_NORMAL
 from gaitdisc.recording import Finding
 from gaitdisc.recording.arrays import Values, runs
 from gaitdisc.simulation.measured import Measured
@@ -30,7 +31,6 @@ SHOULDER = 10.0  # robust standard deviations by which the sample before or afte
 OF_LEAP = 0.05  # of the leap
 ENDS = 7  # samples of which a line continues the record
 LISTED = 3  # trials of a channel that the finding names
-MAD_OF_NORMAL = 1.4826
 
 
 def without_spikes(measured: Measured) -> Measured:

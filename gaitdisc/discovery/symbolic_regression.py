@@ -15,7 +15,6 @@ from functools import cached_property
 import numpy as np
 
 from gaitdisc.discovery.candidate import UNNAMED, Candidate
-from gaitdisc.discovery.candidate_model import Part
 from gaitdisc.discovery.case import Case
 from gaitdisc.discovery.catalogue import Shape, read_shapes
 from gaitdisc.discovery.criteria import CRITERIA
@@ -23,7 +22,7 @@ from gaitdisc.discovery.decision import Verdict, prove_held_out
 from gaitdisc.discovery.fitted_shape import find_cost, fit_shape
 from gaitdisc.discovery.gap_share import cross_validated
 from gaitdisc.discovery.grids import cells
-from gaitdisc.discovery.scored_model import ScoredModel, score
+from gaitdisc.discovery.scored_model import Part, ScoredModel, score
 from gaitdisc.discovery.search import Search
 from gaitdisc.recording.arrays import Values
 from gaitdisc.simulation.evaluating import Points, evaluate_many
@@ -58,20 +57,20 @@ def read_shape(case: Case, as_read: ScoredModel, verdict: Verdict) -> Verdict:
         2001.04385 (a learned term of an equation, read by regression).
     """
     shape = verdict.found
-    if verdict.word != UNNAMED or len(shape.model.parts) != 1 or not verdict.proof:
+    if verdict.word != UNNAMED or len(shape.parts) != 1 or not verdict.proof:
         return verdict
     search, scale = case.search, case.scale
     plain = cross_validated(scale, shape, ())
     if not np.isfinite(plain.gap):
         return verdict
-    begun = ScoredModel(plain.model, shape.shooting)
+    begun = replace(plain, shooting=shape.shooting)
     readings = [cross_validated(scale, begun, (part,)) for part in _readings(search, shape)]
-    readings = [one for one in readings if search.sensible(one.model)]
+    readings = [reading for reading in readings if search.sensible(reading)]
     for one in sorted(readings, key=lambda one: find_cost(one, plain)):
-        found = score(shape.shooting, one.model)
+        found = score(replace(one, shooting=shape.shooting))
         proof = prove_held_out(case, as_read, found)
         if proof.bears_out and proof.closed >= CRITERIA.reading * verdict.proof.closed:
-            reads_as = find_effect(search, one.model.parts[0].candidate)
+            reads_as = find_effect(search, one.parts[0].candidate)
             return replace(verdict, found=found, proof=proof, read=True, reads_as=reads_as)
     return verdict
 
@@ -83,8 +82,8 @@ def read_instead(case: Case, as_read: ScoredModel, verdict: Verdict) -> Verdict:
     that leave mere noise are never given up.
     """
     named = verdict.found
-    places = [part.candidate.place for part in named.model.parts if part.candidate.verdict == "missing_physics"]
-    if named.model.size < FEWEST_NUMBERS or len(set(places)) == len(places):
+    places = [part.candidate.place for part in named.parts if part.candidate.verdict == "missing_physics"]
+    if named.size < FEWEST_NUMBERS or len(set(places)) == len(places):
         return verdict
     twice = len(set(named.labels)) < len(named.labels)
     if case.leaves_noise(named) and not twice:
@@ -93,20 +92,20 @@ def read_instead(case: Case, as_read: ScoredModel, verdict: Verdict) -> Verdict:
     if shape is None:
         return verdict
     proof = prove_held_out(case, as_read, shape)
-    instead = read_shape(case, as_read, Verdict(UNNAMED, shape, (named, *verdict.rivals), proof=proof))
-    less = instead.read and instead.found.model.size < named.model.size
+    instead = read_shape(case, as_read, Verdict(shape, (named, *verdict.rivals), proof=proof))
+    less = instead.read and instead.found.size < named.size
     return instead if less and prove_held_out(case, named, instead.found, as_read).bears_out else verdict
 
 
 def find_effect(search: Search, candidate: Candidate) -> str:
     """Return the name of the catalogue's effect that a reading is, or nothing."""
     alike = (one for one in search.candidates if (one.kind, one.place) == (candidate.kind, candidate.place))
-    return next((one.name for one in alike if one.pieces == candidate.pieces), "")
+    return next((effect.name for effect in alike if effect.pieces == candidate.pieces), "")
 
 
 def _readings(search: Search, shape: ScoredModel) -> Iterator[Part]:
     """Yield what a shape may read as, with numbers to begin from; itself, where it has few pieces."""
-    (part,) = shape.model.parts
+    (part,) = shape.parts
     if len(part.candidate.pieces) <= len(TRIED):
         yield part
     place = next(one for one in search.places if (one.kind, one.name) == (part.candidate.kind, part.candidate.place))
@@ -177,8 +176,8 @@ class _Curve:
         points = self._points
         along = evaluate_many(self.search.base, [self.motion[0]], points)[0]
         pieces = list(self._pieces(along))
-        (part,) = self.shape.model.parts
-        values = evaluate_many(self.search.base, [part.term, *(one.at for one in pieces)], points).T
+        (part,) = self.shape.parts
+        values = evaluate_many(self.search.base, [part.term, *(piece.at for piece in pieces)], points).T
         size = np.linalg.norm(values, axis=0)
         good = np.flatnonzero(np.isfinite(size[1:]) & (size[1:] > 0))
         return [pieces[i] for i in good], values[:, 1 + good], values[:, 0]
@@ -188,7 +187,7 @@ class _Curve:
         """Samples of the runs, spread over all of them."""
         shooting, known = self.shape.shooting, len(self.search.base.states)
         segments, drive = shooting.segments, shooting.measured.drive
-        states = self.shape.model.fit.states[..., :known].reshape(-1, known)
+        states = self.shape.fit.states[..., :known].reshape(-1, known)
         time = segments.times(drive).ravel()
         some = slice(None, None, max(len(states) // MOST_SAMPLES, 1))
         inputs = segments.of(drive.inputs).reshape(len(states), -1)
@@ -197,7 +196,7 @@ class _Curve:
     def _pieces(self, along: Values) -> Iterator[Piece]:
         """Pieces over the position, over its rate, over both, and products of one and the other."""
         rate = self.motion[1]
-        angle = any(one.motions[0] == self.motion and one.angle for one in self.search.places)
+        angle = any(place.motions[0] == self.motion and place.angle for place in self.search.places)
         known = [
             one for one in read_shapes() if len(one.pieces) == 1 and not one.states and "delay" not in one.pieces[0]
         ]

@@ -104,14 +104,14 @@ def compute_pass(tracked: Tracked, kinematics: Path, progress: Callable[[str], N
     pulls = arms * motion.forces[:, :, None]
     muscles = np.array([name in engine.paths for name in motion.actuators])
     groups = {}
-    for k, one in enumerate(engine.coordinates):
+    for k, coordinate in enumerate(engine.coordinates):
         if k in engine.base or not muscles.any():
             continue
         mean = arms[:, :, k].mean(axis=0) * muscles
         for sign, word in SIDES:
             own = sign * mean > LEAST_ARM_M
             if own.any():
-                groups[f"{one.name}_{word}_muscles"] = pulls[:, own, k].sum(axis=1)
+                groups[f"{coordinate.name}_{word}_muscles"] = pulls[:, own, k].sum(axis=1)
     return Pass(engine, motion, tracked.lowpass_hz, demanded, pulls, groups)
 
 
@@ -128,7 +128,9 @@ def moments_of_angle_noise(walk: Pass, noise_deg: float | None) -> Values:
 def with_angle_noise(walk: Pass, noise_deg: float, rng: np.random.Generator) -> Pass:
     """Return a walk whose angles have noise of a size [deg] that went through the record's low-pass."""
     motion, spare = walk.motion, int(walk.motion.rate_hz)
-    sizes = [np.radians(noise_deg) if one.unit == "rad" else noise_deg * MM for one in walk.engine.coordinates]
+    sizes = [
+        np.radians(noise_deg) if coordinate.unit == "rad" else noise_deg * MM for coordinate in walk.engine.coordinates
+    ]
     white = rng.normal(size=(len(motion.time) + 2 * spare, len(sizes)))
     noise = sosfiltfilt(walk.sections, white, axis=0)
     noise *= sizes / noise.std(axis=0)

@@ -81,7 +81,7 @@ class TwinSource:
         number: of the record, which seeds what is drawn
         returns: None where a free run leaves the record
         """
-        case, measured, model = self.case, self.case.measured, self.now.model
+        case, measured, model = self.case, self.case.measured, self.now
         erring, seen = with_drawn_errors(measured, case.search.base, number), np.full_like(measured.observed, np.nan)
         for trial, samples in enumerate(map(int, measured.samples)):
             whole = replace(case.shooting(Segments(np.array([trial]), np.array([0]), samples)), measured=erring)
@@ -135,7 +135,7 @@ def search_twins(
     model: the simulation that was searched
     """
     case, as_read, verdict = explained
-    acts = verdict.found.model.parts and found.verdict not in RANDOM
+    acts = verdict.found.parts and found.verdict not in RANDOM
     models = [verdict.found, as_read] if acts else [as_read]
     sources = [TwinSource(case, now, verdict.found.noise) for now in models]
     if any(source.draw(0) is None for source in sources):
@@ -155,7 +155,7 @@ def search_records(records: Sequence[tuple[TwinSource, int]], model: Simulation,
     """
     rule, pending, begun = replace(request, effects=(), twins=0, progress=lambda _: None), None, time.perf_counter()
     for done, (source, number) in enumerate(records, 1):
-        answer = recall(f"record {number}", source.now.model.fit.values.tobytes())
+        answer = recall(f"record {number}", source.now.fit.values.tobytes())
         if answer is None:
             pending = pending or _search_side_by_side(records[done - 1 :], model, rule)
             answer = next(pending)

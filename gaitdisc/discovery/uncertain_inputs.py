@@ -16,12 +16,11 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from gaitdisc.discovery.candidate import UNNAMED
-from gaitdisc.discovery.candidate_model import Part
 from gaitdisc.discovery.case import FEWEST_SAMPLES, Case
 from gaitdisc.discovery.criteria import CRITERIA
 from gaitdisc.discovery.decision import Verdict
 from gaitdisc.discovery.effect_words import spoken
-from gaitdisc.discovery.fitted import Fitted, start_basis, without
+from gaitdisc.discovery.fitted import find_basis, without
 from gaitdisc.discovery.held_out import Proof, prove
 from gaitdisc.discovery.input_errors import wandering
 from gaitdisc.discovery.linearised import carry_change, linearise, propagate_push
@@ -29,7 +28,7 @@ from gaitdisc.discovery.noise import white_noise
 from gaitdisc.discovery.paired_test import PairedTest, errors_rise_p
 from gaitdisc.discovery.places import Place
 from gaitdisc.discovery.process_noise import MOST_NUMBERS, sensor_covariance
-from gaitdisc.discovery.scored_model import ScoredModel
+from gaitdisc.discovery.scored_model import Part, ScoredModel
 from gaitdisc.discovery.search import is_certain
 from gaitdisc.discovery.shooting import Shooting
 from gaitdisc.recording import Finding
@@ -60,13 +59,13 @@ class Weighed:
     @property
     def squares(self) -> float:
         """Sum of squares of what it was fitted to, and of the prior."""
-        fit = self.now.model.fit
+        fit = self.now.fit
         return float((self.learned**2).sum() + (fit.prior.left(fit.values) ** 2).sum())
 
     @property
     def criterion(self) -> float:
         """Information criterion (BIC) at the stated size of the errors."""
-        return self.squares + self.now.model.size * float(np.log(self.learned.size))
+        return self.squares + self.now.size * float(np.log(self.learned.size))
 
     @property
     def level(self) -> float:
@@ -91,12 +90,12 @@ def weigh_input_errors(case: Case, verdict: Verdict) -> tuple[Case, Verdict]:
 
 def without_names(verdict: Verdict, named: ScoredModel, now: ScoredModel) -> tuple[Verdict, str]:
     """Return the verdict on a model that names less than another, and what it does not name, in words."""
-    before, after = (Counter(part.candidate.label for part in one.model.parts) for one in (named, now))
+    before, after = (Counter(part.candidate.label for part in one.parts) for one in (named, now))
     dropped = ["process noise"] * bool(verdict.process_noise)
     dropped += [f"{spoken(one.partition('@')[0])} at {one.partition('@')[2]}" for one in (before - after).elements()]
-    same, word = now.labels == verdict.found.labels, now.word if now.model.parts else "no_gap"
+    same = now.labels == verdict.found.labels
     rivals, read = verdict.rivals if same else (verdict.found, *verdict.rivals), verdict.read and same
-    verdict = replace(verdict, word=word, found=now, rivals=rivals, read=read, process_noise=None)
+    verdict = replace(verdict, found=now, rivals=rivals, read=read, process_noise=None)
     return verdict, listing(dropped) if dropped else ""
 
 
@@ -104,18 +103,19 @@ def likeliest(case: Case, verdict: Verdict) -> Weighed:
     """Return what was found, weighed; or a rival of random pushes or of a shape without a name, which absorb errors."""
     # as many numbers as a covariance can be made of
     found = cut_short(case, verdict.found, max(MOST_NUMBERS // len(case.measured.channels), FEWEST_SAMPLES))
-    tried = [one.model.parts for one in verdict.rivals[:RIVALS]]
+    tried = [rival.parts for rival in verdict.rivals[:RIVALS]]
     tried += [
-        (Part(one, part.values),)  # what a shape reads as
-        for part in found.model.parts
-        for one in case.search.candidates
-        if (one.name, one.place, one.pieces) == (verdict.reads_as, part.candidate.place, part.candidate.pieces)
+        (Part(candidate, part.values),)  # what a shape reads as
+        for part in found.parts
+        for candidate in case.search.candidates
+        if (candidate.name, candidate.place, candidate.pieces)
+        == (verdict.reads_as, part.candidate.place, part.candidate.pieces)
     ]
     tried = tried if verdict.process_noise or verdict.word == UNNAMED else []
     models = [case.search.with_others(found, parts) for parts in tried]
-    models = [one for one in models if case.search.sensible(one.model)]
+    models = [model for model in models if case.search.sensible(model)]
     ordered = sorted((weighed(case, one) for one in (found, *models)), key=lambda one: one.criterion)
-    named = [one for one in ordered if one.now.model.parts and one.now.word != UNNAMED]
+    named = [one for one in ordered if one.now.parts and one.now.word != UNNAMED]
     return next((one for one in named if one.criterion < ordered[0].criterion + CRITERIA.tie), ordered[0])
 
 
@@ -123,9 +123,8 @@ def cut_short(case: Case, now: ScoredModel, samples: int) -> ScoredModel:
     """Return a model fitted to runs of no more samples."""
     if now.shooting.segments.span <= samples:
         return now
-    shooting = case.cut_learned_runs(samples).with_noise(now.noise)
-    model = case.fit_over(shooting, now)
-    return ScoredModel(model, shooting.with_past(model.fit.states), now.gained)
+    model = case.fit_over(samples, now, now.noise)
+    return replace(model.with_own_past(), gained=now.gained)
 
 
 def beyond_errors(case: Case, now: Weighed) -> tuple[ScoredModel, Proof | None]:
@@ -134,10 +133,10 @@ def beyond_errors(case: Case, now: Weighed) -> tuple[ScoredModel, Proof | None]:
     All together also take half of what the simulation as read leaves of unseen data beyond the stated errors.
     """
     base, proof = weighed(case, case.search.with_others(now.now, ())), None
-    while now.now.model.parts:
-        parts = range(len(now.now.model.parts))
-        fewer = [weighed(case, case.search.without(now.now, one)) for one in parts] if len(parts) > 1 else [base]
-        tests = [tested(case, one, now) for one in (*fewer, base)]
+    while now.now.parts:
+        parts = range(len(now.now.parts))
+        fewer = [weighed(case, case.search.without(now.now, number)) for number in parts] if len(parts) > 1 else [base]
+        tests = [tested(case, model, now) for model in (*fewer, base)]
         proof = replace(prove(case, base.now, now.now, now.now), test=tests[-1])
         excess = float((base.held_out**2).sum()) - (base.held_out != 0).sum()  # beyond the stated errors
         if tests[-1].fall >= CRITERIA.half * excess and all(one.bears_out for one in tests):
@@ -158,23 +157,23 @@ def tested(case: Case, before: Weighed, now: Weighed) -> PairedTest:
         np.array([(part**2).sum() for run in one.held_out for part in np.array_split(run, pieces)])
         for one in (now, before)
     ]
-    numbers = now.now.model.size - before.now.model.size
+    numbers = now.now.size - before.now.size
     gained = (before.squares - now.squares) / max(now.level, 1.0) - numbers * np.log(now.learned.size)
-    worth = gained > CRITERIA.margin and now.plain < before.plain and is_certain(now.now.model)
+    worth = gained > CRITERIA.margin and now.plain < before.plain and is_certain(now.now)
     p, fall = errors_rise_p(*squares) if worth else 1.0, float((squares[1] - squares[0]).sum())
     return PairedTest(p, len(squares[0]), fall, case.alpha)
 
 
 def weighed(case: Case, now: ScoredModel) -> Weighed:
     """Estimate a model's numbers under the stated errors of inputs (Gauss-Newton), and weigh what it leaves."""
-    fit = now.model.fit
+    fit = now.fit
     size = case.noise_floor(now.noise.size)
     left = whitener(case, now, now.shooting, fit.starts, size)
 
     def rows(values: Values) -> Values:
         return np.concatenate([left(values).ravel(), fit.prior.left(values)])
 
-    columns = [now.model.machine.parameters.index(name) for name in fit.free]
+    columns = [now.machine.parameters.index(name) for name in fit.free]
     error = np.sqrt(np.abs(np.diag(fit.covariance)))
     steps = NUDGE * np.where(error > 0, error, 1.0)
     values, here, slopes = fit.values, rows(fit.values), np.zeros((0, 0))
@@ -185,18 +184,20 @@ def weighed(case: Case, now: ScoredModel) -> Weighed:
         move = np.zeros(len(values))
         move[columns] = -np.linalg.lstsq(slopes, here, rcond=None)[0]
         tried = (fit.prior.within(values + share * move) for share in HALVED)
-        tried = (one for one in tried if case.search.sensible(now.model.with_estimates(one, fit.covariance)))
-        better = next(((one, found) for one in tried if ((found := rows(one)) ** 2).sum() < (here**2).sum()), None)
+        tried = (numbers for numbers in tried if case.search.sensible(now.with_estimates(numbers, fit.covariance)))
+        better = next(
+            ((numbers, left_over) for numbers in tried if ((left_over := rows(numbers)) ** 2).sum() < (here**2).sum()),
+            None,
+        )
         if better is None:
             break
         gained, (values, here) = (here**2).sum() - (better[1] ** 2).sum(), better
         if gained < ENOUGH:
             break
     level = max(float((here**2).sum()) / max(int((here != 0).sum()), 1), 1.0)
-    model = now.model.with_estimates(values, np.asarray(level * np.linalg.pinv(slopes.T @ slopes), float))
-    now = replace(now, model=model)
+    now = now.with_estimates(values, np.asarray(level * np.linalg.pinv(slopes.T @ slopes), float))
     held = prove(case, now, now, now).after
-    shooting = replace(case.shooting(held.segments), past=now.shooting.past)
+    shooting = replace(case.shooting(held.shooting.segments), past=now.shooting.past)
     unseen = whitener(case, now, shooting, held.fit.starts, size)(values)
     return Weighed(now, left(values), unseen, float(np.nanmean((held.fit.residual / size) ** 2)))
 
@@ -216,21 +217,22 @@ def whitener(
     measured = known.reshape(len(known), -1)
 
     def left(values: Values) -> Values:
-        fit = shooting.at(now.model.machine, (), values, starts)
-        inputs = covariance_by_inputs(case, now, shooting, fit) * measured[:, :, None] * measured[:, None]
+        fit = shooting.at(now.machine, (), values, starts)
+        inputs = covariance_by_inputs(case, replace(now, shooting=shooting, fit=fit))
+        inputs = inputs * measured[:, :, None] * measured[:, None]
         columns = np.concatenate([np.nan_to_num(fit.residual).reshape(*measured.shape, 1), fit.slopes], axis=2)
         white = np.asarray(np.linalg.solve(np.linalg.cholesky(sensors + inputs), columns), np.float64)
-        return without(start_basis(white[..., 1:]), white[..., :1]).reshape(known.shape)
+        return without(find_basis(white[..., 1:]), white[..., :1]).reshape(known.shape)
 
     return left
 
 
-def covariance_by_inputs(case: Case, now: ScoredModel, shooting: Shooting, fit: Fitted) -> Values:
+def covariance_by_inputs(case: Case, model: ScoredModel) -> Values:
     """Return the covariance that the stated errors of inputs make in what is seen (run, number, number)."""
-    erring, segments = wandering(case.search.base), shooting.segments
+    erring, segments = wandering(case.search.base), model.shooting.segments
     late = np.abs(np.subtract.outer(*2 * [np.arange(segments.length)])) / case.measured.rate
-    moved = propagate_inputs(now, shooting, fit, [one.name for _, one in erring], np.eye(segments.length))
-    total = np.zeros((len(segments), *2 * [fit.residual[0].size]))
+    moved = propagate_inputs(model, [one.name for _, one in erring], np.eye(segments.length))
+    total = np.zeros((len(segments), *2 * [model.fit.residual[0].size]))
     for seen, (column, one) in zip(moved, erring, strict=True):
         flat = seen.reshape(len(segments), -1, segments.length)
         memory = np.exp(-late / (one.wander or np.inf))
@@ -242,78 +244,80 @@ def covariance_by_inputs(case: Case, now: ScoredModel, shooting: Shooting, fit: 
     return total
 
 
-def propagate_inputs(now: ScoredModel, shooting: Shooting, fit: Fitted, names: list[str], hats: Values) -> list[Values]:
+def propagate_inputs(model: ScoredModel, names: list[str], hats: Values) -> list[Values]:
     """Return what errors of each of some inputs change in what is seen (run, sample, channel, knot), to first order.
 
     hats (sample, knot): the error that each knot stands for
     """
-    places = tuple(Place("input", one, (), (), (), False) for one in names)
-    line = linearise(shooting, now.model.simulation, places, fit)
-    direct = propagate_push(shooting, now.model.simulation, places, fit)
-    push, moved = np.broadcast_to(hats, (len(fit.starts), *hats.shape)), []
+    places = tuple(Place("input", name, (), (), (), False) for name in names)
+    line, direct = linearise(model, places), propagate_push(model, places)
+    push, moved = np.broadcast_to(hats, (len(model.fit.starts), *hats.shape)), []
     for number in range(len(places)):
-        seen = carry_change(shooting, now.model.machine, fit, line.of_push(number, push))
-        moved.append(seen + shooting.filtered(direct[:, :, :, number, None] * hats[:, None, :], 1))
+        seen = carry_change(model, line.of_push(number, push))
+        moved.append(seen + model.shooting.filtered(direct[:, :, :, number, None] * hats[:, None, :], 1))
     return moved
 
 
 def weigh_unstated_errors(case: Case, verdict: Verdict) -> tuple[Case, Verdict]:
     """Return a verdict without each name that errors of inputs of unknown size explain as well: gains and wanders."""
     found, search = verdict.found, case.search
-    erring = [one.name for one in search.base.driving if not (one.sd or one.gain or one.wraps)]
+    erring = [signal.name for signal in search.base.driving if not (signal.sd or signal.gain or signal.wraps)]
     if not erring or not names_in(found):
         return case, verdict
     kept = cut_short(case, found, round(case.rhythm.samples))  # along long runs such errors are not linear
     best, now = beside_errors(case, kept, erring)
     while names := names_in(kept):
         fewer = [search.without(kept, number) for number in names]
-        tried = [(*beside_errors(case, one, erring), one) for one in fewer]
+        tried = [(*beside_errors(case, model, erring), model) for model in fewer]
         least, gained, less = min(tried, key=lambda one: one[0])
         if least - best > CRITERIA.margin:
             break
         best, now, kept = min(least, best), gained, less
-    if len(kept.model.parts) == len(found.model.parts):
+    if len(kept.parts) == len(found.parts):
         return case, verdict
     now = case.lengthen(now)
     bare = search.with_others(now, ())
     proof = prove(case, bare, now, now)
     now = now if proof.bears_out else bare
     # errors that wander are others on unseen data: what takes half of these, and no gain takes as well, is none of them
-    if not now.model.parts and verdict.proof and verdict.proof.closed > CRITERIA.half:
+    if not now.parts and verdict.proof and verdict.proof.closed > CRITERIA.half:
         return case, verdict
     verdict, dropped = without_names(replace(verdict, proof=proof), found, now)
-    what = f"unstated errors of {listing([repr(one) for one in erring])} explain {dropped} as well"
+    what = f"unstated errors of {listing([repr(name) for name in erring])} explain {dropped} as well"
     finding = Finding("note", "unstated errors", case.measured.source, what, "the name; it is among the rivals")
     return case.noting(finding), verdict
 
 
 def names_in(now: ScoredModel) -> list[int]:
     """Return which of a model's explanations are no errors of inputs."""
-    return [number for number, part in enumerate(now.model.parts) if part.candidate.verdict != "input_error"]
+    return [number for number, part in enumerate(now.parts) if part.candidate.verdict != "input_error"]
 
 
 def beside_errors(case: Case, now: ScoredModel, erring: list[str]) -> tuple[float, ScoredModel]:
     """Return the criterion of a model whose inputs err, and the model, with their gains where these are evident."""
-    search, present = case.search, now.model.explanations
-    gains = [one for one in search.candidates if one.name == "input_gain" and one.place in erring]
-    parts = (*now.model.parts, *(Part(one, {"gain": 1.0}) for one in gains if one.identity not in present))
+    search, present = case.search, now.explanations
+    gains = [
+        candidate for candidate in search.candidates if candidate.name == "input_gain" and candidate.place in erring
+    ]
+    parts = (*now.parts, *(Part(gain, {"gain": 1.0}) for gain in gains if gain.identity not in present))
     plain, gained = criterion_with_errors(case, now, erring), search.with_others(now, parts)
-    beside = criterion_with_errors(case, gained, erring) if search.sensible(gained.model) else np.inf
+    beside = criterion_with_errors(case, gained, erring) if search.sensible(gained) else np.inf
     return min(plain, beside), gained if plain - beside > CRITERIA.margin else now
 
 
 def criterion_with_errors(case: Case, now: ScoredModel, erring: list[str]) -> float:
     """Return the information criterion of a model whose inputs err, by the size and memory that are likeliest."""
-    fit, names, period = now.model.fit, [one.name for one in case.search.base.inputs], case.rhythm.samples
+    fit, names, period = now.fit, [signal.name for signal in case.search.base.inputs], case.rhythm.samples
     some = np.unique(np.linspace(0, len(now.shooting.segments) - 1, RUNS).astype(int))
     segments = now.shooting.segments.among(some)
     noise = white_noise(case.noise_floor(now.noise.size))
     shooting = replace(now.shooting, segments=segments, prior=fit.prior).with_noise(noise)
-    fit = shooting.at(now.model.machine, fit.free, fit.values, fit.starts[some])
+    fit = shooting.at(now.machine, fit.free, fit.values, fit.starts[some])
     at = np.linspace(0, segments.length - 1, int(np.clip(KNOTS_EACH * segments.length / period, *KNOTS)))
     hats = np.array([np.interp(np.arange(segments.length), at, one) for one in np.eye(len(at))]).T
     driven = segments.of(case.measured.drive.inputs)[:, at.round().astype(int)]
-    moved = [shooting.whiten(one) for one in propagate_inputs(now, shooting, fit, erring, hats)]
+    errors = propagate_inputs(replace(now, shooting=shooting, fit=fit), erring, hats)
+    moved = [shooting.whiten(error) for error in errors]
     pairs = [(one, driven[..., names.index(name)]) for one, name in zip(moved, erring, strict=True)]
     numbers, best = int(shooting.known.sum()) - fit.starts.size, np.inf
     for periods in PERIODS:
@@ -321,4 +325,4 @@ def criterion_with_errors(case: Case, now: ScoredModel, erring: list[str]) -> fl
         gains, wanders = zip(*((one @ each[..., None], each.std() * one @ wander) for one, each in pairs), strict=True)
         beside = fit.beside(np.concatenate([*gains, *wanders], axis=2))
         best = min(best, *(beside.likelihood(share**2, numbers, least=1.0)[0] for share in SHARES))
-    return best + now.model.size * float(np.log(numbers))
+    return best + now.size * float(np.log(numbers))

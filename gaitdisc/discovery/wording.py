@@ -6,7 +6,7 @@ import math
 import re
 from dataclasses import replace
 
-from gaitdisc.discovery.candidate_model import Part
+from gaitdisc.discovery.candidate import SIGNAL_ERRORS
 from gaitdisc.discovery.criteria import CRITERIA
 from gaitdisc.discovery.effect_words import (
     amount,
@@ -22,6 +22,7 @@ from gaitdisc.discovery.effect_words import (
     would_distinguish,
 )
 from gaitdisc.discovery.result import Discovery, Estimate, FoundEffect, GapSize, Whereabouts
+from gaitdisc.discovery.scored_model import Part
 from gaitdisc.simulation.simulation import Simulation
 
 FEW = 12  # independent samples of held-out data
@@ -63,7 +64,7 @@ def _say(discovery: Discovery, base: Simulation, parts: tuple[Part, ...]) -> str
     if discovery.verdict == "process_noise":
         where = at_place(effects[0].kind, effects[0].place)
         push = estimate_text(effects[0].estimates["strength"])
-        alone = discovery.held_out is not None and discovery.held_out.of.endswith("quarter")
+        alone = discovery.held_out.of.endswith("quarter")
         repeats = (
             "one trial cannot show whether a deterministic effect is missing"
             if alone
@@ -89,13 +90,13 @@ def _say_given(discovery: Discovery) -> str:
         return ""
     bear = "support it" if discovery.given == "proven" else "do not support it"
     said = f"The effect was given, not searched: the held-out data {bear} ({_chance(discovery.held_out)})."
-    idle = [named_at(one) for one in discovery.effects if one.small]
+    idle = [named_at(effect) for effect in discovery.effects if effect.small]
     return f"{said} They do not need {' or '.join(idle)} in addition to the others." if idle else said
 
 
 def _nothing(discovery: Discovery) -> str:
     """Say that nothing is named, and whether the data that were learned from speak for something all the same."""
-    stated = next((one.what for one in discovery.findings if one.kind.endswith("stated errors")), "")
+    stated = next((finding.what for finding in discovery.findings if finding.kind.endswith("stated errors")), "")
     if stated and discovery.verdict == "no_gap":
         return f"No effect is named: {stated}."
     first = discovery.rivals[0] if discovery.rivals else None
@@ -126,10 +127,10 @@ def _nothing(discovery: Discovery) -> str:
 
 def _removes_most(discovery: Discovery) -> str:
     """Say which of the listed explanations removes most of the held-out error beyond chance."""
-    for one in discovery.explanations:
-        size = one.held_out
+    for explanation in discovery.explanations:
+        size = explanation.held_out
         if size and size.p < size.alpha and size.unexplained < 1:
-            effects = " and ".join(named_at(each) for each in one.effects)
+            effects = " and ".join(named_at(effect) for effect in explanation.effects)
             closed = f"{100 * (1 - size.unexplained):.0f} % of the squared held-out error above the noise"
             return f" Of those listed, {effects} removes most: {closed}. New trials can test it."
     return ""
@@ -161,20 +162,13 @@ def _one(effect: FoundEffect, part: Part, base: Simulation, where: tuple[Whereab
 
 def _signal(name: str, estimate: Estimate) -> str:
     """Say what is wrong with a signal."""
-    if name == "input_gain":
-        return f"acts {estimate_text(estimate)} times as strongly as recorded"
-    if name == "sensor_gain":
-        like = next((words for factor, words in OTHER_UNITS if abs(estimate.value / factor - 1) < UNIT_SLACK), "")
-        return f"reads {estimate_text(estimate)} times the true value{like}"
-    low = estimate.value < 0
-    size = estimate_text(Estimate(-estimate.value, -estimate.high, -estimate.low, estimate.unit) if low else estimate)
-    if name == "sensor_lag":
-        return f"lags by {size}"
-    if name == "input_lag":
-        return f"acts through a first-order lag of {size}"
-    if name == "input_delay":
-        return f"acts earlier than recorded, by {size}" if low else f"acts later than recorded, by {size}"
-    return f"{'reads' if name == 'sensor_offset' else 'drifts'} {'low' if low else 'high'} by {size}"
+    error, low = SIGNAL_ERRORS[name], estimate.value < 0
+    if error.slot == "gain":
+        units = OTHER_UNITS if name == "sensor_gain" else ()
+        like = next((words for factor, words in units if abs(estimate.value / factor - 1) < UNIT_SLACK), "")
+        return error.above.format(estimate_text(estimate)) + like
+    size = Estimate(-estimate.value, -estimate.high, -estimate.low, estimate.unit) if low else estimate
+    return ((error.below if low else "") or error.above).format(estimate_text(size))
 
 
 def _missing(effect: FoundEffect, part: Part, base: Simulation, where: tuple[Whereabouts, ...]) -> str:
@@ -211,7 +205,7 @@ def _constant(estimate: Estimate, part: Part, base: Simulation) -> str:
 
 
 def _stride(effect: FoundEffect, where: tuple[Whereabouts, ...]) -> str:
-    phase = next((one.phase for one in where if one.place == effect.place and one.phase), ())
+    phase = next((place.phase for place in where if place.place == effect.place and place.phase), ())
     return f"seen between {100 * phase[0]:.0f} and {100 * phase[1]:.0f} % of the stride" if phase else ""
 
 
@@ -232,7 +226,7 @@ def _say_unnamed(effect: FoundEffect, base: Simulation, where: tuple[Whereabouts
 
 
 def _say_tied(discovery: Discovery) -> str:
-    tied = [one for one in discovery.rivals if one.tied]
+    tied = [rival for rival in discovery.rivals if rival.tied]
     if not tied or not discovery.effects:
         return ""
     names = " or ".join(named_at(one) for one in tied)
@@ -269,7 +263,11 @@ def _say_gap(discovery: Discovery) -> str:
 
 def _say_moved(discovery: Discovery) -> str:
     """Name the numbers that clearly moved within their bounds."""
-    clear = [one for one in discovery.corrections if not one.found.low <= one.given <= one.found.high]
+    clear = [
+        correction
+        for correction in discovery.corrections
+        if not correction.found.low <= correction.given <= correction.found.high
+    ]
     if not clear:
         return ""
     said = []

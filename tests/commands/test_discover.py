@@ -165,7 +165,7 @@ def test_the_answer_stands_before_its_twins_are_searched(lab, tmp_path, monkeypa
         before.append(json.loads((tmp_path / "discovery.json").read_text(encoding="utf-8")))
         return replace(found, twins=twins)
 
-    monkeypatch.setattr("gaitdisc.discovery.discover.decide", lambda _, as_read: Verdict("no_gap", as_read, ()))
+    monkeypatch.setattr("gaitdisc.discovery.discover.decide", lambda _, as_read: Verdict(as_read, ()))
     monkeypatch.setattr("gaitdisc.discovery.discover_files.search_twins", searched)
     words = (lab / "good.toml", lab / "good.csv", "--out", tmp_path, "--twins", "20", "-q")
     sentence, report, said, again = called("discover", *words, ends=0).stdout.splitlines()
@@ -197,7 +197,7 @@ def test_a_plan_says_from_which_size_on_an_effect_is_found(lab, tmp_path, monkey
 
 def test_without_a_report_and_without_progress(lab, tmp_path, monkeypatch, called):
     """Whatever is found; the search is that of the test above."""
-    monkeypatch.setattr("gaitdisc.discovery.discover.decide", lambda _, as_read: Verdict("no_gap", as_read, ()))
+    monkeypatch.setattr("gaitdisc.discovery.discover.decide", lambda _, as_read: Verdict(as_read, ()))
     words = (lab / "good.toml", lab / "good.csv", "--out", tmp_path, "--no-report", "-q")
     assert called("discover", *words, ends=0).stderr == ""
     files = ["augmented.toml", "discovery.json", "held_out.csv"]

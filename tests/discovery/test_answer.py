@@ -17,14 +17,13 @@ from gaitdisc.discovery.answer import (
     weigh_rivals,
 )
 from gaitdisc.discovery.candidate import Candidate
-from gaitdisc.discovery.candidate_model import Part, fit_model
 from gaitdisc.discovery.case import set_up_case
 from gaitdisc.discovery.criteria import CRITERIA
 from gaitdisc.discovery.decision import Verdict
 from gaitdisc.discovery.discover import discover
 from gaitdisc.discovery.process_noise import rank_process_noise
 from gaitdisc.discovery.result import Correction, Estimate
-from gaitdisc.discovery.scored_model import compared, score
+from gaitdisc.discovery.scored_model import Part, compared, fit_model, score
 from gaitdisc.simulation.measured_table import read_measured
 from gaitdisc.simulation.parts import Input, Parameter
 from gaitdisc.simulation.running import compile_simulation
@@ -43,12 +42,12 @@ SLACK = replace(
 def answered(case, as_read, named):
     now, rivals = named
     plain, *_ = compared([as_read, now])
-    return answer(case, plain, Verdict("missing_physics", now, tuple(rivals)))
+    return answer(case, plain, Verdict(now, tuple(rivals)))
 
 
 def test_the_augmented_simulation_has_the_numbers_that_were_found(answered, named):
     _, augmented = answered
-    value = named[0].model.parts[0].values["factor"]
+    value = named[0].parts[0].values["factor"]
     assert augmented.effects[0].term == f"{value:.6g}*(x**3)"
     assert augmented.parameters == mass().parameters
 
@@ -122,8 +121,8 @@ def test_the_part_of_the_stride_is_where_the_effect_is_half_as_strong_as_at_its_
 def test_random_pushes_of_a_function_are_answered(tmp_path):
     case = set_up_case(tank(), read_measured(write_record(tmp_path / "tank.csv"), tank()))
     as_read = case.as_read()
-    process_noise, *_ = rank_process_noise(as_read.shooting, as_read.model, case.search.places)
-    found, augmented = answer(case, as_read, Verdict("process_noise", as_read, (), process_noise))
+    process_noise, *_ = rank_process_noise(as_read, case.search.places)
+    found, augmented = answer(case, as_read, Verdict(as_read, (), process_noise))
     assert [(one.place, one.name) for one in found.effects] == [("leak", "process_noise")]
     assert augmented == tank()
 
@@ -132,12 +131,12 @@ def test_random_pushes_of_a_function_are_answered(tmp_path):
 def shape(case, as_read, cubic):
     """Return an answer without a name that is the truth: no effect of the catalogue but one comes near it."""
     part = Part(replace(cubic, name="unnamed"), {"factor": -14.0})
-    model = as_read.model.refitted(as_read.shooting, (part,))
-    return score(as_read.shooting, model)
+    model = as_read.refitted(as_read.shooting, (part,))
+    return score(model)
 
 
 def test_the_evidence_of_an_answer_is_its_own_and_one_of_nothing_has_none(case, as_read, shape):
-    before = fit_model(shape.shooting, case.search.base, (), shape.model.fit.starts, 15)
+    before = fit_model(shape.shooting, case.search.base, (), shape.fit.starts, 15)
     assert bic_gain(case.search, shape) == pytest.approx(before.bic - shape.bic)
     assert bic_gain(case.search, as_read) == 0.0
 
@@ -165,11 +164,11 @@ def test_one_that_is_in_the_answer_is_no_rival(case, named):
 def test_beside_one_of_two_a_rival_stands_in_the_place_of_the_other(case, as_read, cubic, named):
     drift = next(one for one in case.search.candidates if one.label == "sensor_drift@x")
     parts = (Part(cubic, {"factor": -14.0}), Part(drift, {"rate": 0.0}))
-    model = as_read.model.refitted(as_read.shooting, parts)
-    both = score(as_read.shooting, model)
+    model = as_read.refitted(as_read.shooting, parts)
+    both = score(model)
     offset = next(one for one in case.search.candidates if one.label == "sensor_offset@x")
-    other = as_read.model.refitted(as_read.shooting, (Part(offset, {"offset": 0.0}),))
-    (rival,) = weigh_rivals(case.search, both, (replace(both, model=other),), 0.0)
+    other = as_read.refitted(as_read.shooting, (Part(offset, {"offset": 0.0}),))
+    (rival,) = weigh_rivals(case.search, both, (other,), 0.0)
     assert rival.scored.labels == ("cubic_stiffness@load", "sensor_offset@x")
     assert rival.tied
 

@@ -5,10 +5,10 @@ import pytest
 from hidden_in_a_mass import MASS, mass, two_rods
 
 from gaitdisc.discovery.candidate import BENT, FLEXIBLE, Candidate, list_candidates, list_unnamed_terms, saturations
-from gaitdisc.discovery.candidate_model import Part, with_parts
 from gaitdisc.discovery.catalogue import Shape, read_shapes
 from gaitdisc.discovery.criteria import CRITERIA
 from gaitdisc.discovery.places import list_places
+from gaitdisc.discovery.scored_model import Part, with_parts
 from gaitdisc.simulation.running import compile_simulation
 from gaitdisc.simulation.simulation_file import parse_simulation
 
@@ -213,19 +213,19 @@ def test_parts_are_put_in_one_after_the_other_under_names_of_their_own():
 
 def test_the_true_explanation_is_fitted_to_its_true_number(case, as_read, cubic):
     part = Part(cubic, {"factor": 0.0})
-    model = as_read.model.refitted(as_read.shooting, (part,))
+    model = as_read.refitted(as_read.shooting, (part,))
     error = float(np.sqrt(model.fit.covariance[0, 0]))
     assert model.parts[0].values["factor"] == pytest.approx(-14.0, abs=max(4 * error, 0.1))
     assert model.names == ({"factor": "part0_factor"},)
-    assert model.fit.misfit < as_read.model.fit.misfit
+    assert model.fit.misfit < as_read.fit.misfit
 
 
 def test_a_number_more_costs_the_logarithm_of_what_was_measured(case, as_read, cubic):
-    model = as_read.model.refitted(as_read.shooting, (Part(cubic, {"factor": 0.0}),))
+    model = as_read.refitted(as_read.shooting, (Part(cubic, {"factor": 0.0}),))
     assert model.size == 1
     assert model.bic - model.fit.misfit == pytest.approx(np.log(model.fit.white.size))
 
 
 def test_without_explanations_only_the_starts_are_fitted(as_read):
-    assert as_read.model.size == 0
-    assert as_read.model.bic == as_read.model.fit.misfit
+    assert as_read.size == 0
+    assert as_read.bic == as_read.fit.misfit

@@ -4,7 +4,6 @@ import numpy as np
 import pytest
 from hidden_in_a_mass import Experiment, mass, record, with_load
 
-from gaitdisc.discovery.candidate_model import Part
 from gaitdisc.discovery.case import SHORT, hangs_on_step, set_up_case, split_in_time
 from gaitdisc.discovery.catalogue import Request, Shape
 from gaitdisc.discovery.discover import discover
@@ -12,7 +11,7 @@ from gaitdisc.discovery.folder import save_discovery
 from gaitdisc.discovery.noise import sensor_noise
 from gaitdisc.discovery.page import write_discovery_report
 from gaitdisc.discovery.record_filter import RecordFilter
-from gaitdisc.discovery.scored_model import score
+from gaitdisc.discovery.scored_model import Part, score
 from gaitdisc.simulation.compiled_simulation import Drive, Rows
 from gaitdisc.simulation.measured import Measured
 from gaitdisc.simulation.parts import Sensor
@@ -98,16 +97,16 @@ def test_runs_are_shorter_where_a_change_of_the_start_grows_fast():
 
 
 def test_as_read_only_the_starts_are_fitted(as_read):
-    assert as_read.model.parts == ()
-    np.testing.assert_array_equal(as_read.model.fit.values, as_read.model.machine.defaults)
+    assert as_read.parts == ()
+    np.testing.assert_array_equal(as_read.fit.values, as_read.machine.defaults)
 
 
 def test_a_right_account_is_followed_over_half_a_trial_or_more_and_no_run_is_longer_than_wanted(case, as_read, cubic):
     part = Part(cubic, {"factor": -14.0})
-    true = as_read.model.refitted(as_read.shooting, (part,))
-    longer = case.lengthen(score(as_read.shooting, true))
+    true = as_read.refitted(as_read.shooting, (part,))
+    longer = case.lengthen(score(true))
     assert longer.shooting.segments.length >= case.measured.samples.min() / 2
-    assert longer.model.parts[0].values["factor"] == pytest.approx(-14.0, rel=0.005)
+    assert longer.parts[0].values["factor"] == pytest.approx(-14.0, rel=0.005)
     length = as_read.shooting.segments.length
     assert case.lengthen(as_read, 2 * length).shooting.segments.length <= 2 * length
 
@@ -135,7 +134,7 @@ def test_a_trial_too_short_for_whole_margins_is_cut_all_the_same():
     case = set_up_case(mass().with_sensor(Sensor("x", lowpass=1.0)), measured)
     segments = case.segments((0, 1))
     assert segments.margin == 80 // SHORT and segments.span >= 8
-    assert np.isfinite(case.as_read().model.fit.misfit)
+    assert np.isfinite(case.as_read().fit.misfit)
 
 
 def lagging(lag):
@@ -167,7 +166,7 @@ def test_a_fast_state_is_integrated_in_steps_that_do_not_run_away(lag, steps):
 @pytest.mark.parametrize(("lag", "hangs"), [(0.1, False), (0.0055, True)])  # two steps are stable above 15 ms / 2.785
 def test_what_is_found_at_the_edge_of_stability_hangs_on_the_integration_step(lag, hangs):
     as_read = lagging(0.1).as_read()
-    values, starts = np.array([lag]), as_read.model.fit.starts + 0.5
-    fit = as_read.shooting.at(as_read.model.machine, (), values, starts)
-    now = replace(as_read, model=replace(as_read.model, fit=fit))
+    values, starts = np.array([lag]), as_read.fit.starts + 0.5
+    fit = as_read.shooting.at(as_read.machine, (), values, starts)
+    now = replace(as_read, fit=fit)
     assert hangs_on_step(lagging(0.1), now) == hangs

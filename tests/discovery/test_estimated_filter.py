@@ -81,7 +81,7 @@ def test_a_filtered_record_of_a_stop_gives_the_strength_of_the_raw_one():
     for lowpass in (0.0, 3.0):
         case = set_up_case(mass(), record(truth, 5, Experiment(seconds=15.0, lowpass_hz=lowpass)))
         now = case.search.extended(case.as_read())[1]
-        found[lowpass] = abs(next(iter(now.model.parts[0].values.values())))
+        found[lowpass] = abs(next(iter(now.parts[0].values.values())))
     assert now.labels == ("one_sided_spring@load",)
     assert found[3.0] == pytest.approx(found[0.0], rel=0.05)
     assert found[0.0] == pytest.approx(60, rel=0.05)

@@ -6,11 +6,11 @@ import pytest
 from hidden_in_a_mass import mass, record
 
 from gaitdisc.discovery.candidate import Candidate, list_candidates
-from gaitdisc.discovery.candidate_model import Part
 from gaitdisc.discovery.catalogue import Shape, read_shapes
 from gaitdisc.discovery.discover import discover
 from gaitdisc.discovery.estimates import NORMAL_95, name_estimates, slot_units, wrong_starts
 from gaitdisc.discovery.places import list_places
+from gaitdisc.discovery.scored_model import Part
 from gaitdisc.simulation.running import compile_simulation
 
 
@@ -104,5 +104,5 @@ def test_trials_that_begin_at_unlike_places_show_no_start_that_all_have():
     for starts, wrong in (((0.4, 0.41, 0.4), True), ((0.9, -0.2, 0.5), False)):
         fit = SimpleNamespace(starts=np.column_stack([starts, np.zeros(3)]), slopes=slopes)
         runs = SimpleNamespace(segments=SimpleNamespace(begin=np.zeros(3, int)))
-        as_read = SimpleNamespace(model=SimpleNamespace(fit=fit), shooting=runs)
+        as_read = SimpleNamespace(fit=fit, shooting=runs)
         assert ("x" in wrong_starts(begun(0.0, 0.0), as_read)) is wrong

@@ -4,10 +4,10 @@ from hidden_in_a_mass import MASS, record, with_load
 from scipy.linalg import null_space
 
 from gaitdisc.discovery.candidate import Candidate
-from gaitdisc.discovery.candidate_model import Part, fit_model
 from gaitdisc.discovery.case import set_up_case
-from gaitdisc.discovery.fitted import Fitted, read_prior, start_basis, without
+from gaitdisc.discovery.fitted import Fitted, find_basis, read_prior, without
 from gaitdisc.discovery.noise import white_noise
+from gaitdisc.discovery.scored_model import Part, fit_model
 from gaitdisc.simulation.simulation_file import parse_simulation
 
 RNG = np.random.default_rng(0)
@@ -29,19 +29,19 @@ def test_what_the_start_states_explain_is_projected_out():
 
 def test_a_basis_is_orthonormal_whatever_the_units():
     slopes = RNG.normal(size=(3, 20, 2)) * np.array([1e9, 1e-9])
-    basis = start_basis(slopes)
+    basis = find_basis(slopes)
     np.testing.assert_allclose(np.swapaxes(basis, 1, 2) @ basis, np.broadcast_to(np.eye(2), (3, 2, 2)), atol=1e-12)
 
 
 def test_a_start_state_that_nothing_shows_explains_nothing():
     slopes = RNG.normal(size=(2, 20, 2))
     slopes[..., 1] = 2 * slopes[..., 0]
-    assert np.count_nonzero(np.abs(start_basis(slopes)).sum(axis=1)) == 2
-    assert not start_basis(np.zeros((1, 9, 2))).any()
+    assert np.count_nonzero(np.abs(find_basis(slopes)).sum(axis=1)) == 2
+    assert not find_basis(np.zeros((1, 9, 2))).any()
 
 
 def test_columns_less_a_basis_are_at_right_angles_to_it():
-    basis = start_basis(RNG.normal(size=(2, 15, 2)))
+    basis = find_basis(RNG.normal(size=(2, 15, 2)))
     left = without(basis, RNG.normal(size=(2, 15, 4)))
     np.testing.assert_allclose(np.swapaxes(basis, 1, 2) @ left, 0.0, atol=1e-12)
 

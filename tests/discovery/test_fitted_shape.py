@@ -28,7 +28,7 @@ def test_shapes_over_place_speed_and_both_are_tried(bumpy):
 def test_bumps_lie_where_the_run_goes(bumpy):
     case, now = bumpy
     first = shapes_at(case.search.places[0], now, case.search)[0]
-    x = now.model.fit.states[..., 0]
+    x = now.fit.states[..., 0]
     centres = [float(piece.split(" - ")[1].split("/")[0].strip("()")) for piece in first.pieces]
     assert x.min() <= min(centres) < 0 < max(centres) <= x.max()
 
@@ -38,7 +38,7 @@ def test_powers_of_two_states_are_tried_up_to_the_third_together(bumpy):
     (powers,) = [one for one in shapes_at(case.search.places[0], now, case.search) if "1" in one.pieces]
     assert len(powers.pieces) == 10
     assert max(sum(map(int, re.findall(r"\*\*(\d)", piece))) for piece in powers.pieces) == 3
-    x = now.model.fit.states[..., 0]
+    x = now.fit.states[..., 0]
     centre, half = map(float, re.search(r"x - (?:\()?([-\d.]+)\)*/([\d.]+)", powers.pieces[-1]).groups())
     assert np.mean(np.abs((x - centre) / half) <= 1) == pytest.approx(0.96, abs=0.01)
 
@@ -56,8 +56,8 @@ def test_a_fitted_shape_closes_a_gap_that_has_no_name(bumpy):
     case, now = bumpy
     shape = fit_shape(case, now)
     assert shape is not None
-    (part,) = shape.model.parts
+    (part,) = shape.parts
     assert (part.candidate.name, part.candidate.place) == ("unnamed", "load")
     plain = now.under(shape)
-    before, after, noise = plain.model.fit.misfit, shape.model.fit.misfit, shape.model.fit.white.size
+    before, after, noise = plain.fit.misfit, shape.fit.misfit, shape.fit.white.size
     assert 1 - (after - noise) / (before - noise) > 0.7

@@ -2,11 +2,10 @@ import pytest
 from hidden_in_a_mass import Experiment, mass, record, with_load
 
 from gaitdisc.discovery.candidate import Candidate
-from gaitdisc.discovery.candidate_model import Part
 from gaitdisc.discovery.case import set_up_case
 from gaitdisc.discovery.criteria import CRITERIA
 from gaitdisc.discovery.forward_selection import beside_others, exchange, prune, select_forward, settle
-from gaitdisc.discovery.scored_model import ScoredModel, ranked
+from gaitdisc.discovery.scored_model import Part, ranked
 
 DAMPER = Candidate("missing_physics", "port", "load", "viscous_damping", ("v",), None, "x")
 
@@ -20,7 +19,7 @@ def test_what_is_hidden_is_let_in_alone(named):
 
 
 def _with(case, as_read, *parts):
-    return ScoredModel(as_read.model.refitted(as_read.shooting, parts), as_read.shooting)
+    return as_read.refitted(as_read.shooting, parts)
 
 
 def _idle_and_true(case, as_read, cubic):
@@ -47,7 +46,7 @@ def test_what_is_settled_holds_the_true_one_alone(case, as_read):
 
 def test_beside_what_was_explored_already_nothing_is_sought_again(case, as_read):
     now = _wrong_and_idle(case, as_read)
-    explored = {case.search.without(now, number).model.explanations for number in range(2)}
+    explored = {case.search.without(now, number).explanations for number in range(2)}
     assert len(explored) == 2
     assert exchange(case.search, now, explored) is now
 
@@ -63,7 +62,7 @@ def test_two_effects_are_both_found_with_their_numbers(two):
     case, as_read = two
     now, _ = select_forward(case.search, as_read, 3)
     assert sorted(now.labels) == ["cubic_stiffness@load", "quadratic_stiffness@load"]
-    values = {part.candidate.name: part.values["factor"] for part in now.model.parts}
+    values = {part.candidate.name: part.values["factor"] for part in now.parts}
     assert values == pytest.approx({"cubic_stiffness": -14.0, "quadratic_stiffness": -9.0}, rel=0.05)
 
 
@@ -75,7 +74,7 @@ def test_a_pair_whose_first_was_not_the_best_alone_is_found_beside_it(two):
     explored = set()
     pair = beside_others(case.search, wrong, [*cubic, *cubic], explored)
     assert sorted(pair.labels) == ["cubic_stiffness@load", "quadratic_stiffness@load"]
-    assert explored == {cubic[0].model.explanations}
+    assert explored == {cubic[0].explanations}
 
 
 @pytest.mark.slow

@@ -3,11 +3,10 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from gaitdisc.discovery.candidate_model import Part
 from gaitdisc.discovery.criteria import CRITERIA
 from gaitdisc.discovery.fitted import Fitted, Prior
 from gaitdisc.discovery.gap_share import FOLDS, GapScale, cross_validated, errors_left_out
-from gaitdisc.discovery.scored_model import ScoredModel
+from gaitdisc.discovery.scored_model import Part
 
 
 @pytest.fixture(scope="module")
@@ -24,9 +23,9 @@ def test_the_scale_is_noise_and_a_hundredth_of_the_spread():
 
 def test_the_true_explanation_closes_the_gap_and_a_wrong_one_does_not(as_read, cubic, labelled, scale):
     before = cross_validated(scale, as_read, ())
-    begun = ScoredModel(before.model, as_read.shooting)
+    begun = replace(before, shooting=as_read.shooting)
     after = cross_validated(scale, begun, (Part(cubic, {"factor": -10.0}),))
-    assert after.model.parts[0].values["factor"] == pytest.approx(-14.0, rel=0.05)
+    assert after.parts[0].values["factor"] == pytest.approx(-14.0, rel=0.05)
     assert after.gap < 0.15 * before.gap
     wrong = cross_validated(scale, begun, (Part(labelled["constant_load@load"], {"factor": 0.0}),))
     assert wrong.gap > 0.8 * before.gap
@@ -35,8 +34,8 @@ def test_the_true_explanation_closes_the_gap_and_a_wrong_one_does_not(as_read, c
 def test_what_was_not_fitted_leaves_the_sensors_noise(as_read, cubic, scale):
     found = cross_validated(scale, as_read, (Part(cubic, {"factor": -14.0}),))
     assert found.errors.mean() == pytest.approx(scale.floor, rel=0.15)
-    assert found.model.explanations == {("cubic_stiffness@load", ("x**3",))}
-    assert found.model.penalty == pytest.approx(0.03)
+    assert found.explanations == {("cubic_stiffness@load", ("x**3",))}
+    assert found.penalty == pytest.approx(0.03)
 
 
 RUNS, ROWS, STATES, FREE = 7, 40, 2, 3

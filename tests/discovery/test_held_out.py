@@ -4,7 +4,6 @@ import numpy as np
 import pytest
 from hidden_in_a_mass import Experiment, mass, neuron, record, with_load
 
-from gaitdisc.discovery.candidate_model import Part, fit_model
 from gaitdisc.discovery.case import set_up_case
 from gaitdisc.discovery.first_states import StateGuess
 from gaitdisc.discovery.held_out import (
@@ -19,22 +18,21 @@ from gaitdisc.discovery.held_out import (
     tabulate_runs,
 )
 from gaitdisc.discovery.paired_test import PairedTest
-from gaitdisc.discovery.scored_model import ScoredModel, score
+from gaitdisc.discovery.scored_model import Part, fit_model, score
 
 
 @pytest.fixture(scope="module")
 def runs(case, as_read, cubic):
     part = Part(cubic, {"factor": -14.0})
-    true = as_read.model.refitted(as_read.shooting, (part,))
-    true = ScoredModel(true, as_read.shooting)
+    true = as_read.refitted(as_read.shooting, (part,))
     return tuple(run_trials(case, one, case.held_out, as_read) for one in (as_read, true))
 
 
 def test_on_held_out_trials_nothing_is_found_but_the_starts(case, as_read, runs):
     before, _ = runs
     assert before.fit.free == ()
-    np.testing.assert_array_equal(before.fit.values, as_read.model.fit.values)
-    assert before.measured.shape == before.fit.residual.shape
+    np.testing.assert_array_equal(before.fit.values, as_read.fit.values)
+    assert before.shooting.seen.shape == before.fit.residual.shape
 
 
 def test_the_truth_leaves_the_noise_and_nothing_else(case, runs):
@@ -44,7 +42,7 @@ def test_the_truth_leaves_the_noise_and_nothing_else(case, runs):
     assert size.after < 1.1 * size.noise_floor < 0.5 * size.before
     assert size.channels["x"][1] == pytest.approx(float(np.sqrt((after.fit.residual**2).mean())))
     assert (size.p, size.pieces) == (0.02, 9)
-    assert size.before == pytest.approx(size.channels["x"][0] / after.measured.std())
+    assert size.before == pytest.approx(size.channels["x"][0] / after.shooting.seen.std())
 
 
 def test_runs_are_drawn_at_their_own_times(case, runs):
@@ -58,14 +56,13 @@ def test_runs_are_drawn_at_their_own_times(case, runs):
 
 def test_misfits_are_those_of_the_fit(runs):
     before, _ = runs
-    assert replace(before).misfits.sum() == pytest.approx(before.fit.misfit)
+    assert before.fit.misfits.sum() == pytest.approx(before.fit.misfit)
 
 
 def test_the_truth_is_borne_out_and_what_is_worse_is_not(case, as_read, cubic):
     def with_stiffness(factor):
         shooting = as_read.shooting
-        model = fit_model(shooting, case.search.base, (Part(cubic, {"factor": factor}),), as_read.model.fit.starts, 0)
-        return ScoredModel(model, shooting)
+        return fit_model(shooting, case.search.base, (Part(cubic, {"factor": factor}),), as_read.fit.starts, 0)
 
     assert prove(case, as_read, with_stiffness(-14.0), as_read).bears_out
     worse = prove(case, as_read, with_stiffness(2.0), as_read)
@@ -86,7 +83,7 @@ def test_the_past_of_what_comes_late_is_the_runs_own():
     late = next(one for one in case.search.candidates if one.pieces == ("delay(x, _d)",))
     part = Part(late, {"factor": -4.0, "d": 0.21})
     starts = case.guess.starts(shooting.segments)
-    true = score(shooting, fit_model(shooting, case.search.base, (part,), starts))
+    true = score(fit_model(shooting, case.search.base, (part,), starts))
     assert true.noise.size[0] < 0.03 * case.measured.observed.std()
     rough = replace(case, guess=StateGuess(case.guess.states + 0.3))
     wide = case.shooting(case.segments(case.learned, 3.0)).with_noise(true.noise)
@@ -99,11 +96,11 @@ def test_the_start_of_a_long_run_is_found_by_way_of_short_ones():
     case = set_up_case(neuron(), record(truth, 2, Experiment(seconds=40.0, noise=0.05)))
     as_read = case.as_read()
     b = next(one for one in case.search.candidates if one.label == "wrong_parameter@b")
-    true = as_read.model.refitted(as_read.shooting, (Part(b, {"value": 1.0}),))
-    longer = case.lengthen(score(as_read.shooting, true))
+    true = as_read.refitted(as_read.shooting, (Part(b, {"value": 1.0}),))
+    longer = case.lengthen(score(true))
     assert longer.shooting.segments.length > 4 * as_read.shooting.segments.length
     run = run_trials(case, longer, case.held_out, longer)
-    assert run.misfits.sum() < 1.2 * run.fit.white.size
+    assert run.fit.misfits.sum() < 1.2 * run.fit.white.size
 
 
 def test_trials_that_can_tell_stay_held_out(case, as_read, named):

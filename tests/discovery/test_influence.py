@@ -80,7 +80,7 @@ def test_pushes_that_show_nowhere_explain_nothing(measured):
     case = set_up_case(parse_simulation(MUTED), measured)
     now = case.as_read()
     places = list_places(case.search.base, compile_simulation(case.search.base))
-    best, muted = rank_process_noise(now.shooting, now.model, places)
+    best, muted = rank_process_noise(now, places)
     assert (best.place.name, muted.place.name) == ("load", "wind")
     assert np.isfinite(best.bic) and np.isinf(muted.bic)
 

@@ -62,23 +62,23 @@ def test_mere_noise_has_no_name(seed):
 
 def test_a_one_sided_spring_is_named_with_its_numbers_and_predicts_time_held_out():
     one = found(-150 * np.maximum(0, ANGLE - 0.05))
-    assert one.named is not None and one.named.part.candidate.name == "one_sided_spring"
-    assert one.named.part.values["factor"] == pytest.approx(-150, rel=0.15)
-    assert one.named.part.values["x0"] == pytest.approx(0.05, abs=0.02)
+    assert one.named is not None and one.named.candidate.name == "one_sided_spring"
+    assert one.named.values["factor"] == pytest.approx(-150, rel=0.15)
+    assert one.named.values["x0"] == pytest.approx(0.05, abs=0.02)
     rest = one.joint.left - one.named.predicted
     assert np.sqrt(np.mean(rest**2)) < 1.2 * one.joint.floor
 
 
 def test_late_muscles_are_named_with_their_delay():
     one = found(columns(SHAPES[4], {"value": 0.04})[:, 0])
-    assert one.named is not None and one.named.part.candidate.place == "muscles_delay"
-    assert one.named.part.values["value"] == pytest.approx(0.04, abs=0.008)
+    assert one.named is not None and one.named.candidate.place == "muscles_delay"
+    assert one.named.values["value"] == pytest.approx(0.04, abs=0.008)
 
 
 def test_weak_muscles_are_named_and_a_strength_within_its_bounds_is_not():
     one = found(-0.3 * MUSCLES)
-    assert one.named is not None and one.named.part.candidate.place == "muscles_strength"
-    assert one.named.part.values["value"] == pytest.approx(0.7, abs=0.05)
+    assert one.named is not None and one.named.candidate.place == "muscles_strength"
+    assert one.named.values["value"] == pytest.approx(0.7, abs=0.05)
     assert found(-0.03 * MUSCLES).named is None
 
 
@@ -91,14 +91,14 @@ def test_the_smallest_factor_that_shows_shrinks_with_the_size_of_its_column():
 def test_what_acts_in_one_part_of_the_time_alone_is_predicted_from_the_rest_of_that_part():
     late = TIME > 0.6 * SECONDS
     one = found(np.where(late, -0.4 * MUSCLES, 0.0), columns_of=lambda mine: np.where(late[:, None], mine, 0.0))
-    assert one.named is not None and one.named.part.candidate.place == "muscles_strength"
-    assert one.named.part.values["value"] == pytest.approx(0.6, abs=0.05)
+    assert one.named is not None and one.named.candidate.place == "muscles_strength"
+    assert one.named.values["value"] == pytest.approx(0.6, abs=0.05)
 
 
 def test_of_two_that_explain_the_record_that_stands_which_predicts_what_was_held_out():
     one = found(-150 * np.maximum(0, ANGLE - 0.05))
     spring, *others = one.rivals
-    assert spring.part.candidate.name == "one_sided_spring"
+    assert spring.candidate.name == "one_sided_spring"
     assert all(other.held_out <= spring.held_out for other in others)
 
 

@@ -17,7 +17,7 @@ def _weighed(how, seed=3, simulation=None, gaps=False):
         measured = replace(measured, observed=observed)
     case = set_up_case(simulation or mass(), measured)
     now = case.as_read()
-    return rank_process_noise(now.shooting, now.model, case.search.places)[0]
+    return rank_process_noise(now, case.search.places)[0]
 
 
 @pytest.mark.parametrize(("seed", "gaps"), [(3, False), (4, False), (3, True)])

@@ -5,8 +5,8 @@ import pytest
 from hidden_in_a_mass import Experiment, mass, record, with_load
 
 from gaitdisc.discovery.candidate import saturations
-from gaitdisc.discovery.candidate_model import Part, fit_model
 from gaitdisc.discovery.case import set_up_case
+from gaitdisc.discovery.scored_model import Part, fit_model
 
 
 def _inquiry(truth, late=0):
@@ -15,15 +15,14 @@ def _inquiry(truth, late=0):
 
 
 def _scores(case, now):
-    model = now.model
-    scorer = case.search.scorer(now.shooting, model)
+    scorer = case.search.scorer(now)
     return {one.candidate.label: one for one in reversed(scorer.scores(case.search.candidates))}
 
 
 def _fall(case, now, score):
-    part = Part(score.candidate, score.values)
-    refitted = fit_model(now.shooting, case.search.base, (part,), now.model.fit.starts)
-    return now.model.fit.misfit - refitted.fit.misfit, refitted.parts[0].values
+    part = score
+    refitted = fit_model(now.shooting, case.search.base, (part,), now.fit.starts)
+    return now.fit.misfit - refitted.fit.misfit, refitted.parts[0].values
 
 
 @pytest.mark.parametrize(
@@ -56,21 +55,20 @@ def test_the_best_delay_of_the_grid_is_near_the_true_one():
 
 def test_the_best_limit_of_the_grid_is_near_the_true_one():
     case, now = _inquiry(mass().with_input("push", "min(push, 4)"))
-    scores = case.search.scorer(now.shooting, now.model).scores(saturations(mass()))
+    scores = case.search.scorer(now).scores(saturations(mass()))
     assert [one.candidate.slots for one in scores[:2]] == [("upper_limit",), ("lower_limit", "upper_limit")]
     assert scores[0].values["upper_limit"] == pytest.approx(4, abs=1)
 
 
 def test_an_effect_that_is_let_in_already_promises_nothing_more(case, as_read, cubic):
     part = Part(cubic, {"factor": -14.0})
-    model = as_read.model.refitted(as_read.shooting, (part,))
-    before, after = _scores(case, as_read), _scores(case, replace(as_read, model=model))
+    model = as_read.refitted(as_read.shooting, (part,))
+    before, after = _scores(case, as_read), _scores(case, model)
     assert after["cubic_stiffness@load"].gain < 1e-3 * before["cubic_stiffness@load"].gain
 
 
 def test_scores_are_in_order_and_one_for_each_candidate(case, as_read):
-    model = as_read.model
-    scorer = case.search.scorer(as_read.shooting, model)
+    scorer = case.search.scorer(as_read)
     scores = scorer.scores(case.search.candidates)
     assert len(scores) <= len(case.search.candidates)
     assert np.all(np.diff([one.gain for one in scores]) <= 0)
@@ -83,17 +81,14 @@ def test_a_sensor_that_lags_already_is_not_delayed_again():
 
 
 def test_what_is_left_without_a_trial_is_what_the_others_alone_would_leave(case, as_read):
-    model, candidates = as_read.model, case.search.candidates
-    scorer = case.search.scorer(as_read.shooting, model)
+    candidates = case.search.candidates
+    scorer = case.search.scorer(as_read)
     left = scorer.leave_out_each(candidates)
-    for trial in np.unique(as_read.shooting.segments.trial):
-        some = np.flatnonzero(as_read.shooting.segments.trial != trial)
-        parts = {name: getattr(model.fit, name)[some] for name in ("starts", "states", "residual", "white", "slopes")}
-        others = replace(
-            scorer,
-            shooting=replace(as_read.shooting, segments=as_read.shooting.segments.among(some)),
-            model=replace(model, fit=replace(model.fit, **parts)),
-        )
+    segments = as_read.shooting.segments
+    for trial in np.unique(segments.trial):
+        some = np.flatnonzero(segments.trial != trial)
+        shooting = replace(as_read.shooting, segments=segments.among(some))
+        others = case.search.scorer(replace(as_read, shooting=shooting, fit=as_read.fit.among(some)))
         best = others.scores(candidates)[0].gain
         expected = (np.square(others.model.fit.projected[0]).sum() - best) / others.model.fit.white.size
         assert left[trial] == pytest.approx(expected, rel=1e-9)

@@ -4,34 +4,33 @@ import numpy as np
 import pytest
 
 from gaitdisc.discovery.candidate import Candidate
-from gaitdisc.discovery.candidate_model import Part
 from gaitdisc.discovery.criteria import CRITERIA
-from gaitdisc.discovery.scored_model import ScoredModel, compared, ranked, score
+from gaitdisc.discovery.scored_model import Part, compared, ranked, score
 
 
 @pytest.fixture(scope="module")
 def with_cubic(case, as_read, cubic):
     part = Part(cubic, {"factor": -14.0})
-    return ScoredModel(as_read.model.refitted(as_read.shooting, (part,)), as_read.shooting)
+    return as_read.refitted(as_read.shooting, (part,))
 
 
 def test_under_its_own_noise_an_account_leaves_numbers_of_unit_variance(case, as_read, with_cubic):
-    own = score(as_read.shooting, with_cubic.model)
-    fit = own.model.fit
+    own = score(with_cubic)
+    fit = own.fit
     used = fit.starts.size + 1
     assert fit.misfit / (fit.white.size - used) == pytest.approx(1.0, abs=0.1)
 
 
 def test_the_noise_of_the_true_account_is_that_of_the_sensor(case, as_read, with_cubic):
-    own = score(as_read.shooting, with_cubic.model)
+    own = score(with_cubic)
     hidden = 0.02 * case.measured.observed.std()
     assert own.noise.size[0] == pytest.approx(hidden, rel=0.1)
 
 
 def test_what_comes_late_sees_the_past_of_the_account_and_not_of_the_simulation_as_read(case, as_read, with_cubic):
-    own = score(as_read.shooting, with_cubic.model)
-    past, states = own.shooting.segments.of(own.shooting.past), own.model.fit.states
-    apart = np.abs(states - as_read.model.fit.states).max()
+    own = score(with_cubic)
+    past, states = own.shooting.segments.of(own.shooting.past), own.fit.states
+    apart = np.abs(states - as_read.fit.states).max()
     assert np.abs(past - states).max() < 0.01 * apart
 
 
@@ -39,8 +38,8 @@ def test_where_the_simulation_errs_by_a_share_of_the_spread_the_noise_is_no_less
     case, as_read, with_cubic
 ):
     base = replace(case.search.base, inexact=0.1)
-    models = with_cubic.model, replace(with_cubic.model, base=base)
-    exact, inexact = (score(as_read.shooting, one) for one in models)
+    models = with_cubic, replace(with_cubic, base=base)
+    exact, inexact = (score(one) for one in models)
     spread = case.measured.observed.std()
     assert inexact.noise.size[0] ** 2 == pytest.approx(exact.noise.size[0] ** 2 + (0.1 * spread) ** 2, rel=0.05)
     gains = [plain.bic - true.bic for plain, true in (compared([as_read, one]) for one in (exact, inexact))]
@@ -72,7 +71,7 @@ def test_labels_name_what_is_in(as_read, with_cubic):
 
 
 def test_under_anothers_noise_what_was_gained_stays(case, as_read, with_cubic):
-    own = score(as_read.shooting, with_cubic.model)
+    own = score(with_cubic)
     moved = replace(as_read, gained=7.0).under(own)
     assert (moved.gained, moved.noise) == (7.0, own.noise)
 
@@ -88,10 +87,10 @@ OPEN = (SPRING, DAMPER, NUMBER, SENSOR)
 
 def _judged(as_read, candidate, bic, size):
     """A model of a given evidence, by a residual that has it."""
-    fit = replace(as_read.model.fit, free=tuple("abcdef"[:size]))
-    one = ScoredModel(replace(as_read.model, fit=fit, parts=(Part(candidate, {}),)), as_read.shooting)
-    scale = ((bic - (one.model.bic - fit.misfit)) / fit.misfit) ** 0.5
-    return replace(one, model=replace(one.model, fit=replace(fit, white=fit.white * scale)))
+    fit = replace(as_read.fit, free=tuple("abcdef"[:size]))
+    one = replace(as_read, fit=fit, parts=(Part(candidate, {}),))
+    scale = ((bic - (one.bic - fit.misfit)) / fit.misfit) ** 0.5
+    return replace(one, fit=replace(fit, white=fit.white * scale))
 
 
 def test_the_better_explanation_stands_first(as_read):
@@ -112,8 +111,8 @@ def test_of_equals_a_wrong_number_stands_first_and_a_missing_term_whose_kind_has
 
 
 def test_accounts_that_failed_are_not_ranked(as_read):
-    failed = replace(as_read.model.fit, white=as_read.model.fit.white * float("inf"))
-    assert ranked([replace(as_read, model=replace(as_read.model, fit=failed))], OPEN) == []
+    failed = replace(as_read.fit, white=as_read.fit.white * float("inf"))
+    assert ranked([replace(as_read, fit=failed)], OPEN) == []
 
 
 def test_accounts_that_are_all_hopeless_are_ranked_as_well(as_read):

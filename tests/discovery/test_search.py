@@ -3,8 +3,7 @@ from dataclasses import replace
 import pytest
 
 from gaitdisc.discovery.candidate import Candidate
-from gaitdisc.discovery.candidate_model import Part
-from gaitdisc.discovery.scored_model import ScoredModel
+from gaitdisc.discovery.scored_model import Part
 from gaitdisc.discovery.search import is_certain
 
 SPRING = Candidate(
@@ -50,24 +49,24 @@ def _with(model, candidate, **values):
     ],
 )
 def test_a_number_has_to_lie_where_it_means_what_its_name_says(case, as_read, candidate, values, sensible):
-    assert case.search.sensible(_with(as_read.model, candidate, **values)) is sensible
+    assert case.search.sensible(_with(as_read, candidate, **values)) is sensible
 
 
 @pytest.mark.parametrize(("seconds", "sensible"), [(0.1, True), (-0.1, False)])
 def test_an_input_that_lags_is_not_early_as_well(case, as_read, seconds, sensible):
     late = Part(DELAY, {"seconds": seconds})
     lagging = Part(Candidate("input_error", "input", "push", "input_lag"), {"seconds": 0.1})
-    assert case.search.sensible(replace(as_read.model, parts=(late, lagging))) is sensible
+    assert case.search.sensible(replace(as_read, parts=(late, lagging))) is sensible
 
 
 def test_a_fit_that_failed_is_not_sensible(case, as_read):
-    failed = replace(as_read.model.fit, white=as_read.model.fit.white * float("inf"))
-    assert not case.search.sensible(replace(as_read.model, fit=failed))
+    failed = replace(as_read.fit, white=as_read.fit.white * float("inf"))
+    assert not case.search.sensible(replace(as_read, fit=failed))
 
 
 def _both(case, as_read, cubic):
     parts = (Part(cubic, {"factor": -14.0}), Part(DAMPER, {"factor": 0.0}))
-    return ScoredModel(as_read.model.refitted(as_read.shooting, parts), as_read.shooting)
+    return as_read.refitted(as_read.shooting, parts)
 
 
 def test_less_one_explanation_the_others_stay(case, as_read, cubic):
@@ -78,5 +77,5 @@ def test_less_one_explanation_the_others_stay(case, as_read, cubic):
 
 def test_a_number_lost_in_its_error_is_not_certain(case, as_read, cubic):
     both = _both(case, as_read, cubic)
-    assert not is_certain(both.model)
-    assert is_certain(case.search.without(both, 1).model)
+    assert not is_certain(both)
+    assert is_certain(case.search.without(both, 1))

@@ -6,12 +6,11 @@ import numpy as np
 import pytest
 from hidden_in_a_mass import Experiment, mass, record, with_load
 
-from gaitdisc.discovery.candidate_model import Part
 from gaitdisc.discovery.case import set_up_case
 from gaitdisc.discovery.decision import Verdict, prove_held_out
 from gaitdisc.discovery.discover import discover
 from gaitdisc.discovery.held_out import free_run_error, grows_along_runs
-from gaitdisc.discovery.scored_model import score
+from gaitdisc.discovery.scored_model import Part, score
 from gaitdisc.discovery.second_look import look_at_whole_runs, prefer_relatives, without_small
 from gaitdisc.simulation.compiled_simulation import Drive
 from gaitdisc.simulation.measured import Measured
@@ -27,8 +26,8 @@ def _with(case, as_read, label, **values):
     """Return the simulation with one explanation in it, fitted from its numbers."""
     candidate = next(one for one in case.search.candidates if one.label == label)
     parts = (Part(candidate, values),)
-    model = as_read.model.refitted(as_read.shooting, parts)
-    return score(as_read.shooting, model)
+    model = as_read.refitted(as_read.shooting, parts)
+    return score(model)
 
 
 def test_hysteresis_that_yields_within_a_step_is_dry_friction():
@@ -36,20 +35,20 @@ def test_hysteresis_that_yields_within_a_step_is_dry_friction():
     candidate = next(one for one in case.search.candidates if one.label == "hysteresis@load")
     values = dict.fromkeys(candidate.slots, 0.003) | {"factor": -500.0}
     general = _with(case, as_read, "hysteresis@load", **values)
-    verdict = Verdict("missing_physics", general, (), proof=prove_held_out(case, as_read, general))
+    verdict = Verdict(general, (), proof=prove_held_out(case, as_read, general))
     assert prefer_relatives(case, as_read, verdict).found.labels == ("coulomb_friction@load",)
 
 
 def test_free_runs_of_what_is_right_leave_the_noise_and_refuse_what_is_wrong():
     case, as_read = _problem(with_load("-14*x**3"))
     right = _with(case, as_read, "cubic_stiffness@load", factor=-14.0)
-    wrong = replace(right, model=replace(right.model, fit=replace(right.model.fit, values=-8 * right.model.fit.values)))
+    wrong = replace(right, fit=replace(right.fit, values=-8 * right.fit.values))
     assert free_run_error(case, right) < 0.01 * free_run_error(case, as_read)
     proof = prove_held_out(case, as_read, right)
-    verdict = Verdict("missing_physics", wrong, (right,), proof=proof)
+    verdict = Verdict(wrong, (right,), proof=proof)
     assert look_at_whole_runs(case, as_read, verdict)[1].found is right
     _, nothing = look_at_whole_runs(case, as_read, replace(verdict, rivals=()))
-    assert nothing.word == "no_gap" and not nothing.found.model.parts
+    assert nothing.word == "no_gap" and not nothing.found.parts
 
 
 @pytest.mark.parametrize(("truth", "cutoff_hz", "grows"), [("0", 6.0, False), ("-14*x**3", 0.0, True)])
@@ -61,7 +60,7 @@ def test_what_is_missing_grows_along_a_run_and_a_sensors_noise_does_not(truth, c
 def test_what_closes_next_to_nothing_of_the_gap_is_not_named(truth, shaking, named, monkeypatch):
     case, as_read = _problem(with_load(truth), Experiment(seconds=12.0, shaking=shaking))
     found = _with(case, as_read, "cubic_stiffness@load", factor=-1.0)
-    verdict = Verdict("missing_physics", found, (), proof=prove_held_out(case, as_read, found))
+    verdict = Verdict(found, (), proof=prove_held_out(case, as_read, found))
     assert (without_small(case, as_read, verdict) is verdict) == named
     if not named:
         assert without_small(case, as_read, verdict).rivals == (found,)

@@ -23,12 +23,12 @@ def damped():
     """A damping that grows with the square of the displacement, which no effect of the catalogue is, and its shape."""
     case, as_read = asked("-8*x**2*v")
     shape = fit_shape(case, as_read)
-    return case, as_read, Verdict("unnamed", shape, (), proof=prove_held_out(case, as_read, shape))
+    return case, as_read, Verdict(shape, (), proof=prove_held_out(case, as_read, shape))
 
 
 def test_a_shape_is_read_as_the_product_that_was_hidden(damped):
     verdict = read_shape(*damped)
-    (part,) = verdict.found.model.parts
+    (part,) = verdict.found.parts
     assert verdict.read and verdict.reads_as == ""
     assert part.candidate.pieces == ("x**2*v",)
     assert part.values["factor"] == pytest.approx(-8, rel=0.03)
@@ -45,15 +45,15 @@ def test_a_reading_that_is_an_effect_of_the_catalogue_is_said_to_be_one(damped):
 
 def test_what_is_no_learned_shape_is_not_read(damped):
     case, as_read, verdict = damped
-    nothing = Verdict("no_gap", as_read, ())
+    nothing = Verdict(as_read, ())
     assert read_shape(case, as_read, nothing) is nothing
-    unproven = Verdict("unnamed", verdict.found, ())
+    unproven = Verdict(verdict.found, ())
     assert read_shape(case, as_read, unproven) is unproven
 
 
 def test_names_stay_where_no_reading_has_fewer_numbers(damped):
     case, as_read, verdict = damped
-    one = Verdict("missing_physics", verdict.found, ())
+    one = Verdict(verdict.found, ())
     assert read_instead(case, as_read, one) is one
 
 

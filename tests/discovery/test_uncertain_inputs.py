@@ -88,12 +88,12 @@ def test_the_covariance_is_that_of_runs_with_drawn_errors(seen):
     stated = _stating(mass().with_observation("x", seen), sd=2.0, wander=0.3)
     case = set_up_case(stated, record(mass().with_observation("x", seen), SEED))
     now = case.as_read()
-    fit, shooting = now.model.fit, now.shooting
-    covariance = covariance_by_inputs(case, now, shooting, fit)[0]
+    fit, shooting = now.fit, now.shooting
+    covariance = covariance_by_inputs(case, now)[0]
     runs = []
     for seed in range(600):
         drawn = replace(shooting, measured=with_drawn_errors(case.measured, stated, seed))
-        runs.append(drawn.run(now.model.machine, fit.starts[None], fit.values[None])[1][0, 0, :, 0])
+        runs.append(drawn.run(now.machine, fit.starts[None], fit.values[None])[1][0, 0, :, 0])
     assert np.cov(np.array(runs).T) == pytest.approx(covariance, abs=0.2 * covariance.max())
 
 
@@ -128,7 +128,7 @@ def test_gains_of_two_inputs_together_explain_what_neither_does_alone():
     verdict = fit_given(case, case.as_read(), ("input_gain@push", "cubic_stiffness@load"))
     weighed, after = weigh_unstated_errors(case, verdict)
     assert (after.word, after.found.labels) == ("input_error", ("input_gain@push", "input_gain@pull"))
-    assert [part.values["gain"] for part in after.found.model.parts] == pytest.approx([1.2, 0.85], rel=0.02)
+    assert [part.values["gain"] for part in after.found.parts] == pytest.approx([1.2, 0.85], rel=0.02)
     (said,) = (one.what for one in weighed.measured.findings if one.kind == "unstated errors")
     assert said == "unstated errors of 'push' and 'pull' explain cubic stiffness at load as well"
 

@@ -6,9 +6,9 @@ from manufactured_discovery import CUBIC, SPRING, manufactured
 from texts import says
 
 from gaitdisc.discovery.candidate import Candidate
-from gaitdisc.discovery.candidate_model import Part
 from gaitdisc.discovery.catalogue import read_shapes
 from gaitdisc.discovery.result import Correction, Estimate, Explanation, FoundEffect, GapSize, Whereabouts
+from gaitdisc.discovery.scored_model import Part
 from gaitdisc.discovery.wording import write_sentence
 from gaitdisc.simulation.simulation_file import bundled
 

@@ -64,9 +64,9 @@ def test_a_coordinate_that_no_column_shows_is_refused(lab):
 
 def test_what_was_found_goes_into_the_mapping(lab):
     from gaitdisc.discovery.candidate import Candidate
-    from gaitdisc.discovery.candidate_model import Part
     from gaitdisc.discovery.discover_engine import _NOTHING
     from gaitdisc.discovery.fit_by_engine import EngineFit
+    from gaitdisc.discovery.scored_model import Part
     from gaitdisc.engines.engine import read_model
     from gaitdisc.engines.mapping import draft
 

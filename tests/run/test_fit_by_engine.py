@@ -7,12 +7,12 @@ import pytest
 from saved_folders import PENDULUM
 
 from gaitdisc.discovery.candidate import Candidate
-from gaitdisc.discovery.candidate_model import Part
 from gaitdisc.discovery.discover_engine import _NOTHING
 from gaitdisc.discovery.fit_by_engine import NO_FILTER, EngineFit, base_runs
 from gaitdisc.discovery.kept_work import kept_work
 from gaitdisc.discovery.record_filter import RecordFilter
 from gaitdisc.discovery.result import FoundEffect
+from gaitdisc.discovery.scored_model import Part
 from gaitdisc.engines.own_runs import residual_by
 from gaitdisc.simulation.compiled_simulation import Drive
 from gaitdisc.simulation.measured import Measured

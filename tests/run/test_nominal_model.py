@@ -2,7 +2,7 @@ import numpy as np
 import pytest
 
 from gaitdisc.cohort.demonstration import write_demonstration
-from gaitdisc.discovery.nominal_model import nominal_and_trials, nominal_model, stride_trials
+from gaitdisc.discovery.joint_and_trials import nominal_and_trials, nominal_model, stride_trials
 from gaitdisc.errors import StrideError
 from gaitdisc.processing.processed_walks import process_walks
 from gaitdisc.simulation.running import compile_simulation

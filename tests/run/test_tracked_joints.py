@@ -83,8 +83,8 @@ def test_a_spring_and_late_and_weak_muscles_are_named_at_their_joint(leg_walk):
     for place, (moment, word, value) in planted.items():
         knee, ankle = searched(walk, moment)
         assert knee.named is None and ankle.named is not None
-        assert ankle.named.part.candidate.place == place
-        assert ankle.named.part.values[word] == pytest.approx(value, rel=0.2)
+        assert ankle.named.candidate.place == place
+        assert ankle.named.values[word] == pytest.approx(value, rel=0.2)
         rest = ankle.joint.left - ankle.named.predicted
         assert np.sqrt(np.mean(rest**2)) < 0.5 * np.sqrt(np.mean(ankle.joint.left**2))
 
