@@ -59,11 +59,8 @@ def compare_sizes(number: int, seed: int, folder: Path, records: int) -> dict[st
     trials = draw_trials(system, model, int(rng.integers(2, 4)), rng)
     folder.mkdir(parents=True, exist_ok=True)
     (folder / "simulation.toml").write_text(model.text, encoding="utf-8")
-    read, level, skipped = (
-        read_simulation(folder / "simulation.toml"),
-        draw_share(NOISE, rng),
-        SETTLING * system["seconds"],
-    )
+    read, level = read_simulation(folder / "simulation.toml"), draw_share(NOISE, rng)
+    skipped = int(SETTLING * system["seconds"] * system["rate"])
     model.port, runs = place if law else "", [pd.DataFrame(model.run(one), columns=model.states) for one in trials]
     sd = level * pd.concat(runs)[model.channels].std()
 

@@ -120,20 +120,19 @@ def find_power_for(effect: str, case: Case, as_read: ScoredModel, model: Simulat
     one_more = Part(part.candidate, part.values | {slot: none + 1.0})
     exactly = np.zeros((len(part.candidate.slots), len(part.candidate.slots)))
     number, estimate = next(iter(name_estimates(one_more, exactly, case.search.base).items()))
-    sizes, found, most = [], [], ""
-    for size in math.sqrt(fit.covariance[row, row]) * SIZES:
+    sizes, found, most = (math.sqrt(fit.covariance[row, row]) * SIZES).tolist(), [], ""
+    for size in sizes:
         values = fit.values.copy()
         values[place] = none + (size if estimate.value >= 0 else -size)
         grown = replace(now, model=replace(now.model, fit=replace(fit, values=values)))
-        source = TwinSource(case, grown, as_read.noise)
+        source = TwinSource(case, grown, as_read.noise, None if part.candidate.states else as_read)
         answers = Counter(search_records([(source, one) for one in range(request.twins)], model, request))
-        sizes.append(float(size))
         found.append(answers[effect])
         most = answers.most_common(1)[0][0]
         if min(found[-2:]) >= POWER * request.twins and len(found) > 1:
             break
     instead = "" if most == effect else most
-    return Power(effect, number, estimate.unit, (*sizes,), (*found,), request.twins, instead)
+    return Power(effect, number, estimate.unit, (*sizes[: len(found)],), (*found,), request.twins, instead)
 
 
 def tabulate_power(found: Sequence[Power]) -> pd.DataFrame:
