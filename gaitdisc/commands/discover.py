@@ -23,7 +23,7 @@ if TYPE_CHECKING:
 
 EVERYONE, ANKLE = "all", "ankle_angle"
 FILES = ("discovery.json", "held_out.csv", "augmented.toml", "report.html")
-PLANNED = 10  # records of each of nine sizes
+PLANNED = 10  # records of each size
 KEPT = "kept"  # folder of what is fitted, until the answer stands
 
 

@@ -51,6 +51,7 @@ class TwinSource:
     decided: Case
     now: ScoredModel
     noise: Noise
+    begun: ScoredModel | None = None  # finds the starts of a record that has nothing of the effect
 
     @cached_property
     def case(self) -> Case:
@@ -73,7 +74,7 @@ class TwinSource:
         """Where each trial begins by its first samples (1, state)."""
         trials = range(len(self.case.measured.trials))
         with outside_work():
-            return [begin_by_first_samples(self.case, self.now, trial).fit.starts for trial in trials]
+            return [begin_by_first_samples(self.case, self.begun or self.now, trial).fit.starts for trial in trials]
 
     def draw(self, number: int) -> Measured | None:
         """Draw a record like the user's: its inputs, trials and gaps, free runs of the model, and noise.

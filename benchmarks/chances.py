@@ -1,0 +1,154 @@
+"""How often a name that `gaitdisc discover` gives is right, and what in the answer says so.
+
+    python benchmarks/chances.py OUT BENCH [--cases 900] [--seed 35] [--twins 0]
+
+Cases are of guards.py and of BENCH/make_cases.py (../shared/bench/hidden_effects), of mixed size, noise, length,
+number of trials, filter and gaps. OUT/answers.jsonl gets a line for each, and what stands there is not run again.
+Right is a name where all that is named is hidden, or stands in the benchmark's list of what equals it.
+"""
+
+from __future__ import annotations
+
+import sys
+from pathlib import Path
+
+sys.path.insert(0, str(Path(__file__).parents[1] / "studies"))
+from command_line import argument, command_line
+
+GIVEN = command_line(
+    __name__,
+    __doc__,
+    argument("out", "where cases and answers go", Path("chances-out")),
+    argument("bench", "folder of make_cases.py", type=Path),
+    argument("--cases", "cases, of which some are answered with a name", 900),
+    argument("--seed", "of the cases", 35),
+    argument("--twins", "of each named record, with the effect", 0),
+)  # before the slow imports
+
+import importlib.util
+import json
+import shutil
+import signal
+import time
+from dataclasses import replace
+from functools import cache
+from types import ModuleType
+from typing import Any
+
+import guard_cases
+import guards
+import numpy as np
+
+from gaitdisc.discovery.answer import answer
+from gaitdisc.discovery.catalogue import ALL
+from gaitdisc.discovery.discover import explain
+from gaitdisc.discovery.twins import TwinSource, _name, search_records
+from gaitdisc.simulation.measured_table import read_measured
+from gaitdisc.simulation.simulation_file import read_simulation
+
+NAMED = ("missing_physics", "wrong_parameter", "input_error", "sensor_error")
+PLACES = ("port", "equation", "observation", "input", "parameter")
+KINDS = ("term", "term", "term", "term", "pushed_term", "outside", "outside", "off", "one_trial", "inputs")
+SIZES = ((0.005, 0.02), (0.02, 0.06), (0.06, 0.2))  # of a rate, which a hidden term is
+NOISE = (0.01, 0.03, 0.1, 0.2)  # of each channel's standard deviation
+LENGTHS = (0.25, 0.5, 1.0)  # of the benchmark's own records
+LIMIT_S = 60
+
+
+@cache
+def load_bench(folder: Path) -> ModuleType:
+    """Load make_cases.py, and the systems beside it."""
+    sys.path.insert(0, str(folder))
+    spec = importlib.util.spec_from_file_location("make_cases", folder / "make_cases.py")
+    assert spec and spec.loader
+    module = importlib.util.module_from_spec(spec)
+    spec.loader.exec_module(module)
+    return module
+
+
+def make_blind(bench: Path, number: int, seed: int, folder: Path) -> tuple[dict[str, Any], set[tuple[str, str]]]:
+    """Write a case of the blind benchmark; what it is, and the names and places that are right."""
+    made, rng = load_bench(bench), np.random.default_rng([seed, number])
+    systems = made.load_systems(bench / "systems.py")
+    name = str(rng.choice([*systems]))
+    system = systems[name] | {"duration": systems[name]["duration"] * float(rng.choice(LENGTHS))}
+    hidden = system["hidden"][rng.integers(len(system["hidden"]))]
+    terms = [one for one in system["hidden"] if one[2] and one[0] not in ("unnamed", hidden[0])]
+    second = terms[rng.integers(len(terms))] if terms and hidden[2] and rng.random() < 0.2 else None
+    vars(made)["SIZE"] = SIZES[rng.integers(len(SIZES))]
+    real = {"lowpass": 6 if rng.random() < 0.25 else None, "off": 0.05 if rng.random() < 0.25 else 0.0}
+    real |= {"gaps": 3 if rng.random() < 0.15 else 0, "say": bool(rng.random() < 0.1)}
+    level, trials = float(rng.choice(NOISE)), int(rng.integers(1, 5))
+    colour = 6 if not real["lowpass"] and rng.random() < 0.2 else None
+    made.make_case(folder, "case", name, system, hidden, level, seed + number, trials, colour, second, real)
+    key = json.loads((folder / "truth" / "case" / "truth.json").read_text(encoding="utf-8"))["answer"]
+    right = {(key["name"], key["where"]), *((what, where) for _, what, where in key["same"])}
+    right |= {(one["name"], one["where"]) for one in key.get("also", ())}
+    said = {"system": name, "hidden": key["name"], "two": bool(second), "size": made.SIZE, "noise": level}
+    return said | real | {"trials": trials, "colour": colour, "length": system["duration"]}, right
+
+
+def make_guard(number: int, seed: int, folder: Path) -> tuple[str, dict[str, Any]]:
+    """Write a case of the guards; its kind, and what is hidden in it."""
+    rng = np.random.default_rng([seed, number, 1])
+    kind = str(rng.choice(KINDS))
+    guard_cases.TRIALS = int(rng.integers(2, 5))
+    guard_cases.WEAK = SIZES[rng.integers(len(SIZES))]
+    guard_cases.NOISE = (0.01, 0.15)
+    return kind, guard_cases.make_case(kind, number, seed, folder)
+
+
+def ask(number: int, bench: Path, seed: int, out: Path, twins: int) -> dict[str, Any]:
+    """Make a case, answer it, and return what the answer says and whether it is right."""
+    folder, began = out / "cases" / f"{number:04d}", time.process_time()
+    if number % 5 < 3:
+        made, right = make_blind(bench, number, seed, folder)
+        line: dict[str, Any] = {"number": number, "kind": "blind", "made": made}
+        where, kind, truth = folder / "cases" / "case", "blind", {}
+    else:
+        kind, truth = make_guard(number, seed, folder)
+        line = {"number": number, "kind": kind, "made": truth}
+        where, right = folder, {(truth["effect"], truth["port"])} if kind in ("term", "pushed_term") else set()
+    made_in, began = time.process_time() - began, time.process_time()
+    model = read_simulation(where / "simulation.toml")
+    with np.errstate(over="ignore", invalid="ignore"):
+        case, as_read, verdict = explain(model, read_measured(where / "measured.csv", model), ALL)
+        found, _ = answer(case, as_read, verdict)
+    said = found.to_json()
+    for one in said["explanations"]:
+        del one["left"]
+    named = {(one.name, one.place) for one in found.effects} if found.verdict in NAMED else set()
+    fine = guards.is_right(kind, truth, found) if kind == "outside" else bool(named) and named <= right
+    line |= {"made in": made_in, "seconds": time.process_time() - began, "named": bool(named), "right": fine}
+    line |= {"accepted": [*right]}
+    line |= {"found": {key: one for key, one in said.items() if key not in ("findings", "provenance", "where")}}
+    if named and twins:
+        source = TwinSource(case, verdict.found, verdict.found.noise)
+        if source.draw(0) is not None:
+            answers = [*search_records([(source, one) for one in range(twins)], model, replace(ALL, twins=twins))]
+            line |= {"twins": [one == _name(found) for one in answers], "with twins": time.process_time() - began}
+    shutil.rmtree(folder)
+    return line
+
+
+def ask_in_time(number: int, *rest: Any, limit: int = LIMIT_S) -> dict[str, Any]:
+    """Answer a case, or say what it failed of."""
+    signal.signal(signal.SIGALRM, guards.stop)
+    signal.alarm(limit)
+    try:
+        return ask(number, *rest)
+    except Exception as error:
+        return {"number": number, "failed": f"{type(error).__name__}: {error}"[:200]}
+    finally:
+        signal.alarm(0)
+
+
+if __name__ == "__main__":
+    GIVEN.out.mkdir(parents=True, exist_ok=True)
+    answers = GIVEN.out / "answers.jsonl"
+    answers.touch()
+    there = {json.loads(line)["number"] for line in answers.read_text(encoding="utf-8").splitlines()}
+    for number in (one for one in range(GIVEN.cases) if one not in there):
+        line = ask_in_time(number, GIVEN.bench, GIVEN.seed, GIVEN.out, GIVEN.twins)
+        with answers.open("a", encoding="utf-8") as file:
+            file.write(json.dumps(line) + "\n")
