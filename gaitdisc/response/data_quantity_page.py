@@ -90,11 +90,8 @@ def _near(quantity: DataQuantity) -> tuple[float, float, float]:
     """Training length from which on Exo is near to its best, the whole length, and R2 at the whole."""
     exo = quantity.medians()["exo"].sort_index()
     far = exo.index[(exo < exo.iloc[-1] - ENOUGH).to_numpy()]
-    return (
-        float(exo.index[exo.index > far.max()].min() if len(far) else exo.index[0]),
-        float(exo.index[-1]),
-        exo.iloc[-1],
-    )
+    start = exo.index[exo.index > far.max()].min() if len(far) else exo.index[0]
+    return float(start), float(exo.index[-1]), exo.iloc[-1]
 
 
 def _seconds(lengths: pd.Series) -> str:

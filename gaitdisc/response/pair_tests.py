@@ -59,7 +59,7 @@ def comparison_sentences(run: ResponseRun) -> list[str]:
         "A non-significant difference does not show equality: the interval of the shift says how large it may be.",
         _floor(tests),
         _say_unexplained(tests),
-        f"For {every} of the three pairs, {listing(said)} show a difference (families; the first is used).",
+        f"Differences in {every} of the three pairs, by family: {listing(said)}. The first family is used.",
     ]
 
 
@@ -146,7 +146,7 @@ def _families_table(tests: PairTests) -> Table:
         f"The same tests with other families, n = {counted(tests.participants, 'participant')}, alpha = "
         f"{tests.alpha:g} in each. Level: the level at which the step-down procedure stopped, printed in the "
         "dissertation as “Sidak α = 0.013”. With eight variables per pair and four rejected it is 0.0127; with three "
-        "pairs per variable it cannot be."
+        "pairs per variable no level has this value."
     )
     columns = ("family", "pair", "tests in it", "level at the stop", "different", "which")
     return Table("tests-families", caption, columns, tuple(rows), tests.families)
