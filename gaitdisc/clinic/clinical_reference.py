@@ -59,7 +59,7 @@ def _group(name: str, rows: pd.DataFrame, file: str) -> PublishedGroup:
     for variable, own in rows.groupby("variable", sort=False):
         where = f"{file}, {name} {variable}"
         if variable not in BY_NAME:
-            raise SchemaError(f"{where}: a variable must be one of {', '.join(BY_NAME)}", "it is not", "Correct it.")
+            raise SchemaError(f"{where}: the variable must be one of {', '.join(BY_NAME)}", "it is not", "Correct it.")
         curve = own.sort_values("percent")[["percent", "mean", "sd"]].to_numpy(float)
         at, mean, sd = curve.T
         whole = len(at) >= FEWEST_POINTS and np.isfinite(curve).all() and (np.diff(at) > 0).all() and (sd >= 0).all()
@@ -120,7 +120,7 @@ class ClinicalReference:
 def save_reference(reference: ClinicalReference, folder: Path) -> Path:
     """Save a reference as `reference.json`, whole, with a hash of its own."""
     if reference.published:
-        raise SchemaError("only a reference of single legs can be saved", reference.title, "Keep its table.")
+        raise SchemaError("only a reference made of single legs can be saved", reference.title, "Keep its table.")
     data = {
         "format": FORMAT,
         "title": reference.title,

@@ -38,7 +38,7 @@ def select_forward(
         number = len(now.model.parts) + 1
         if number > most:
             break
-        search.progress(f"round {turn + 1} of {MOST_TURNS} at most")
+        search.progress(f"round {turn + 1} of at most {MOST_TURNS}")
         before, *more = search.extended(now) or [now]
         more = ranked(more, search.candidates)
         rivals = rivals or more
