@@ -148,14 +148,14 @@ def load_reference(place: Path) -> ClinicalReference:
     data = read_sealed(path)
     if data.get("format") != FORMAT:
         raise SchemaError(
-            f"a reference of format {FORMAT} is needed", f"{path} has {data.get('format')!r}", "Make it again."
+            f"a reference of format {FORMAT} is needed", f"{path} has {data.get('format')!r}", "Compute it again."
         )
     try:
         legs = {word: tuple(map(_leg, own)) for word, own in data["legs"].items()}
         return ClinicalReference(data["title"], legs, data["settings"], data["versions"], data["created"])
     except (KeyError, TypeError, ValueError, AttributeError) as error:
         raise SchemaError(
-            "a reference must contain legs with curves of 101 points", f"{path}: {error!r}", "Make it again."
+            "a reference must contain legs with curves of 101 points", f"{path}: {error!r}", "Compute it again."
         ) from error
 
 

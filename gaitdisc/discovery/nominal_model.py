@@ -85,7 +85,7 @@ def stride_trials(walk: Walk, name: str, strides: int = STRIDES) -> Measured:
     if len(trials) < FEWEST_TRIALS:
         raise StrideError(
             f"`discover` needs {FEWEST_TRIALS * strides} strides, with {strides} in a row in each trial",
-            f"{walk.trial.name} has {len(own)}, in a row {len(trials)} times {strides}",
+            f"{walk.trial.name} has {len(own)}, and {len(trials)} series of {strides} in a row",
             "Record longer, or use fewer strides in a trial.",
         )
     return check_measured(trials, ("phase",), ("theta",), walk.trial.name)

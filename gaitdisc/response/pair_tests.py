@@ -52,14 +52,14 @@ def comparison_sentences(run: ResponseRun) -> list[str]:
         return [f"{tests.too_few}. The numbers describe these participants only."]
     counts = tests.families.groupby("family")["different"].sum()
     total = int((tests.families["family"] == "pair").sum())
-    said = [f"{int(counts.get(family, 0))} over {_FAMILY_WORDS[family]}" for family in FAMILIES]
+    differing = [f"{int(counts.get(family, 0))} over {_FAMILY_WORDS[family]}" for family in FAMILIES]
     every = counted(total, "test")
     return [
         *(_verdict(tests, first, second) for first, second in PAIRS[:3]),
         "A non-significant difference does not show equality: the interval of the shift says how large it may be.",
         _floor(tests),
         _say_unexplained(tests),
-        f"Differences in {every} of the three pairs, by family: {listing(said)}. The first family is used.",
+        f"Differences in {every} of the three pairs, by family: {listing(differing)}. The first family is used.",
     ]
 
 
@@ -131,15 +131,15 @@ def _families_table(tests: PairTests) -> Table:
     rows = []
     for family in FAMILIES:
         for first, second in PAIRS[:3]:
-            found = tests.families
-            found = found[(found["family"] == family) & (found["first"] == first) & (found["second"] == second)]
-            named = [label(str(variable)) for variable in found.loc[found["different"], "variable"]]
+            tested = tests.families
+            tested = tested[(tested["family"] == family) & (tested["first"] == first) & (tested["second"] == second)]
+            named = [label(str(variable)) for variable in tested.loc[tested["different"], "variable"]]
             rows.append((
                 _FAMILY_WORDS[family],
                 f"{_WORDS[first]}, {_WORDS[second]}",
-                _range(found["tests"], "d"),
-                _range(found["critical"], ".4f"),
-                f"{len(named)} of {len(found)}",
+                _range(tested["tests"], "d"),
+                _range(tested["critical"], ".4f"),
+                f"{len(named)} of {len(tested)}",
                 ", ".join(named) if named else "none",
             ))  # fmt: skip
     caption = (
