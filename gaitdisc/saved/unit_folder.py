@@ -40,7 +40,7 @@ CHANGED = "has changed since it was saved (SHA-256 differs)"
 
 
 class DamagedError(SchemaError):
-    """A file of results that is not as it was saved."""
+    """A file of results has changed since it was saved."""
 
     path: Path
     what: str
