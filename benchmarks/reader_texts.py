@@ -30,6 +30,11 @@ GIVEN = command_line(
 )
 sys.path.insert(0, str(CHECKOUT))  # the texts of this checkout, whatever is installed
 FEWEST_WORDS = 4  # [words] that make a sentence or a caption; shorter texts are labels
+# A list of words, such as the labels of a column, has neither: a text has one of these, or a mark before a blank.
+OF_A_TEXT = re.compile(
+    r"\b(a|an|the|of|to|in|on|at|by|for|with|without|from|as|than|per|and|or|no|not|is|are|that|which)\b|[.,;:)%](\s|$)"
+)
+FINDING = ("severity", "kind", "file", "what", "affects", "channel")  # its arguments in their order, as its line says
 OWNERS = (ast.Module, ast.ClassDef, ast.FunctionDef, ast.AsyncFunctionDef)
 
 
@@ -50,14 +55,20 @@ def list_code_texts(path: Path) -> Iterator[Text]:
     def walk(node: ast.AST) -> Iterator[Text]:
         name = ast.unparse(node.func).rpartition(".")[2] if isinstance(node, ast.Call) else ""
         if isinstance(node, ast.Call) and (name.endswith("Error") or name == "Finding"):
-            words = [write_template(one) for one in [*node.args, *(key.value for key in node.keywords)]]
-            if spoken := [one for one in words if " " in one]:
-                yield Text("finding" if name == "Finding" else "refusal", f"{place}:{node.lineno}", "; ".join(spoken))
+            parts = [*node.args, *(key.value for key in node.keywords)]
+            marks = [f"{mark}: " if name == "Finding" and mark in ("kind", "affects") else "" for mark in FINDING]
+            words = zip(parts, [*marks, *("" for _ in parts)], strict=False)
+            if spoken := [f"{mark}{text}" for part, mark in words if " " in (text := write_template(part))]:
+                kind, text = "finding" if name == "Finding" else "refusal", "; ".join(spoken)
+                bare = re.sub(r"\{[^}]*\}|kind: [^;]*|note / warning|warning / note", "", text)
+                if len(bare.split()) > (FEWEST_WORDS if kind == "finding" else 1):
+                    yield Text(kind, f"{place}:{node.lineno}", text)
         elif isinstance(node, ast.Constant | ast.JoinedStr):
             text = write_template(node)
             spoken = " " in text.strip() and "</" not in text and not re.match("<[a-z]", text)
             if (
                 spoken
+                and OF_A_TEXT.search(text)
                 and len(re.findall(r"[A-Za-z]{2,}", re.sub(r"\S*_\S*", "", re.sub(r"\{[^}]*\}", "", text))))
                 >= FEWEST_WORDS
             ):
@@ -89,10 +100,13 @@ def write_template(node: ast.AST) -> str:
 
 def split_text(text: str | None) -> list[str]:
     """Paragraphs of prose, list items and rows of tables; no headings, code or doctests."""
-    text = re.sub(r"^```.*?^```", "", text or "", flags=re.DOTALL | re.MULTILINE)
-    parts = (re.sub(r"\s+", " ", one).strip() for one in re.split(r"\n\s*\n|\n(?=[-*|] )|\n(?=\w+ : )", text))
+    text = re.sub(r"^```.*?^```|<!--.*?-->", "", text or "", flags=re.DOTALL | re.MULTILINE)
+    parts = [re.sub(r"\s+", " ", one).strip() for one in re.split(r"\n\s*\n|\n(?=[-*|] )|\n(?=\w+ : )", text)]
     hidden = ("#", ">>>", "|--", "| --", ":::", "![", "{{")
-    return [one for one in parts if len(one.split()) >= FEWEST_WORDS and not one.startswith(hidden)]
+    counts = (len(re.sub(r"\{\{.*?\}\}", "", one).split()) for one in parts)
+    return [
+        one for one, count in zip(parts, counts, strict=True) if count >= FEWEST_WORDS and not one.startswith(hidden)
+    ]
 
 
 def list_texts() -> list[Text]:

@@ -56,15 +56,15 @@ class MissingFileError(ReadError, FileNotFoundError):
 
 
 class WriteError(GaitdiscError):
-    """A file cannot be written; what stood there before is untouched."""
+    """A file cannot be written; an earlier file is unchanged."""
 
 
 class SchemaError(GaitdiscError):
-    """A study file, a results folder or a table does not have the agreed form."""
+    """A study file, a results folder or a table does not have the required form."""
 
 
 class SimulationError(SchemaError):
-    """A simulation cannot be what it claims to be.
+    """A simulation file or a model is not valid.
 
     place: section and key of the simulation file, `("equations", "omega")`; empty where the whole file is meant
 
@@ -98,7 +98,7 @@ class ShapeError(GaitdiscError):
 
 
 class SamplingError(GaitdiscError):
-    """Time does not advance evenly, or a recording is too short for what is computed of it."""
+    """Time does not advance evenly, or a recording is too short for the computation."""
 
 
 class StrideError(GaitdiscError):

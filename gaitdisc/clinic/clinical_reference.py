@@ -59,7 +59,7 @@ def _group(name: str, rows: pd.DataFrame, file: str) -> PublishedGroup:
     for variable, own in rows.groupby("variable", sort=False):
         where = f"{file}, {name} {variable}"
         if variable not in BY_NAME:
-            raise SchemaError(f"{where}: a variable must be one of {', '.join(BY_NAME)}", "it is not", "Correct it.")
+            raise SchemaError(f"{where}: the variable must be one of {', '.join(BY_NAME)}", "it is not", "Correct it.")
         curve = own.sort_values("percent")[["percent", "mean", "sd"]].to_numpy(float)
         at, mean, sd = curve.T
         whole = len(at) >= FEWEST_POINTS and np.isfinite(curve).all() and (np.diff(at) > 0).all() and (sd >= 0).all()
@@ -120,7 +120,7 @@ class ClinicalReference:
 def save_reference(reference: ClinicalReference, folder: Path) -> Path:
     """Save a reference as `reference.json`, whole, with a hash of its own."""
     if reference.published:
-        raise SchemaError("only a reference of single legs can be saved", reference.title, "Keep its table.")
+        raise SchemaError("only a reference made of single legs can be saved", reference.title, "Keep its table.")
     data = {
         "format": FORMAT,
         "title": reference.title,
@@ -148,14 +148,14 @@ def load_reference(place: Path) -> ClinicalReference:
     data = read_sealed(path)
     if data.get("format") != FORMAT:
         raise SchemaError(
-            f"a reference of format {FORMAT} is needed", f"{path} has {data.get('format')!r}", "Make it again."
+            f"a reference of format {FORMAT} is needed", f"{path} has {data.get('format')!r}", "Compute it again."
         )
     try:
         legs = {word: tuple(map(_leg, own)) for word, own in data["legs"].items()}
         return ClinicalReference(data["title"], legs, data["settings"], data["versions"], data["created"])
     except (KeyError, TypeError, ValueError, AttributeError) as error:
         raise SchemaError(
-            "a reference must contain legs with curves of 101 points", f"{path}: {error!r}", "Make it again."
+            "a reference must contain legs with curves of 101 points", f"{path}: {error!r}", "Compute it again."
         ) from error
 
 

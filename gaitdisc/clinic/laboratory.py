@@ -20,8 +20,7 @@ LARGEST_LOGO = 2**19  # [bytes] a page stays one file that can be mailed
 LONGEST = 1000  # letters of a comment
 PICTURES = {b"\x89PNG": "image/png", b"\xff\xd8\xff": "image/jpeg"}  # by their first bytes
 FORM = (
-    f"{FILE} has laboratory, logo, pdf, a table [axes] and tables [people.P07] with affected and comment, and nothing "
-    f"else"
+    f"{FILE} may contain only laboratory, logo, pdf, a table [axes] and tables [people.P07] with affected and comment"
 )
 KINDS: dict[str, type] = {"laboratory": str, "logo": str, "pdf": bool, "axes": dict, "people": dict}
 AFFECTED = ("left", "right", "both")
@@ -59,7 +58,7 @@ def load_laboratory(run_folder: Path) -> Laboratory:
     try:
         data = parse_toml(path.read_text(encoding="utf-8"))
     except (ValueError, OSError) as error:
-        raise SchemaError(f"{FILE} must be a TOML file", f"it says: {str(error)[:200]}", "Correct the line.") from error
+        raise SchemaError(f"{FILE} must be a TOML file", f"it is not: {str(error)[:200]}", "Correct it.") from error
     for key, value in data.items():
         if key not in KINDS or not isinstance(value, KINDS[key]):
             raise _refusal(f"{key} = {str(value)[:60]!r}")

@@ -46,17 +46,17 @@ def like_controls(legs: Legs, own: Sequence[LegCurves], leg_m: float | None, age
     why = (
         "age and speed are unknown" if list_groups(legs) else f"a group needs {FEWEST} controls of similar age or speed"
     )
-    which = f", the group nearest in {' and '.join(by)}" if by else f", all of the reference ({why})"
+    which = f", the group nearest in {' and '.join(by)}" if by else f", the entire reference ({why})"
     said = [f"Compared with {described(of_both)}{which}."]
     if of_both != of_age:
         said.append("Times and distances are compared with controls of any speed.")
     ages = [leg.age_years for leg in of_age if leg.age_years is not None]
     if age_years is not None and ages and not min(ages) <= age_years <= max(ages):
         whose = "adults" if min(ages) >= ADULT > age_years else "of another age"
-        said.append(f"These controls are {whose}, the person is {age_years} years old: deviations may be due to age.")
+        said.append(f"These controls are {whose}; at {age_years} years, deviations may be due to age.")
     unknown = "the person" if leg_m is None else "some controls" if any(leg.leg_m is None for leg in legs) else ""
     if leg_m is None or unknown:
-        said.append(f"Not scaled: the leg length of {unknown} is unknown. Speeds and lengths depend on body size.")
+        said.append(f"Nothing is scaled: the leg length of {unknown} is unknown. Speed and length depend on body size.")
         return LikeControls(of_both, of_age, tuple(said))
     said.append(
         "Times, distances, moments and powers of the controls are scaled to this person's leg length (Hof 1996)."

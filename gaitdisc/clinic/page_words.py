@@ -21,7 +21,7 @@ if TYPE_CHECKING:
     from gaitdisc.clinic.panels import Panel
 
 TIERS = {
-    2: "Beyond what one more healthy person shows (95 % limits of this page)",
+    2: "Outside the limits for one more healthy person (95 % for this page)",
     1: "Outside 2 standard deviations of the controls, within those limits",
 }
 TEMPLATES = Path(__file__).parents[1] / "report" / "templates"
@@ -32,8 +32,8 @@ TABLES = (  # headings and cells of tables, and the words between numbers in a s
     "state", "person", "condition", "cycles L, R", "Side affected", "both", "profile score [deg]", "why",
     "green", "amber", "red", "gait profile score", "Time and distance",
     "None of {} values lies outside 2 standard deviations of the reference.", "No comparison with controls: {}.",
-    "A sentence needs {} cycles of a leg; there are {}.",
-    "With {} controls the 95 % limits are wide: smaller differences may be there.",
+    "A leg needs {} cycles to be reported; it has {}.",
+    "With {} controls the 95 % limits are wide: smaller differences may be missed.",
     *TIERS.values(),
 )  # fmt: skip
 HEADER = ("English", "other")
@@ -89,7 +89,7 @@ def write_words(path: Path, english: Sequence[str], words: PageWords = ENGLISH) 
 
 def read_words(path: Path, english: Sequence[str]) -> PageWords:
     """Read a table of words; what is no word of the pages is refused with its line."""
-    form = "words of a language are a CSV with the columns English and other"
+    form = "a table of translated words must be a CSV file with the columns English and other"
     try:
         text = path.read_bytes()[: LARGEST_BYTES + 1].decode("utf-8-sig")
         rows = list(csv.reader(io.StringIO(text), delimiter=";" if text.partition("\n")[0].count(";") else ","))

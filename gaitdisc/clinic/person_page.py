@@ -50,22 +50,22 @@ from gaitdisc.whole_file import write_whole
 from gaitdisc.words import NONE, counted, number
 
 MOMENT_SIGNS = (
-    "Moments are internal, of the muscles, named after the movement they produce, per kg of body mass; powers are "
-    "positive where generated; forces are of the ground on the foot. Only cycles whose whole stance lay on one plate, "
-    "with this foot alone on it."
+    "Moments are internal (of the muscles), per kg of body mass, and named after the movement that they produce. Power "
+    "is positive when it is generated. Forces are those of the ground on the foot. Only cycles in which this foot "
+    "alone was on one plate for the entire stance are shown."
 )
 EMG = (
-    "Envelopes in percent of the largest of the leg's own mean. Dark bars: when the muscle is active in the walking of "
-    "healthy adults, about (Perry and Burnfield 2010); a muscle without a bar has none there."
+    "Envelopes are in percent of the peak of the leg's own mean. Dark bars show roughly when the muscle is active in "
+    "healthy adults (Perry and Burnfield 2010); a muscle without a bar is not in that source."
 )
-RAW = " Below the envelopes: raw EMG of one cycle of each leg, the one whose envelopes lie nearest to their means."
+RAW = " Below the envelopes: raw EMG of one cycle of each leg, whose envelopes are closest to their means."
 CYCLES = (
-    f"Means thick, single cycles thin (the first {MOST_SINGLE}). CMC: coefficient of multiple correlation of a leg's "
-    f"cycles, L, R (Kadaba 1989), 1 where all are alike; – where there is one cycle or it is not defined."
+    f"Thick: means; thin: single cycles (the first {MOST_SINGLE}). CMC: coefficient of multiple correlation of a leg's "
+    "cycles, L, R (Kadaba 1989); 1 if all cycles are identical, – if it is undefined."
 )
 CONTRAST = (
-    "Dotted: {}; unbroken or dashed: {}. Bars above, in the colour of the leg: where they differ by a permutation test "
-    "of the cycles, corrected for the whole cycle, all curves and both legs; faint where by less than 5 deg."
+    "Dotted: {}; solid or dashed: {}. Bars above, in the colour of the leg, show where the two differ in a permutation "
+    "test of the cycles, corrected for the entire cycle, all curves and both legs. Faint bars: by less than 5 deg."
 )
 LIGHT_MARKS = {"green": "●", "amber": "▲", "red": "■"}
 RANKS = {"red": 0, "amber": 1, "green": 2}
@@ -204,16 +204,17 @@ def _method(person: PersonSession) -> list[str]:
         pooled = reading.pooled
         by = ", ".join(f"{name} ({counted(count, 'trial')})" for name, count in pooled.detectors.items())
         moved = pooled.contact_offset_s
-        words = f", moved by {1000 * moved:+.0f} ms after {pooled.offset_steps} steps that a plate saw" if moved else ""
+        words = f", shifted by {1000 * moved:+.0f} ms after {pooled.offset_steps} steps on a plate" if moved else ""
         found.append(f"{pooled.where}: contacts by {by or 'nothing'}{words}.")
         filters = dict.fromkeys(finding.what for finding in pooled.findings if finding.kind == "filter")
         found += [f"{pooled.where}: {words}; Butterworth, forwards and backwards." for words in filters]
         found += dict.fromkeys(f"Angles by {one.what}." for one in pooled.findings if one.kind == "marker set")
     found.append("Pelvic angles are shown for the side of the leg: obliquity up and rotation forwards of that side.")
     found.append(
-        "What stands out: rules that take one number of a leg's mean cycle. □ outside mean ± 2 standard deviations of "
-        "the reference; ■ beyond limits within which all numbers of one more healthy person lie with probability 0.95 "
-        "(t · sd · √(1 + 1/n), n people). From 10 controls on, mean and limits are those at the person's own speed."
+        "What stands out: each rule takes one number of a leg's mean cycle. □: outside mean ± 2 standard deviations of "
+        "the reference. ■: outside the limits that contain all numbers of one more healthy person with probability "
+        "0.95 (t · sd · √(1 + 1/n), n people). With 10 controls or more, mean and limits are those at this person's "
+        "speed."
     )
     return found
 

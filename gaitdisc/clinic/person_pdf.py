@@ -38,7 +38,7 @@ def write_person_pdf(shown: Mapping[str, Any], path: Path) -> Path:
     try:
         sheets = typst.compile(template, root=TEMPLATES, font_paths=fonts, sys_inputs={"page": page}, timestamp=0)
     except typst.TypstError as error:
-        raise SchemaError("typst must set a PDF without error", f"it says: {error}", "Save the logo again.") from error
+        raise SchemaError("typst must typeset the page", f"it reports: {error}", "Save the logo again.") from error
     return write_whole(path, sheets)
 
 

@@ -40,7 +40,7 @@ def before_and_after(
     if not own:
         people = ", ".join(dict.fromkeys(pooled.subject for pooled in run.of(CYCLES)))
         raise SchemaError(
-            "a person of the run with kept cycles is needed", f"{person!r}; there are {people}", "Name one."
+            f"the person must be one with kept cycles ({people})", f"found {person!r}", "Name one of them."
         )
     first, second = ([one for one in own if word in (one.pooled.session, one.pooled.condition)] for word in words)
     pairs = [

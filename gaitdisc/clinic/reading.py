@@ -29,9 +29,9 @@ from gaitdisc.recording import Finding
 from gaitdisc.statistics.cluster_test import PermutationPlan, two_sample_test
 from gaitdisc.words import SIDE_WORDS, label
 
-NO_REFERENCE = "there is no reference: gaitdisc reference makes one of the laboratory's own controls"
+NO_REFERENCE = "there is no reference; `gaitdisc reference` makes one from the laboratory's own controls"
 NO_CYCLE = "no cycle is kept"
-NO_LEGS = "a published reference has no single legs, from which limits are computed"
+NO_LEGS = "limits are computed from single legs, which a published reference does not contain"
 FEATURES = 15
 FEWEST_PEOPLE = 30  # twice the features; below it directions are those of single people
 FEWEST = 2  # people without whom the reference has no spread of its own
@@ -67,7 +67,7 @@ def read_beside(pooled: PooledCycles, reference: ClinicalReference | None) -> Cl
     why = "" if controls else NO_REFERENCE
     if reference is not None and not controls:
         there = ", ".join(map(repr, reference.legs))
-        why = f"no person of the reference walked {pooled.condition!r}; it has {there}"
+        why = f"no person of the reference walked {pooled.condition!r}; its conditions are {there}"
     why = why if legs else NO_CYCLE
     like = like_controls(controls, tuple(legs.values()), pooled.leg_m, pooled.age_years)
     profile, no_profile = (None, why) if why else find_profile(legs, like.curves)
@@ -176,7 +176,7 @@ def find_profile(
     known = published or bands(reference)
     lacking = [name for name in PROFILE if name not in known]
     if lacking:
-        return None, f"the reference lacks {', '.join(lacking).replace('_', ' ')} of two people or more"
+        return None, f"fewer than two people of the reference have {', '.join(lacking).replace('_', ' ')}"
     absent = {side: [name for name in PROFILE if name not in leg.cycles] for side, leg in legs.items()}
     if all(absent.values()) or not legs:
         names = ", ".join(next(iter(absent.values()), PROFILE)).replace("_", " ")
@@ -298,7 +298,7 @@ def _spans(first: LegCurves, second: LegCurves) -> tuple[list[DifferingSpan], in
     ]
     if not names:
         raise ComparisonError(
-            "a test needs an angle that all cycles of both have", "found none", "Record the same angles in both."
+            "a test needs an angle that all cycles of both sets have", "found none", "Record the same angles in both."
         )
     sets: Mapping[str, np.ndarray] = {
         word: np.stack([leg.cycles[name] for name in names], axis=2) for word, leg in (("a", first), ("b", second))

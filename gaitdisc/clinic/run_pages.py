@@ -161,7 +161,7 @@ def write_person(
     own = {title: cycles for title, cycles in people.items() if cycles[0].subject == person}
     if not own:
         known = ", ".join(dict.fromkeys(cycles[0].subject for cycles in people.values())) or "nobody"
-        raise SchemaError("a page needs a person of the run", f"{person!r}; there are {known}", "Name one of them.")
+        raise SchemaError("the person must be in the run", f"{person!r} is not; it has {known}", "Name one of them.")
     names = file_names(list(people))
     found = []
     for title, cycles in own.items():

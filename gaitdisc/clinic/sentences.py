@@ -80,10 +80,10 @@ def outstanding_sentences(reading: ClinicalReading, say: Callable[[str], str] = 
         rest.append(say("None of {} values lies outside 2 standard deviations of the reference.").format(enough))
     few = [f"{leg.count} {say(SIDE_WORDS[side])}" for side, leg in reading.legs.items() if leg.count < FEW]
     if few:
-        rest.append(say("A sentence needs {} cycles of a leg; there are {}.").format(FEW, ", ".join(few)))
+        rest.append(say("A leg needs {} cycles to be reported; it has {}.").format(FEW, ", ".join(few)))
     people = max((band.people for band in reading.bands.values()), default=0)
     if people < MANY:
-        rest.append(say("With {} controls the 95 % limits are wide: smaller differences may be there.").format(people))
+        rest.append(say("With {} controls the 95 % limits are wide: smaller differences may be missed.").format(people))
     return {**found, **({"": rest} if rest else {})}
 
 
@@ -139,8 +139,8 @@ def score_sentences(reading: ClinicalReading) -> list[str]:
         each = [f"{SIDE_WORDS[side]} {number(value, 0)}" for side, value in reading.deviation_index.items()]
         far = max(0.0, (100 - min(reading.deviation_index.values())) / 10)
         found.append(
-            f"Gait deviation index: {', '.join(each)} (controls 100 ± 10). The lower leg lies "
-            f"{number(far, 1)} standard deviations of the controls below their mean."
+            f"Gait deviation index: {', '.join(each)} (controls 100 ± 10). The lower of these lies {number(far, 1)} "
+            "standard deviations of the controls below their mean."
         )
     else:
         found.append(f"No gait deviation index: {reading.no_index}.")
@@ -152,8 +152,8 @@ def _meaning(score: Score) -> str:
     word = "more" if more >= 0 else "less"
     return (
         f"All curves together lie {number(score.value, 1)} deg (root mean square) from the controls' mean, "
-        f"{number(abs(more), 1)} deg {word} than a control's do; differences from {SCORE_LEAST:g} deg on matter "
-        f"(Baker 2012)."
+        f"{number(abs(more), 1)} deg {word} than those of a typical control; differences of {SCORE_LEAST:g} deg or "
+        "more matter (Baker 2012)."
     )
 
 

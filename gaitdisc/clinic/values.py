@@ -44,8 +44,8 @@ def values_table(reading: ClinicalReading) -> Table:
     people = max((one.people for one in reading.spatiotemporal.values()), default=0)
     known = f"reference mean ± standard deviation over legs, {people} people" if people else "no reference"
     caption = (
-        f"Mean ± standard deviation (cycles), of {FEW} cycles or more; {known}; asymmetry: left less right over their "
-        f"mean."
+        f"Mean ± standard deviation (number of cycles), from {FEW} cycles on; {known}; asymmetry: left minus right, "
+        "divided by their mean."
     )
     columns = ("value", "left", "right", "reference", "asymmetry")
     return Table("spatiotemporal", caption, columns, tuple(rows), pd.DataFrame(records))
@@ -78,9 +78,9 @@ def numbers_table(reading: ClinicalReading) -> Table:
             "people": limits.people, "cycles": one.cycles, "tier": one.tier,
         })  # fmt: skip
     caption = (
-        f"All values that the rules look at, n = {len(rows)}; {len(reading.noted)} stand out: □ outside 2 standard "
-        f"deviations, ■ beyond the limits, within which all values of one more healthy person lie with probability "
-        f"0.95. In brackets: cycles; controls. Reference: at this person's speed where it follows the speed."
+        f"All values that the rules use, n = {len(rows)}; {len(reading.noted)} stand out: □ outside 2 standard "
+        "deviations, ■ outside the limits that contain all values of one more healthy person with probability 0.95. In "
+        "brackets: number of cycles; of controls. Reference: at this person's speed, if the value depends on speed."
     )
     columns = ("value of", "side", "value", "limits", "reference", "stands out")
     return Table("outstanding", caption, columns, tuple(rows), pd.DataFrame(records))

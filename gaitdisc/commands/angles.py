@@ -24,7 +24,7 @@ def angles(
     ] = None,
     widths: Annotated[
         tuple[float, float, float, float] | None,
-        typer.Option(help="Left and right knee, left and right ankle [m], if the static file has none."),
+        typer.Option(help="Widths of left and right knee, left and right ankle [m], if the static file has none."),
     ] = None,
 ) -> None:
     """Joint angles from markers or segments, with the package's signs; widths come from the static C3D, if any."""

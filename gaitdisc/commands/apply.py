@@ -21,7 +21,7 @@ def apply(
         Path | None, typer.Option(help="File to write; by default RECORDING_reconstructed.mot in this folder.")
     ] = None,
 ) -> None:
-    """Reconstruct the states of a recording with a saved model, and their errors if they were recorded."""
+    """Reconstruct the states of a recording with a saved model; report errors if the states were recorded."""
     from gaitdisc.own_files import claim_file
     from gaitdisc.reconstruction.reconstruct_study import reconstruct_recording
 

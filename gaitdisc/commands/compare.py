@@ -31,10 +31,10 @@ def compare(  # noqa: PLR0913, PLR0917 these are the options of a command
     smallest_angle: Annotated[float, typer.Option(min=0.0, help="Smallest angle difference named [deg].")] = 2.0,
     smallest_moment: Annotated[float, typer.Option(min=0.0, help="The same for moments [N m/kg].")] = 0.1,
     smallest_share: Annotated[
-        float, typer.Option(min=0.0, help="Smallest difference of other channels: share of the range of the curve.")
+        float, typer.Option(min=0.0, help="Smallest difference of other channels, as a share of the curve's range.")
     ] = 0.05,
     body_weight: Annotated[
-        float | None, typer.Option(min=1.0, help="Body weight [N]; forces are then named from that share of it.")
+        float | None, typer.Option(min=1.0, help="Body weight [N]; for forces, the share then refers to it.")
     ] = None,
 ) -> None:
     """Compare two walks over the stride: where they differ, by how much, and whether significantly."""

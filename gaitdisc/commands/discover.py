@@ -52,10 +52,10 @@ def discover(  # noqa: PLR0913, PLR0917 these are the options of a command
     alpha: Annotated[float, typer.Option(help="Maximum false-positive rate.")] = 0.05,
     twins: Annotated[
         int,
-        typer.Option(help="Simulate so many records with the effect and without it, and search them as well.", min=0),
+        typer.Option(help="Number of records like yours to simulate with the effect and without it and search.", min=0),
     ] = 0,
     plan: Annotated[
-        bool, typer.Option("--plan", help="Before a measurement: how large the given effects must be to be found.")
+        bool, typer.Option("--plan", help="Before a measurement: report how large the effects must be to be found.")
     ] = False,
     draw: Annotated[bool, typer.Option("--report/--no-report", help="Write report.html as well.")] = True,
     quiet: Quiet = False,

@@ -69,7 +69,7 @@ def _keep_normal_data(file: Path, out: Path, people: int) -> None:
     text = table.to_csv(index=False, float_format="%.6g")
     path = write_whole(out / PUBLISHED, f"# normal data of {people} people, from {file.name}\n{text}")
     typer.echo(f"  curves: {', '.join(table['variable'].unique()).replace('_', ' ')}")
-    typer.echo("  bands and profile scores are computed; nothing stands out, since limits need single legs")
+    typer.echo("  bands and profile scores are computed, but no deviation is reported, because limits need single legs")
     typer.echo(f"reference: {path}. Its first line is printed on each page: write there who these people are.")
 
 

@@ -22,7 +22,7 @@ def report(
     language: Annotated[
         str,
         typer.Option(
-            help="CSV of words, kept by the run; a new file is written if it does not exist; `en` for English."
+            help="Table of translated words (CSV), kept by the run and written if it does not exist; `en` for English."
         ),
     ] = "",
 ) -> None:

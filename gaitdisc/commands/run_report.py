@@ -167,5 +167,5 @@ def say_new_recordings(study: Study) -> None:
             found[beside] = found.get(beside, 0) + 1
     new = ", ".join(f"{count} {beside}" for beside, count in sorted(found.items()))
     if new:
-        words = "New recordings are not in the study file: {}. Take them up: gaitdisc watch STUDY --from RECORDINGS."
+        words = "New recordings are not in the study file: {}. Add them: gaitdisc watch STUDY --from RECORDINGS."
         typer.echo(words.format(new), err=True)

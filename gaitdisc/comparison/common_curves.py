@@ -56,7 +56,7 @@ def common_curves(walks: Sequence[WalkSummary], wanted: Sequence[str] = ()) -> C
     shared = _moving(shared, by_channel, walks, findings)
     if not shared:
         raise ChannelError(
-            "walks can be compared only in channels that all have, in the same unit, and that vary",
+            "walks can be compared only in channels that vary and that all of them have in the same unit",
             f"{' and '.join(map(walk_name, walks[:2]))} have "
             f"{' and '.join(str(len(walk.channels)) for walk in walks[:2])} channels, none of that kind"
             + (f": {findings[0].what}" if findings else ""),
@@ -68,8 +68,8 @@ def common_curves(walks: Sequence[WalkSummary], wanted: Sequence[str] = ()) -> C
         fewest, most = min(map(len, parts)), max(map(len, parts))
         if fewest < most:
             what = (
-                f"{most - fewest} of {most} strides are not used: in them at least one of the {len(shared)} "
-                "channels is missing"
+                f"{most - fewest} of {most} strides are not used, because at least one of their {len(shared)} channels "
+                "is missing"
             )
             findings.append(Finding("note", "strides", walk_name(walk), what, "the number of strides only"))
         curves.append(np.stack([part[:fewest] for part in parts], axis=2))

@@ -79,12 +79,12 @@ class Smallest:
 
 @dataclass(frozen=True, eq=False)
 class Mismatch(Saved, file="mismatch.json"):
-    """Second minus first, over the stride.
+    """Difference of two walks over the stride, second minus first.
 
     Parameters
     ----------
     first, second : str
-        What the two walks are called; the second is the one that is compared with, and gives the spread.
+        Names of the two walks; the second is the reference, and its strides give the spread.
     channels : tuple of Channel
         Channels that both walks have.
     curves : mapping of str to ndarray (phase, channel) [channel's unit]

@@ -35,8 +35,8 @@ def mismatch_sentences(mismatch: Mismatch) -> list[str]:
             f"There is no significant gap: {walks} cannot be distinguished in "
             f"{counted(len(mismatch.channels), 'channel')} ({n}, {p_words(float(mismatch.summary['p'].min()))}).",
             *moved,
-            "This does not prove equality: four of five such comparisons would detect a gap from "
-            f"{_by_unit(mismatch, unseen, 'visible', smallest=True)} on, and gaps of up to "
+            "This does not prove equality: four of five such comparisons would detect a gap of "
+            f"{_by_unit(mismatch, unseen, 'visible', smallest=True)} or more, and gaps of up to "
             f"{_by_unit(mismatch, unseen, 'within')} at some point are not excluded.",
         ]
     if not ordered:

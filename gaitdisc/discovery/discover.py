@@ -152,7 +152,7 @@ def fit_given(case: Case, as_read: ScoredModel, effects: tuple[str, ...]) -> Ver
         if not tried:
             raise SchemaError(
                 "an effect to be fitted must change a measured channel, and may be given only once",
-                f"with {given!r} once more the simulation leaves all bounds, or runs as without it",
+                f"with {given!r} in addition, the simulation diverges or runs as without it",
                 "Give another effect or place.",
             )
         now = score(min(tried, key=lambda model: model.fit.misfit))

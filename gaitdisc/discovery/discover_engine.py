@@ -236,7 +236,7 @@ def _report_limits(engine: Engine, states: Values, data: Measured) -> Iterator[F
             what = f"{coordinate.called} is at its limit ({limits}) in {share:.2g} % of samples"
             yield Finding("note", "limit", "model", f"{what}: the model's own limit acts there", "")
     if touched := getattr(engine, "contacts", 0):
-        what = f"bodies touch in the record ({touched} contacts at most): forces there are stiff, expanded as they are"
+        what = f"bodies touch in the record (at most {touched} contacts); their stiff forces are expanded unchanged"
         yield Finding("warning", "contact", "model", what, "results that depend on runs through a contact")
 
 

@@ -143,7 +143,7 @@ class EngineFit:
         now, slopes = white(values, near), np.zeros((0, len(slots)))
         for turn in range(TURNS):
             self.progress(
-                f"fitting {counted(len(slots), 'number')} by its own runs, round {turn + 1} of {TURNS} at most"
+                f"fitting {counted(len(slots), 'number')} by the engine's own runs, round {turn + 1} of at most {TURNS}"
             )
             steps = STEP * np.maximum(np.abs(values), STEP) * np.eye(len(slots))
             slopes = np.column_stack([(white(values + step, near.copy()) - now) / step.sum() for step in steps])

@@ -93,7 +93,7 @@ def load_discovery(folder: Path) -> Discovery:
     except (KeyError, TypeError, ValueError, AttributeError) as error:
         if hasattr(error, "needed"):  # a refusal of its own
             raise
-        raise damage(folder / NAME, f"not in the expected form ({type(error).__name__}: {error})") from error
+        raise damage(folder / NAME, f"does not have the expected form ({type(error).__name__}: {error})") from error
 
 
 def _restore(value: Any) -> Any:

@@ -142,14 +142,16 @@ def noting_alike(case: Case) -> Case:
     """Return a case with a finding that says that the held-out data do not show what the others speak for."""
     blind = ", ".join(case.measured.trials[trial] for trial in case.held_out)
     what = f"trial {blind} {ALIKE}; only the other trials show it"
-    return case.noting(Finding("note", "held out", case.measured.source, what, "a test on data in which it acts"))
+    return case.noting(
+        Finding("note", "held out", case.measured.source, what, "the test, in which the effect does not act")
+    )
 
 
 def noted(before: Case, now: Case, why: str = ALIKE) -> Case:
     """Return a case with a finding that says what is held out in place of what, and why."""
     blind, instead = (", ".join(one.measured.trials[trial] for trial in one.held_out) for one in (before, now))
     what = f"trial {blind} {why}; trial {instead} is held out instead"
-    finding = Finding("note", "held out", now.measured.source, what, "nothing; the last data should have been held out")
+    finding = Finding("note", "held out", now.measured.source, what, "nothing; by default the last trial is held out")
     return now.noting(finding)
 
 

@@ -42,7 +42,7 @@ class Idle:
             words = " and ".join(repr(name) for name in names)
             who = f"{part} {words} has" if len(names) == 1 else f"{part}s {words} have"
             if names:
-                what = f"{who} no effect on what is measured"
+                what = f"{who} no effect on the measured channels"
                 found.append(Finding(severity, "no influence", source, what, spoils))
         return tuple(found)
 

@@ -182,9 +182,9 @@ def cut_walk_trials(record: JointRecord, model: MuscleMoment, simulation: Simula
         first += STRIDES if whole else 1
     if len(trials) < FEWEST_TRIALS:
         raise StrideError(
-            f"a device is tested on held-out strides: this needs {FEWEST_TRIALS} times {STRIDES} strides in a row, "
-            f"with a known load on the foot in {100 * KNOWN:.0f} % of the samples",
-            f"{record.subject} {record.condition} has {last + 1} strides, {len(trials)} times {STRIDES} in a row",
+            f"a test on held-out strides needs {FEWEST_TRIALS} series of {STRIDES} strides in a row, with a known load "
+            f"on the foot in {100 * KNOWN:.0f} % of the samples",
+            f"{record.subject} {record.condition} has {last + 1} strides, and {len(trials)} such series",
             "Record longer, and keep each foot on its own plate.",
         )
     driving = [signal.name for signal in simulation.inputs]
@@ -283,7 +283,7 @@ def stride_trials(walk: ProcessedWalk, name: str, strides: int = MOTION_STRIDES)
     if len(trials) < FEWEST_TRIALS:
         raise StrideError(
             f"`discover` needs {FEWEST_TRIALS * strides} strides, with {strides} in a row in each trial",
-            f"{walk.trial.name} has {len(own)}, in a row {len(trials)} times {strides}",
+            f"{walk.trial.name} has {len(own)}, and {len(trials)} series of {strides} in a row",
             "Record longer, or use fewer strides in a trial.",
         )
     return check_measured(trials, ("phase",), ("theta",), walk.trial.name)

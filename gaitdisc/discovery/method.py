@@ -39,11 +39,11 @@ SHORT_RUNS = (
     UNNAMED,
 )
 BY_ENGINE = (
-    "The engine ran the initial model over two periods at a time of every trial, each from the best initial state. If "
-    "the residual of these runs is white noise of the sensors' size, no effect is missing and nothing was searched.",
-    "The engine computed the accelerations along the smoothed recording of all others, and their derivatives with "
-    "respect to each coordinate, speed, control and parameter; a force on a coordinate enters exactly. The short runs "
-    "below use that expansion. Along muscles with fibres its error is treated as noise, 2 % of a channel's spread.",
+    "The engine ran the initial model along every trial, two periods at a time, each run from its best initial state. "
+    "If the residual of these runs is white noise of the sensors' size, no effect is missing and nothing was searched.",
+    "The engine then computed the accelerations along the smoothed recording, and their derivatives with respect to "
+    "each coordinate, speed, control and parameter; a force on a coordinate enters exactly. The short runs below use "
+    "that expansion. Along muscles with fibres its error is treated as noise, 2 % of a channel's spread.",
     *SHORT_RUNS,
     "If no muscle has fibres, the parameters and their intervals were fitted again with the engine's own runs.",
     "Effects with a form in the model's own file were inserted there and compared with the expression; others acted "
@@ -56,7 +56,7 @@ ALONG_A_WALK = (
     "search used no forward simulation.",
     "The residual of each joint was searched for every shape of the catalogue, and for groups of muscles whose force "
     "is larger, smaller or later than in the file. Noise of the angles was simulated, low-passed like the recording "
-    "and processed by the same inverse dynamics. The noise of a joint is this, or the residual of the best "
+    "and processed by the same inverse dynamics. The noise of a joint is this noise, or the residual of the best "
     "explanation.",
     "Evidence is the reduction of twice the log likelihood under that noise, minus the logarithm of the number of "
     "samples for each fitted parameter, and minus a penalty for the choice among all explanations at all joints.",

@@ -202,9 +202,9 @@ def twins_table(discovery: Discovery) -> Table:
     for acts, answers in kinds:
         rows += [(acts, *one) for one in sorted(answers.items(), key=lambda one: (-one[1], one[0]))]
     caption = (
-        "Answers to simulated records with your inputs, trials and gaps: free runs of the simulation, with and without "
-        "what was found, and noise as estimated. They lack what the found effect leaves unexplained, so that answers "
-        "to measured records are wrong more often."
+        "Answers to simulated records with your inputs, trials and gaps: free runs of the simulation with and without "
+        "the identified effect, plus noise of the estimated size. These records contain no unexplained residual, so "
+        "answers to measured records are wrong more often."
     )
     shown = tuple((acts, name if "@" in name else name.replace("_", " "), str(count)) for acts, name, count in rows)
     columns = ("acts", "answer", "records")

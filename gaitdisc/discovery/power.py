@@ -76,7 +76,7 @@ class Power:
             return f"{what} is found in 19 of 20 records like these even with a {number} of {least}."
         if math.isinf(size):
             most = with_unit(amount(self.sizes[-1], self.sizes[-1] / 10), self.unit)
-            instead = f"; most with {most} are answered with {self.instead}" if self.instead else ""
+            instead = f"; most records with {most} are answered with {self.instead}" if self.instead else ""
             return f"{what} is not found in 19 of 20 records like these with a {number} of up to {most}{instead}."
         said = with_unit(amount(size, size / 10), self.unit)
         return f"{what} is found in 19 of 20 records like these from a {number} of {said} on."

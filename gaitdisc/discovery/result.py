@@ -161,7 +161,7 @@ class ConditionAnswer:
 
 @dataclass(frozen=True)
 class Twins:
-    """What the same search answers to simulated records like the user's.
+    """Answers of the same search to simulated records like the user's.
 
     >>> Twins(20, "coulomb_friction@air", {"coulomb_friction@air": 19, "no_gap": 1}, {"no_gap": 20}).sentence[44:77]
     'gives the same answer in 19 of 20'
@@ -230,8 +230,7 @@ class Discovery(Saved, file="discovery.json"):
         The answer in words.
     where : tuple of Whereabouts
         Where the gap arises, the largest share first.
-    effects : tuple of FoundEffect
-        What was found.
+    effects : tuple of FoundEffect        Identified effects.
     rivals : tuple of FoundEffect
         Other tested explanations, best first.
     train, held_out : GapSize
@@ -252,11 +251,10 @@ class Discovery(Saved, file="discovery.json"):
         The first five explanations of the entire gap (single effects or sets): the named one, then those that close
         most on held-out data.
     conditions : tuple of ConditionAnswer
-        Of a study with several conditions besides Nominal: the answers of all.
+        Answers for all conditions, if a study has several in addition to Nominal.
     given : str
         ``proven`` or ``refuted`` by held-out data for effects that the user specified; empty after a search.
-    twins : Twins, optional
-        What the same search answers to simulated records like the user's.
+    twins : Twins, optional        Answers of the same search to simulated records like the user's.
     hide : callable, optional
         Returns the discovery as it is written: without words that may name a person.
     """

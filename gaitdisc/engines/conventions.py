@@ -34,7 +34,7 @@ class _Convention(NamedTuple):
 
 _UNIT = 'Write in the mapping: [observations.{column}] unit = "%s", expression = "%s{name}".'
 _TURNED = _Convention(
-    -1.0, "has the other sign", 'Write in the mapping: [observations.{column}] expression = "-({expression})".'
+    -1.0, "has the opposite sign", 'Write in the mapping: [observations.{column}] expression = "-({expression})".'
 )
 CONVENTIONS = {
     "rad": (
@@ -59,7 +59,7 @@ def refuse_other_units(mapping: Simulation, engine: Engine, measured: Measured, 
     if steep:
         one = engine.coordinates[steep[0]]
         raise SchemaError(
-            f"the angle {one.called!r} must stay within {STEEPEST:g} rad: at a right angle the other two are one",
+            f"the angle {one.called!r} must stay within {STEEPEST:g} rad: at a right angle the other two coincide",
             f"column {_column(mapping, one)!r} makes it {largest[steep[0]]:.4g} rad",
             "If these are degrees, say so in the mapping; else turn the axes of the model, so that x points ahead.",
         )

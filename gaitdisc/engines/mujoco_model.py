@@ -254,7 +254,7 @@ class MujocoModel:
             raise ReadError(
                 f"MuJoCo {self._mujoco.__version__} must be able to read the model",
                 f"{self.path.name}: {' '.join(str(error).split())[:300]}",
-                "Correct the part that it names: this version may not know it, or a mesh file may be missing.",
+                "Correct the part that the message names: this version may not know it, or a mesh file may be missing.",
             ) from None
 
     def _hear(self, said: str) -> None:

@@ -160,9 +160,9 @@ class OpensimModel:
         except (EOFError, BrokenPipeError, pickle.UnpicklingError):
             code = self._process.wait()
             raise ReadError(
-                "OpenSim computes the model to the end",
+                "OpenSim must compute the model to the end",
                 f"{self.path.name}: its process ended with exit code {code}",
-                "Open the model in OpenSim itself: a model that it cannot simulate there is not simulated here.",
+                "Open the model in OpenSim itself: a model that fails there cannot be simulated here.",
             ) from None
         if word == "absent":
             raise refuse_absent("opensim", ImportError(answer))
@@ -170,7 +170,7 @@ class OpensimModel:
             raise ReadError(
                 "OpenSim must be able to read and compute the model",
                 f"{self.path.name}: {' '.join(answer.split())[:300]}",
-                "Correct the part that it names, or open the model in OpenSim and save it in its present version.",
+                "Correct the part that the message names, or open the model in OpenSim and save it again.",
             )
         return answer
 

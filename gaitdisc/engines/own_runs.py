@@ -102,8 +102,8 @@ class OwnRuns:
     def said(self) -> str:
         """One sentence."""
         sizes = zip(self.units.items(), *map(root_mean_square, (self.before, self.after)), strict=True)
-        found = "; ".join(f"{name} by {old:.3g} {unit} before and {new:.3g} after" for (name, unit), old, new in sizes)
-        return f"run by {self.engine} itself over {len(self.before)} runs of all trials, the model misses {found}"
+        found = "; ".join(f"{old:.3g} {unit} of {name} before and {new:.3g} after" for (name, unit), old, new in sizes)
+        return f"in {len(self.before)} runs of all trials by {self.engine} itself, the error is {found}"
 
 
 def root_mean_square(left: Values) -> Values:

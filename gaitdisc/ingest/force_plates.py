@@ -273,8 +273,8 @@ def _zero(
     offset = values[first:last].mean(axis=0)
     load = float(np.abs(plate.wrench(offset[None], units)[0][0, 2]))
     if load > CLEAR_LOAD_N:
-        what = f"force plate {plate.number} carries {load:.0f} N in samples {first + 1} to {last}, its zero level"
-        spoils = "the offset of the plate, which is not removed"
+        what = f"force plate {plate.number} carries {load:.0f} N in its zero samples, {first + 1} to {last}"
+        spoils = "the offset of the plate, which is therefore not removed"
         return values, [Finding("note", "plate zero", parameters.file, what, spoils)]
     return values - offset, []
 

@@ -126,7 +126,7 @@ def refuse_other_unit(unit: str, far: float, file: str, where: str) -> None:
 def per_kg_findings(streams: Mapping[str, Recording]) -> list[Finding]:
     """Say that ground forces or joint moments stated in N or N m are per kg of body mass."""
     found = []
-    steps = "is loaded as in steps, in which a person exerts hundreds of N"
+    steps = "is loaded as in steps, where hundreds of N are usual"
     legs = "is the largest moment of the legs, although walking needs tens of N m"
     stated = ("forces", "vertical_force", "N", FORCE_N, steps), ("moments", "moment", "N m", MOMENT_NM, legs)
     for key, quantity, unit, (low, high), like in stated:

@@ -49,7 +49,7 @@ def functional_hips(markers: Recording, calibration: Calibration) -> tuple[dict[
             findings.append(Finding("warning", "functional hip", file, what, SPOILS))
             continue
         hips[f"hip_{side}"] = found.centre
-        what = f"hip_{side} from the functional trial, {_mm(_apart(found, usual))} from the hip from the landmarks; "
+        what = f"hip_{side} from the functional trial, {_mm(_apart(found, usual))} from the centre by the landmarks; "
         what += f"the thigh moves about it within {_mm(found.residual_m)} (rms)"
         findings.append(Finding("note", "functional hip", file, what, ""))
     return hips, tuple(findings)
@@ -59,7 +59,7 @@ def _find_hip(pelvis: Pose, thigh: PlacedMarkers, usual: Values) -> tuple[Pivot 
     """Centre of one hip, or None and why."""
     whole = pelvis.known & np.isfinite(thigh.seen).all(axis=(1, 2))
     if whole.sum() < FEWEST_FRAMES:
-        return None, f"pelvis and thigh are complete in {int(whole.sum())} frames, {FEWEST_FRAMES} are needed"
+        return None, f"pelvis and thigh are complete in {int(whole.sum())} frames; {FEWEST_FRAMES} are needed"
     above, markers = Pose(pelvis.origin[whole], pelvis.rotation[whole]), thigh.seen[whole]
     below, places = fit_pose(thigh.body, markers).pose, above.to_segment(markers)
     found = find_fixed_point(above, below) if below.known.all() else sphere_centre(places, usual)
@@ -70,11 +70,11 @@ def _find_hip(pelvis: Pose, thigh: PlacedMarkers, usual: Values) -> tuple[Pivot 
     swing_deg = float(np.degrees(np.sqrt(max(spread[1], 0.0))))
     if swing_deg < LEAST_SWING_DEG:
         words = f"the thigh turns by {swing_deg:.1f} deg (rms) perpendicular to its largest swing"
-        return None, f"{words}, {LEAST_SWING_DEG:g} are needed"
+        return None, f"{words}; {LEAST_SWING_DEG:g} are needed"
     if found.residual_m > LARGEST_RESIDUAL_M:
         return None, f"the thigh deviates from the centre by {_mm(found.residual_m)} (rms)"
     if _apart(found, usual) > FARTHEST_M:
-        return None, f"the computed centre is {_mm(_apart(found, usual))} from there"
+        return None, f"the computed centre is {_mm(_apart(found, usual))} from the centre by the landmarks"
     return found, ""
 
 

@@ -211,8 +211,8 @@ def _rolled_foot(side: str, angles: Recording, poses: Mapping[str, Pose], file: 
     apart = angles[f"ankle_angle_{side}"] - line
     known = finite_values(apart)
     most = float(np.percentile(np.abs(known - np.median(known)), 95)) if len(known) else 0.0
-    what = f"ankle_angle_{side} lies more than {most:.0f} deg from the line heel to toe in 5 % of the frames: the foot "
-    what += "rolls about that line, which the markers of a foot show poorly"
+    what = f"ankle_angle_{side} lies more than {most:.0f} deg from the line from heel to toe in 5 % of the frames: the "
+    what += "foot rolls about that line, which the markers of a foot show poorly"
     spoils = "the angles of this ankle, mostly in swing; compare them with a video"
     return [Finding("warning", "rolled foot", file, what, spoils)] if most > ROLLED_DEG else []
 

@@ -155,8 +155,8 @@ def permutation_clusters(
     Parameters
     ----------
     first, second : array_like or DataFrame (unit, phase) or (unit, phase, channel)
-        One row a person, a stride or a block of strides, complete: `strides.normalised(recording)`, or a DataFrame
-        with one column a point of the stride.
+        One row per person, stride or block of strides, without gaps: `strides.normalised(recording)`, or a DataFrame
+        with one column per point of the stride.
     paired : bool
         Whether row k of both (in DataFrames: rows with one index) belongs to one person; otherwise the sets are
         independent.

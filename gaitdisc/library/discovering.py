@@ -41,8 +41,8 @@ def discover(
     Parameters
     ----------
     model : path, Simulation or callable
-        A simulation file, what `read_simulation` gave, a Python function (`simulation_from_function`), or a model of
-        MuJoCo or OpenSim or its mapping file (docs/engines.md).
+        A simulation file, the result of `read_simulation`, a Python function (`simulation_from_function`), or a model
+        of MuJoCo or OpenSim or its mapping file (docs/engines.md).
     data : path, DataFrame, Recording, or sequence of Recording or of DataFrame
         Measured trials: a table (or its CSV or Parquet file) with the columns `time` [s], each input and each observed
         channel in the model's units, and `trial` where there are several; or one table per trial; or one Recording per
@@ -59,8 +59,8 @@ def discover(
         Maximum false-positive rate: the p-value of a named effect on held-out data is below it. For a tracked walk it
         is .05.
     twins : int, optional
-        Number of records like yours that are simulated with what was found, and as many without; all are searched as
-        yours was, and `found.twins` says what was named. Not for models of MuJoCo and OpenSim.
+        Number of records like yours that are simulated with the identified effect, and as many without it. All are
+        searched like yours; `found.twins` has the answers. Not available for models of MuJoCo and OpenSim.
 
     Returns
     -------
@@ -77,7 +77,7 @@ def discover(
 
     References
     ----------
-    docs/discover.md: multiple shooting, effects ranked by what they explain on data that were not fitted.
+    docs/discover.md: multiple shooting; effects are ranked by their prediction of data that were not fitted.
 
     Examples
     --------

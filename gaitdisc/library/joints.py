@@ -31,7 +31,7 @@ def angles(
     Parameters
     ----------
     walk : Trial, path, DataFrame, Recording or sequence of paths
-        With markers.
+        A walk with markers.
     static : Trial or path
         Static trial of the same person with the same markers; joint widths are read from its C3D file.
     marker_set : str or path, optional
@@ -78,7 +78,7 @@ def moments(
     Parameters
     ----------
     walk : Trial, path, DataFrame, Recording or sequence of paths
-        With markers and ground forces.
+        A walk with markers and ground forces.
     static : Trial or path
         Static trial of the same person with the same markers.
     mass_kg : float, optional

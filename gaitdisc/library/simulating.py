@@ -67,8 +67,8 @@ def simulate(
     Parameters
     ----------
     model : path, Simulation or callable
-        A simulation file, what `read_simulation` gave, or a Python function (`simulation_from_function`); a MuJoCo or
-        OpenSim model, or its mapping, which the engine runs.
+        A simulation file, the result of `read_simulation`, or a Python function (`simulation_from_function`); a MuJoCo
+        or OpenSim model, or its mapping, which the engine runs.
     time : array_like (time,) [s]
         Evenly spaced, increasing.
     inputs : Recording, DataFrame or mapping of str to array_like (time,), optional

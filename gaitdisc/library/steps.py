@@ -99,7 +99,7 @@ def cycles(
         Recording that will be cut; cycles with a gap that cannot be filled are excluded.
     min_s, max_s : float
         Shortest and longest cycle [s].
-    contacts : array_like (contact,), Contacts, or what `gaitdisc.contacts` gave, optional
+    contacts : array_like (contact,), Contacts, or the dict of `gaitdisc.contacts`, optional
         Known initial contacts of that foot [s], on the walk's clock; no detector is used then.
 
     Returns

@@ -17,6 +17,8 @@ from torch import nn
 from gaitdisc.recording import Scale
 from gaitdisc.recording.arrays import Values
 
+WEIGHT = "weight:"  # before the name of each weight among the arrays of a network
+
 
 @dataclass(frozen=True, eq=False)
 class TrainedNetwork:
@@ -37,6 +39,12 @@ class TrainedNetwork:
         """Copy of every weight, by the name it has in the torch module."""
         return {name: tensor.detach().cpu().numpy().copy() for name, tensor in self.network.state_dict().items()}
 
+    def arrays(self) -> dict[str, NDArray[Any]]:
+        """Scales and weights by name, as `restore_network` takes them."""
+        scales = {"x_mean": self.x_scale.mean, "x_sd": self.x_scale.sd}
+        scales |= {"y_mean": self.y_scale.mean, "y_sd": self.y_scale.sd}
+        return scales | {WEIGHT + name: values for name, values in self.weights().items()}
+
     def __call__(self, x: Values) -> Values:
         """Outputs (sample, output) for inputs (sample, input); NaN where an input is NaN."""
         return self.y_scale.unscaled(self._run(self.network, self.x_scale.scaled(np.asarray(x, float))))
@@ -55,13 +63,17 @@ class TrainedNetwork:
             return part(torch.from_numpy(values.astype(np.float32))).double().numpy()
 
 
-def with_weights(network: nn.Module, weights: Mapping[str, NDArray[Any]]) -> nn.Module:
-    """Network, changed in place, with weights by the names that they have in the torch module."""
+def restore_network(
+    inputs: tuple[str, ...], outputs: tuple[str, ...], arrays: Mapping[str, NDArray[Any]], network: nn.Module
+) -> TrainedNetwork:
+    """Trained network of its arrays; network: of its architecture, whose weights are replaced."""
+    weights = {name.removeprefix(WEIGHT): values for name, values in arrays.items() if name.startswith(WEIGHT)}
     try:
         network.load_state_dict({name: torch.from_numpy(values) for name, values in weights.items()})
     except RuntimeError as error:
         raise ValueError(f"its weights do not fit a {type(network).__name__}") from error
-    return network.eval()
+    scales = Scale(arrays["x_mean"], arrays["x_sd"]), Scale(arrays["y_mean"], arrays["y_sd"])
+    return TrainedNetwork(inputs, outputs, *scales, network.eval())
 
 
 @contextmanager

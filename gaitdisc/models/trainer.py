@@ -64,8 +64,7 @@ def train(
     Where a check part is given, it is the inner block, and takes no part in the last layer either: its errors remain
     errors on samples that were not fitted.
 
-    build: takes the number of inputs and of outputs, makes a torch module with `features` and a linear `readout`:
-        `FeedForward`
+    build: makes a torch module with `features` and a linear `readout`, of the numbers of inputs and outputs
     check: what stops and chooses in place of the last `inner_share`: another stretch of time, or another person
     """
     begun = time.perf_counter()
@@ -179,8 +178,7 @@ def solve_readout(network: nn.Module, part: ScaledSamples, penalty: float) -> No
     readout = cast(nn.Linear, network.readout)
     network.eval()
     with torch.no_grad():
-        squares = _squares(_features(network, part.x), part.y.cpu().double().numpy())
-        weights, offset = squares.solved(penalty)
+        weights, offset = _ridge(_features(network, part.x), part.y.cpu().double().numpy())(penalty)
         readout.weight.copy_(torch.from_numpy(weights))
         readout.bias.copy_(torch.from_numpy(offset))
 
@@ -192,35 +190,27 @@ def choose_penalty(network: nn.Module, part: ScaledSamples, check: ScaledSamples
     returns penalty, loss: one of `PENALTIES`; mean squared error of the scaled outputs
     """
     network.eval()
-    squares = _squares(_features(network, part.x), part.y.cpu().double().numpy())
+    solve = _ridge(_features(network, part.x), part.y.cpu().double().numpy())
     h, y = _features(network, check.x), check.y.cpu().double().numpy()
     losses = []
     for penalty in PENALTIES:
-        weights, offset = squares.solved(penalty)
+        weights, offset = solve(penalty)
         losses.append(float(np.mean((y - h @ weights.T - offset) ** 2)))
     best = int(np.argmin(losses))
     return PENALTIES[best], losses[best]
 
 
-@dataclass(frozen=True, eq=False)
-class _Squares:
-    """Means and mean products of features and outputs: all that ridge regression needs, whatever the penalty."""
-
-    h_mean: Values
-    y_mean: Values
-    h_h: Values
-    h_y: Values
-
-    def solved(self, penalty: float) -> tuple[Values, Values]:
-        """Weights (output, node) and offset (output,)."""
-        weights = np.asarray(np.linalg.solve(self.h_h + penalty * np.eye(len(self.h_h)), self.h_y).T, float)
-        return weights, self.y_mean - weights @ self.h_mean
-
-
-def _squares(h: Values, y: Values) -> _Squares:
+def _ridge(h: Values, y: Values) -> Callable[[float], tuple[Values, Values]]:
+    """Ridge regression of outputs on features: penalty -> weights (output, node) and offset (output,)."""
     h_mean, y_mean = np.asarray(h.mean(axis=0), float), np.asarray(y.mean(axis=0), float)
     h, y = h - h_mean, y - y_mean
-    return _Squares(h_mean, y_mean, h.T @ h / len(h), h.T @ y / len(h))
+    h_h, h_y = h.T @ h / len(h), h.T @ y / len(h)
+
+    def solve(penalty: float) -> tuple[Values, Values]:
+        weights = np.asarray(np.linalg.solve(h_h + penalty * np.eye(len(h_h)), h_y).T, float)
+        return weights, y_mean - weights @ h_mean
+
+    return solve
 
 
 def _features(network: nn.Module, x: Tensor) -> Values:

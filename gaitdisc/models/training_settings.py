@@ -58,10 +58,9 @@ class TrainingSettings:
         _refuse_unless(bool(self.decays), "at least one weight decay", "decays is empty")
         _refuse_unless(min(self.decays) >= 0, "weight decays of 0 or more", f"decays holds {min(self.decays)}")
         _refuse_unless(0 < self.inner_share < 1, "an inner_share between 0 and 1", f"it is {self.inner_share}")
-        known = self.arithmetic in ("auto", "torch")
-        _refuse_unless(known, "arithmetic 'auto' or 'torch'", f"it is {self.arithmetic!r}")
-        known = self.precision in PRECISIONS
-        _refuse_unless(known, f"precision {' or '.join(map(repr, PRECISIONS))}", f"it is {self.precision!r}")
+        for name, among in (("arithmetic", ("auto", "torch")), ("precision", PRECISIONS)):
+            value = getattr(self, name)
+            _refuse_unless(value in among, f"{name} {' or '.join(map(repr, among))}", f"it is {value!r}")
 
 
 def _refuse_unless(holds: bool, needed: str, found: str) -> None:

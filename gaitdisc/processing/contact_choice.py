@@ -196,11 +196,11 @@ def _move(contacts: Mapping[str, Contacts], offset_s: float) -> dict[str, Contac
 def offset_finding(file: str, detector: str, offset_s: float | None, by: str, spoils: str) -> Finding:
     """By how much contacts were moved and by what steps, in words; or that nothing shows it, and what is early then."""
     if offset_s is None:
-        what = f"contacts by {detector}, and no plate recorded a step: contacts are early by about "
+        what = f"contacts come from {detector}, and no plate recorded a step: they are early by about "
         what += f"{EARLY_MS[detector]:g} ms in walking ({EARLY_RANGE[detector]} with a plate)"
         return Finding("note", "contact offset", file, what, spoils)
     way = "later" if offset_s >= 0 else "earlier"
-    what = f"contacts by {detector} are shifted {1000.0 * abs(offset_s):.0f} ms {way}, {by} too"
+    what = f"contacts from {detector} are shifted {1000.0 * abs(offset_s):.0f} ms {way}, {by} too"
     return Finding("note", "contact offset", file, what, "")
 
 

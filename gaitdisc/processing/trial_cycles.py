@@ -83,7 +83,7 @@ def cut_cycles(contacts: Timed, offs: Timed) -> list[Cycle]:
             reason = ""
             if len(inside) > 1 or (seen and not inside):
                 count = f"{len(inside)} contacts" if inside else "no contact"
-                reason = f"{count} of the other foot inside: one was missed or is false"
+                reason = f"{count} of the other foot within the cycle: one was missed or is false"
             found.append(Cycle(side, start, end, (by, next_by), off, max(left, start), landed, off_by, False, reason))
     return found
 

@@ -204,7 +204,7 @@ def repeat_stride(trial: Trial) -> Trial:
         if len(recording.time) == len(kinematics.time) and np.allclose(recording.time, kinematics.time, atol=1e-6)
     }
     left = sorted(set(trial.streams) - set(kept))
-    what = f"one stride of {count / kinematics.rate_hz:.3f} s that closes on itself, repeated {TIMES} times"
+    what = f"one stride of {count / kinematics.rate_hz:.3f} s that ends as it began, repeated {TIMES} times"
     if left:
         what += f"; {', '.join(left)} excluded: on another time base"
     spread = "the spread, of which a single stride has none"

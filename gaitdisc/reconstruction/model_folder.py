@@ -40,7 +40,6 @@ if TYPE_CHECKING:
     from gaitdisc.models.carried_windows import CarriedWindows
 
 NAME, WEIGHTS = "model.json", "weights.npz"
-WEIGHT = "weight:"  # before the name of each weight of a network
 RIDGE = ("frequencies", "phases", "weights", "offset")  # arrays of a ridge regression
 FORMAT = 1
 RATE_TOLERANCE = 1e-3
@@ -161,13 +160,13 @@ def save_weights(model: Any, path: Path) -> None:
     names = {"format": FORMAT, "inputs": model.inputs, "outputs": model.outputs}
     if isinstance(model, FourierRidge):
         names["penalty"] = model.penalty
-        own = {name: getattr(model, name) for name in RIDGE}
+        arrays = {name: getattr(model, name) for name in RIDGE}
+        arrays |= {"x_mean": model.x_scale.mean, "x_sd": model.x_scale.sd}
+        arrays |= {"y_mean": model.y_scale.mean, "y_sd": model.y_scale.sd}
     else:
-        own = {WEIGHT + name: values for name, values in model.weights().items()}
-    scales = {"x_mean": model.x_scale.mean, "x_sd": model.x_scale.sd}
-    scales |= {"y_mean": model.y_scale.mean, "y_sd": model.y_scale.sd}
+        arrays = model.arrays()
     with whole_file(path) as part, part.open("wb") as file:
-        np.savez(file, names=np.array(json.dumps(names)), **scales, **own)
+        np.savez(file, names=np.array(json.dumps(names)), **arrays)
 
 
 def load_weights(path: Path, build: Callable[[int, int], Any] | None = None) -> Any:
@@ -179,14 +178,13 @@ def load_weights(path: Path, build: Callable[[int, int], Any] | None = None) -> 
         names = json.loads(str(arrays["names"]))
         if names["format"] != FORMAT:
             raise ValueError(f"it has format {names['format']}; this version reads {FORMAT}")
-        scales = Scale(arrays["x_mean"], arrays["x_sd"]), Scale(arrays["y_mean"], arrays["y_sd"])
-        named = tuple(names["inputs"]), tuple(names["outputs"]), *scales
+        named = tuple(names["inputs"]), tuple(names["outputs"])
         if build is None:
-            return FourierRidge(*named, **{name: arrays[name] for name in RIDGE}, penalty=names["penalty"])
-        from gaitdisc.models.trained_network import TrainedNetwork, with_weights
+            scales = Scale(arrays["x_mean"], arrays["x_sd"]), Scale(arrays["y_mean"], arrays["y_sd"])
+            return FourierRidge(*named, *scales, **{name: arrays[name] for name in RIDGE}, penalty=names["penalty"])
+        from gaitdisc.models.trained_network import restore_network
 
-        weights = {name.removeprefix(WEIGHT): arrays[name] for name in arrays if name.startswith(WEIGHT)}
-        return TrainedNetwork(*named, with_weights(build(len(named[0]), len(named[1])), weights))
+        return restore_network(*named, arrays, build(*map(len, named)))
     except (OSError, ValueError, KeyError, EOFError, zipfile.BadZipFile) as error:
         raise SchemaError(
             f"{path.name} must be {what} saved by gaitdisc",

@@ -14,7 +14,7 @@ from gaitdisc.report.figure import Figure, file_names, save_figures
 from gaitdisc.report.page import write_page
 from gaitdisc.report.panels import MEASURED, RECONSTRUCTED, Room, in_style, legend, legend_lines, panels_for, sheets
 from gaitdisc.report.table import Table, provenance_tables, save_tables, tabulate_findings, tabulate_refusals
-from gaitdisc.words import counted, label, listing, number, plain, unit_text
+from gaitdisc.words import counted, label, listing, number, plain, spoken, unit_text
 
 if TYPE_CHECKING:
     import rich.table
@@ -71,7 +71,7 @@ def states_table(done: Reconstruction) -> Table:
         rows.append((label(state), unit, *errors, _plain(over["relative_l2"][best], 3), _plain(over["r2"][best], 3)))
     caption = (
         f"RMSE of every state [its unit], mean over n = {counted(len(done.participants), 'participant')}; relative L2 "
-        f"and R² of {done.recommended}. Intervals over strides, participant by participant, stand in errors.csv."
+        f"and R² of {done.recommended}. errors.csv has the intervals over the strides of each participant."
     )
     columns = ("state", "unit", *done.models, "relative L2", "R²")
     return Table("states", caption, columns, tuple(rows), over.reset_index())
@@ -96,7 +96,7 @@ def reconstruction_sentences(done: Reconstruction) -> list[str]:
     """What is reconstructed from which sensors, how well, by which model, and what history and a network buy."""
     best = done.recommended
     over: Any = done.over_participants()
-    sensors, kinds = listing([label(channel.name) for channel in done.sensors]), list(done.models)
+    sensors, kinds = listing([spoken(channel.name) for channel in done.sensors]), list(done.models)
     row = over.loc[best]
     angles = _has_angles(done)
     rmse = f"an RMSE of {_plain(row['rmse_deg'], 2)} deg over the angles and " if angles else ""
@@ -104,7 +104,7 @@ def reconstruction_sentences(done: Reconstruction) -> list[str]:
     units = listing(list(dict.fromkeys(channel.unit for channel in done.states)))
     what = counted(len(done.states), noun) if angles else f"{counted(len(done.states), 'channel')} [{units}]"
     sentences = [
-        f"From {sensors} {what} {'is' if len(done.states) == 1 else 'are'} reconstructed with {rmse}a relative L2 of "
+        f"From {sensors}, {what} {'is' if len(done.states) == 1 else 'are'} reconstructed with {rmse}a relative L2 of "
         f"{_plain(row['relative_l2'], 3)} (median R² {_plain(row['r2'], 2)}; mean of "
         f"{counted(len(done.participants), 'participant')}) by {best}, which is recommended."
     ]
@@ -266,11 +266,11 @@ def search_table(found: pd.DataFrame) -> Table:
         for k, row in found.reset_index(drop=True).iterrows()
     )
     caption = (
-        "Best set of sensors of every size, by ridge regression on their history, all participants together: all "
-        "sets of up to three, then the sensor with the largest gain. Chosen by the RMSE of all angles on the "
-        "validation windows, with exact sensors; the other column: RMSE of the unmeasured angles on the test "
-        f"windows. * the smallest set that one more sensor improves by less than {100 * WORTH:.0f} %; otherwise the "
-        "largest."
+        "Best set of sensors of every size, by ridge regression on their history, all participants together: all sets "
+        "of up to three sensors were tried, then the sensor with the largest gain was added. Chosen by the RMSE of all "
+        "angles on the validation windows, with exact sensors; the other column: RMSE of the unmeasured angles on the "
+        f"test windows. * the smallest set that one more sensor improves by less than {100 * WORTH:.0f} %; otherwise "
+        "the largest."
     )
     columns = ("sensors", "which", "all angles [deg]", "not measured [deg]", "regressions", "processor time [s]")
     return Table("search", caption, columns, rows, found)
@@ -280,7 +280,7 @@ def search_sentences(found: pd.DataFrame) -> list[str]:
     """How many sensors are enough by a reconstruction's `search`, and what one more would bring."""
     chosen = enough_sensors(found)
     row = found.iloc[chosen]
-    names = listing([label(name) for name in str(row["names"]).split(", ")])
+    names = listing([spoken(name) for name in str(row["names"]).split(", ")])
     size = int(row["sensors"])
     if chosen + 1 < len(found):
         less = 1 - (float(found["loss"].iloc[chosen + 1]) / float(row["loss"])) ** 0.5

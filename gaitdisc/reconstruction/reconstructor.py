@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+import sys
 from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, TypeAlias, Union
@@ -39,7 +40,7 @@ class Reconstructor(Saved, file="model.json"):
     kind : str
         A kind of `gaitdisc reconstruct --kinds`: `linear` (ridge regression on the current readings), `delay ridge` (on
         readings and their history), `fourier ridge` (on random Fourier features of these), `shallow decoder` (SDN,
-        present readings), `shred` (recurrent network on readings and history, shallow decoder), or one on request.
+        present readings), `shred` (recurrent network on readings and history, shallow decoder), or another.
     rate_hz : float
         Sampling rate of all arrays [Hz].
     history_s : float
@@ -79,7 +80,7 @@ class Reconstructor(Saved, file="model.json"):
         ahead_s: float = 0.0,
         seed: int = 0,
     ) -> None:
-        self.kind, self.rate_hz, self.seed = kind, float(rate_hz), seed
+        self.kind, self.rate_hz, self.seed = kind, rate_hz, seed
         self.history_s, self.spacing_s, self.ahead_s = history_s, spacing_s, ahead_s
         self._model: SensingModel | None = None
 
@@ -135,7 +136,7 @@ class Reconstructor(Saved, file="model.json"):
             max(1, round(self.spacing_s * self.rate_hz)),
             round(self.ahead_s * self.rate_hz),
         )
-        what = Sensing(sensors, targets, lags, self.rate_hz)
+        what = Sensing(sensors, targets, lags, float(self.rate_hz))
         windows = [self._windows(one, other, what) for one, other in zip(readings, states, strict=True)]
         parts = [each.last_block(CHECKED, what.reach_s + SEAM_S) for each in windows]
         training, check = (stacked([part[k] for part in parts]) for k in (0, 1))
@@ -221,8 +222,7 @@ class Reconstructor(Saved, file="model.json"):
         **settings
             Those of the constructor.
         """
-        unknown = sorted(set(settings) - set(SETTINGS))
-        if unknown:
+        if unknown := sorted(set(settings) - set(SETTINGS)):
             raise TrainingError(
                 f"settings of a Reconstructor are {', '.join(SETTINGS)}", f"found {unknown[0]!r}", "Name one of these."
             )
@@ -241,7 +241,9 @@ class Reconstructor(Saved, file="model.json"):
     def model(self) -> SensingModel:
         """The fitted model; it also accepts a Recording."""
         if self._model is None:
-            raise TrainingError("a model must be fitted to predict", "fit was not called", "Call fit(x, y) first.")
+            known = sys.modules.get("sklearn.exceptions")  # whose tools look for its own class
+            UnfittedError = type("TrainingError", (TrainingError, *([known.NotFittedError] if known else [])), {})
+            raise UnfittedError("a model must be fitted to predict", "fit was not called", "Call fit(x, y) first.")
         return self._model
 
     @property

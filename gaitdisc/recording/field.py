@@ -181,8 +181,7 @@ class Field:
 
         Parameters
         ----------
-        point : int
-            Its number.
+        point : int            Number of the point.
         """
         place = self.places[point]
         return ", ".join(f"{axis.name} {value:g} {axis.unit}" for axis, value in zip(self.axes, place, strict=True))

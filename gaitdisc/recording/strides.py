@@ -38,11 +38,11 @@ class Strides:
     Parameters
     ----------
     start, end : ndarray (stride,) [s]
-        Initial contact, and the next of the same foot; in order, not overlapping.
+        Initial contacts, and the next ones of the same foot; in order, not overlapping.
     side : str
         `r` or `l`.
     detector : str
-        What found the contacts: `force`, `markers`, `angles`, `events`, `oscillator`.
+        Detector of the contacts: `force`, `markers`, `angles`, `events`, `oscillator`.
     dropped : tuple of DroppedStride
         Strides that are excluded, each with its reason.
 

@@ -74,7 +74,7 @@ def quantity_sentences(run: ResponseRun) -> list[str]:
     who = run.quantities[0].participant if len(near) == 1 else f"Over {counted(len(near), 'participant')}"
     reach = f"from {_seconds(near['from'])} on" if (near["from"] < near["whole"]).any() else "only with all data"
     middle = "" if len(near) == 1 else ", medians and ranges over participants"
-    said = [
+    sentences = [
         f"{f'In {who}' if len(near) == 1 else who}, the Exo model comes within {ENOUGH:g} of the R² with all "
         f"{_seconds(near['whole'])} of training ({number(near['r2'].median())}, median over variables) "
         f"{reach}{middle}."
@@ -82,19 +82,16 @@ def quantity_sentences(run: ResponseRun) -> list[str]:
     lengths = sorted({length for quantity in run.quantities for length in quantity.left_away})
     if lengths:
         shown = ", ".join(f"{length:g} s" for length in lengths)
-        said.append(f"Lengths left out because a walk is too short or has too few samples: {shown}.")
-    return said
+        sentences.append(f"Lengths left out because a walk is too short or has too few samples: {shown}.")
+    return sentences
 
 
 def _near(quantity: DataQuantity) -> tuple[float, float, float]:
     """Training length from which on Exo is near to its best, the whole length, and R2 at the whole."""
     exo = quantity.medians()["exo"].sort_index()
     far = exo.index[(exo < exo.iloc[-1] - ENOUGH).to_numpy()]
-    return (
-        float(exo.index[exo.index > far.max()].min() if len(far) else exo.index[0]),
-        float(exo.index[-1]),
-        exo.iloc[-1],
-    )
+    start = exo.index[exo.index > far.max()].min() if len(far) else exo.index[0]
+    return float(start), float(exo.index[-1]), exo.iloc[-1]
 
 
 def _seconds(lengths: pd.Series) -> str:
@@ -104,10 +101,10 @@ def _seconds(lengths: pd.Series) -> str:
 
 def _draw(axes: Axes, rows: pd.DataFrame, low: float) -> None:
     for model, look in MODELS.items():
-        own = rows[rows["model"] == model]
-        for _, one in own.groupby("participant"):
-            axes.plot(one["length_s"], one["r2"], color=look.colour, linewidth=0.5, alpha=0.5)
-        middle = own.groupby("length_s")["r2"].median()
+        of_model = rows[rows["model"] == model]
+        for _, person in of_model.groupby("participant"):
+            axes.plot(person["length_s"], person["r2"], color=look.colour, linewidth=0.5, alpha=0.5)
+        middle = of_model.groupby("length_s")["r2"].median()
         axes.plot(middle.index, middle, color=look.colour, linestyle=look.line, marker=look.mark, ms=3.5, linewidth=1.4)
     axes.set_xscale("log")
     lengths = sorted(set(rows["length_s"]))
@@ -127,9 +124,9 @@ def length_table(run: ResponseRun) -> Table | None:
         return None
     tests = run.over.lengths
     rows = []
-    for length, found in tests.groupby("length_s", sort=True):
-        parts = [_cells(found[found["second"] == second]) for second in ("exo", WHOLE)]
-        rows.append((f"{length:g}", str(int(found["n"].max())), *parts[0], *parts[1]))
+    for length, of_length in tests.groupby("length_s", sort=True):
+        parts = [_cells(of_length[of_length["second"] == second]) for second in ("exo", WHOLE)]
+        rows.append((f"{length:g}", str(int(of_length["n"].max())), *parts[0], *parts[1]))
     caption = (
         "R² [1] on the same held-out device walking by training length, paired over n = "
         f"{counted(len(run.quantities), 'participant')}: exact two-sided signed rank, Holm-Sidak over the variables "

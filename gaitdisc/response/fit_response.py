@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-import time
 from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass, field
 from functools import partial
+from typing import Any, cast
 
 import numpy as np
 import pandas as pd
@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 
 from gaitdisc.errors import LOG, ChannelError, TrainingError
 from gaitdisc.model import Augmented, Model, augment
-from gaitdisc.models.ridge import fit_ridge
+from gaitdisc.models.ridge import SEAM_S, fit_ridge
 from gaitdisc.models.training_settings import TrainingSettings
 from gaitdisc.processing.samples import gait_samples
 from gaitdisc.recording import Samples, Trajectory
@@ -28,7 +28,6 @@ STRIDES = 2  # of a block that counts as one: 24 simulated people of 60 s had 90
 PARTS = 20  # of the stride: errors are larger where a foot lands than where it hangs
 FEWEST_ERRORS, MOST_ERRORS = 20, 400  # of a part; with fewer, those of the whole stride count
 SHORTEST_S = 16.0  # of a training part: two seconds a block, a stride or two
-SEAM_S = 0.3  # zero-lag filters look ahead over the seam
 
 Refit = Callable[[Model, Samples], Model]
 Member = tuple[NDArray[np.float64], NDArray[np.float64], NDArray[np.int_]]
@@ -92,6 +91,11 @@ def fit_response(
         held_out=HeldOut(on_exo.time, on_exo.phi, on_exo.y, predicted, bands),
         residuals={name: residual_strides(held_exo, on_exo, values) for name, values in predicted.items()},
         held_out_s=len(held_exo.time) / held_exo.rate_hz,
+        weights={
+            f"{name}_{array}": values
+            for name, fit in fitted["network"].fits().items()
+            for array, values in cast(Any, fit.model).arrays().items()
+        },
     )
 
 
@@ -259,7 +263,6 @@ class Fit:
     epochs: int  # epochs trained; 0 where nothing is descended
     n_training: int  # samples of the whole training part
     n_inner: int  # samples of the inner block that chose the decay
-    seconds: float  # Wall-clock time [s]
 
 
 @dataclass(frozen=True, eq=False)
@@ -321,7 +324,7 @@ def fit_network(
     from gaitdisc.models.trainer import train
 
     done = train(samples, FeedForward, settings, progress)
-    return Fit(done.network, done.decay, len(done.losses), done.n_training, done.n_inner, done.seconds)
+    return Fit(done.network, done.decay, len(done.losses), done.n_training, done.n_inner)
 
 
 def refit_network(model: Model, samples: Samples) -> Model:
@@ -335,6 +338,5 @@ def refit_network(model: Model, samples: Samples) -> Model:
 
 def fit_linear(samples: Samples, harmonics: int = 8) -> Fit:
     """Fit the ridge regression that stands beside the network."""
-    begun = time.perf_counter()
     ridge = fit_ridge(samples, harmonics)
-    return Fit(ridge, ridge.penalty, 0, ridge.n_training, ridge.n_inner, time.perf_counter() - begun)
+    return Fit(ridge, ridge.penalty, 0, ridge.n_training, ridge.n_inner)

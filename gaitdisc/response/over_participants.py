@@ -65,7 +65,7 @@ def compare_lengths(quantities: Sequence[DataQuantity]) -> pd.DataFrame:
     """
     if len(quantities) < FEWEST:
         return no_rows("lengths")
-    table = pd.concat([each.table.assign(participant=each.participant) for each in quantities], ignore_index=True)
+    table = pd.concat([one.table.assign(participant=one.participant) for one in quantities], ignore_index=True)
     table = table[(table["kind"] == "network") & (table["walk"] == "exo")]
     longest = table.groupby("participant")["length_s"].transform("max")
     whole = by_participant(table[(table["length_s"] == longest) & (table["model"] == "exo")])
@@ -107,15 +107,15 @@ def compare_reductions(reductions: pd.DataFrame) -> pd.DataFrame:
         return no_rows("reduction_tests")
     parts = []
     for measure, model in product(MEASURES, MODELS[1:]):
-        found = by_participant(reductions[reductions["model"] == model], f"{measure}_reduction")
-        parts.append(compare_columns(found * 0.0, found).assign(measure=measure, first="nominal", second=model))
+        reduced = by_participant(reductions[reductions["model"] == model], f"{measure}_reduction")
+        parts.append(compare_columns(reduced * 0.0, reduced).assign(measure=measure, first="nominal", second=model))
     return pd.concat(parts, ignore_index=True)[list(REDUCTION_TEST_COLUMNS)]
 
 
 def representative(reductions: pd.DataFrame) -> str:
     """Pseudonym whose reduction of the root mean square by Augmented is nearest the median; the first, or empty."""
-    own = reductions[reductions["model"] == "augmented"]
-    middle = own.groupby("participant", sort=False)["rms_reduction"].median().dropna()
+    augmented = reductions[reductions["model"] == "augmented"]
+    middle = augmented.groupby("participant", sort=False)["rms_reduction"].median().dropna()
     return str((middle - middle.median()).abs().idxmin()) if len(middle) else ""
 
 
@@ -143,14 +143,14 @@ def _of_one(response: ParticipantResponse) -> pd.DataFrame:
 
 def responder_table(responses: Sequence[ParticipantResponse], seed: int = 0) -> tuple[pd.DataFrame, str]:
     """Sub-groups (`RESPONDER_COLUMNS`) and the verdict, naming who was left out; empty where too few or unlike."""
-    whole = [bool(np.isfinite(each.residuals["nominal"]).any(axis=0).all()) for each in responses]
-    complete = [each for each, has_all in zip(responses, whole, strict=True) if has_all]
-    absent = [each.participant for each, has_all in zip(responses, whole, strict=True) if not has_all]
+    whole = [bool(np.isfinite(person.residuals["nominal"]).any(axis=0).all()) for person in responses]
+    complete = [person for person, has_all in zip(responses, whole, strict=True) if has_all]
+    absent = [person.participant for person, has_all in zip(responses, whole, strict=True) if not has_all]
     left_out = f"; excluded because of strides with missing points: {', '.join(absent)}" if absent else ""
     who = f"n = {len(complete)} participants{left_out}"
     if len(complete) < FEWEST_GROUPED:
-        said = f"Sub-groups were not tested, because this needs {FEWEST_GROUPED} participants ({who})"
-        return no_rows("responders"), said
+        verdict = f"Sub-groups were not tested, because this needs {FEWEST_GROUPED} participants ({who})"
+        return no_rows("responders"), verdict
     try:
         groups = find_groups(discrepancy_curves(complete), seed=seed)
     except ComparisonError as error:
@@ -181,7 +181,7 @@ def compare_participants(
 ) -> OverParticipants:
     """Compare training lengths, residuals and baselines over participants, and look for sub-groups of responders."""
     reductions = residual_reductions(responses)
-    responders, said = responder_table(responses, seed)
+    responders, verdict = responder_table(responses, seed)
     return OverParticipants(
         lengths=compare_lengths(quantities),
         reductions=reductions,
@@ -189,7 +189,7 @@ def compare_participants(
         baselines=compare_baselines(responses),
         responders=responders,
         lengths_said=too_few(len(quantities)) if 0 < len(quantities) < FEWEST else "",
-        responders_said=said,
+        responders_said=verdict,
     )
 
 
@@ -226,10 +226,10 @@ def compare_columns(first: pd.DataFrame, second: pd.DataFrame, alpha: float = AL
     table["tests"] = int(tested.sum())
     table["step_level"], table["p_adjusted"], table["different"] = np.nan, np.nan, False
     if tested.any():
-        found = holm_sidak(table.loc[tested, "p"].to_numpy(), alpha)
-        table.loc[tested, "step_level"] = found.level
-        table.loc[tested, "p_adjusted"] = found.adjusted
-        table.loc[tested, "different"] = found.rejected
+        corrected = holm_sidak(table.loc[tested, "p"].to_numpy(), alpha)
+        table.loc[tested, "step_level"] = corrected.level
+        table.loc[tested, "p_adjusted"] = corrected.adjusted
+        table.loc[tested, "different"] = corrected.rejected
     return table
 
 
@@ -243,16 +243,16 @@ def by_family(tests: pd.DataFrame) -> pd.DataFrame:
     }
     parts = []
     for name in FAMILIES:
-        for family, found in holm_sidak_by(chosen["p"].to_numpy(), families[name], ALPHA).items():
+        for family, corrected in holm_sidak_by(chosen["p"].to_numpy(), families[name], ALPHA).items():
             rows = chosen.loc[np.array(families[name]) == family, ["first", "second", "variable"]]
             parts.append(
                 rows.assign(
                     family=name,
                     tests=len(rows),
-                    critical=found.critical,
-                    step_level=found.level,
-                    p_adjusted=found.adjusted,
-                    different=found.rejected,
+                    critical=corrected.critical,
+                    step_level=corrected.level,
+                    p_adjusted=corrected.adjusted,
+                    different=corrected.rejected,
                 )
             )
     if not parts:
@@ -288,7 +288,7 @@ def _row(variable: str, first: pd.Series, second: pd.Series) -> Mapping[str, obj
     row: dict[str, object] = {"variable": variable, "left_out": left_out}
     if known.sum() < FEWEST:
         return row | {"n": int(known.sum()), "zeros": 0, "ties": False} | dict.fromkeys(TESTED, np.nan)
-    found = signed_rank(first.to_numpy(), second.to_numpy(), names, LEVEL)
+    test = signed_rank(first.to_numpy(), second.to_numpy(), names, LEVEL)
     medians = float(first[known].median()), float(second[known].median())
-    tested = (found.w, found.p, *medians, found.median, found.shift, found.low, found.high, found.rank_biserial)
-    return row | {"n": found.n, "zeros": found.zeros, "ties": found.ties} | dict(zip(TESTED, tested, strict=True))
+    tested = (test.w, test.p, *medians, test.median, test.shift, test.low, test.high, test.rank_biserial)
+    return row | {"n": test.n, "zeros": test.zeros, "ties": test.ties} | dict(zip(TESTED, tested, strict=True))

@@ -55,23 +55,23 @@ def responder_sentences(run: ResponseRun) -> list[str]:
     """Verdict on sub-groups, and what `none` is worth; empty for one participant."""
     if run.over is None or len(run.responses) < 2:
         return []
-    said = [f"{run.over.responders_said}."]
+    sentences = [f"{run.over.responders_said}."]
     if len(run.over.responders) and not run.over.responders["group"].any():
-        said.append("This does not prove homogeneity: so few people show only large differences.")
-    return said
+        sentences.append("This does not prove homogeneity: so few people show only large differences.")
+    return sentences
 
 
 def responder_table(run: ResponseRun) -> Table | None:
     """Sub-group of each participant; None where there are none."""
     if run.over is None or not len(run.over.responders) or not run.over.responders["group"].any():
         return None
-    found = run.over.responders
-    rows = tuple((str(group), ", ".join(map(str, own["participant"]))) for group, own in found.groupby("group"))
+    groups = run.over.responders
+    rows = tuple((str(group), ", ".join(map(str, people["participant"]))) for group, people in groups.groupby("group"))
     caption = (
         "Sub-groups by the shape over the stride of the Nominal model's residual on the device walk, all outputs "
-        f"together, n = {len(found)}."
+        f"together, n = {len(groups)}."
     )
-    return Table("responders", caption, ("group", "participants"), rows, found)
+    return Table("responders", caption, ("group", "participants"), rows, groups)
 
 
 @in_style
@@ -104,8 +104,8 @@ def reduction_figure(run: ResponseRun) -> Figure | None:
         "Residual (measured minus predicted second derivative) averaged over the held-out strides of the device walk "
         f"({run.exo}): 1 − its size / its size under the Nominal model, measured from peak to peak and as root mean "
         f"square over the stride; n = {counted(reductions['participant'].nunique(), 'participant')}; split: last "
-        f"{tail_words(run)} s held out. Marks: participants; values below {number(LOWEST, 0)} % are at the edge. "
-        "After Fig. 4.3 of the dissertation, which gives one number: 52.8 %, hip, one participant, without the measure."
+        f"{tail_words(run)} s held out. Marks: participants; values below {number(LOWEST, 0)} % are at the edge. After "
+        "Fig. 4.3 of the dissertation: 52.8 %, hip, one participant; the measure is not stated."
     )
     return Figure("reduction", caption, " ".join(reduction_sentences(run)), reductions, drawn)
 
@@ -117,16 +117,16 @@ def reduction_table(run: ResponseRun) -> Table | None:
     reductions, tests = run.over.reductions, run.over.reduction_tests
     rows = []
     for variable in dict.fromkeys(reductions["variable"]):
-        own = reductions[reductions["variable"] == variable].groupby("model")
+        of_variable = reductions[reductions["variable"] == variable].groupby("model")
         cells = []
         for measure, model in product(MEASURES, OFFSETS):
-            found = _test_reduction(tests, measure, variable, model)
-            if found is None:
-                cells.append(number(100 * float(own[f"{measure}_reduction"].median()[model]), 0))
+            test = _test_reduction(tests, measure, variable, model)
+            if test is None:
+                cells.append(number(100 * float(of_variable[f"{measure}_reduction"].median()[model]), 0))
             else:
-                middle, low, high = (number(float(found[key]), 0) for key in ENDS)
-                cells.append(f"{middle}{'*' if found['different'] else ''}\n[{low}, {high}]")
-        rows.append((label(str(variable)), str(own["rms_reduction"].count()["augmented"]), *cells))
+                middle, low, high = (number(float(test[key]), 0) for key in ENDS)
+                cells.append(f"{middle}{'*' if test['different'] else ''}\n[{low}, {high}]")
+        rows.append((label(str(variable)), str(of_variable["rms_reduction"].count()["augmented"]), *cells))
     interval = (
         "Hodges-Lehmann [95 % interval, not corrected]; *: differs from 0, exact two-sided signed rank, Holm-Sidak "
         "over the variables, alpha = 0.05"
@@ -148,18 +148,18 @@ def reduction_sentences(run: ResponseRun) -> list[str]:
     """Range of the reductions by Augmented over the variables, for each measure."""
     if run.over is None:
         return []
-    own = run.over.reductions[run.over.reductions["model"] == "augmented"]
-    said = []
+    augmented = run.over.reductions[run.over.reductions["model"] == "augmented"]
+    sentences = []
     for measure, words in MEASURES.items():
-        medians = own.groupby("variable", sort=False)[f"{measure}_reduction"].median().dropna()
+        medians = augmented.groupby("variable", sort=False)[f"{measure}_reduction"].median().dropna()
         if len(medians):
             least, most = (label(str(name)) for name in (medians.idxmin(), medians.idxmax()))
-            said.append(
+            sentences.append(
                 f"Measured as {words}, the Augmented model reduces the stride-averaged residual by "
                 f"{100 * medians.min():.0f} % ({least}) to {100 * medians.max():.0f} % ({most}), medians over "
-                f"{counted(own['participant'].nunique(), 'participant')}."
+                f"{counted(augmented['participant'].nunique(), 'participant')}."
             )
-    return said
+    return sentences
 
 
 def _draw(axes: Axes, over: OverParticipants, variable: str, measure: str, place: int) -> None:
@@ -169,9 +169,9 @@ def _draw(axes: Axes, over: OverParticipants, variable: str, measure: str, place
         values = 100 * rows.loc[rows["model"] == model, f"{measure}_reduction"].dropna().to_numpy()
         axes.plot(np.maximum(values, LOWEST), np.full(len(values), y), look.mark, color=look.colour, ms=2.6, mew=0,
                   alpha=0.6)  # fmt: skip
-        found = _test_reduction(over.reduction_tests, measure, variable, model)
-        if found is not None:
-            middle, low, high = (max(float(found[key]), LOWEST) for key in ENDS)
+        test = _test_reduction(over.reduction_tests, measure, variable, model)
+        if test is not None:
+            middle, low, high = (max(float(test[key]), LOWEST) for key in ENDS)
             axes.hlines(y, low, high, color=look.colour, linewidth=1.4)
             axes.plot([middle], [y], "|", color="#111111", ms=8, mew=1.6)
 
@@ -179,8 +179,8 @@ def _draw(axes: Axes, over: OverParticipants, variable: str, measure: str, place
 def _test_reduction(tests: pd.DataFrame, measure: str, variable: str, model: str) -> pd.Series | None:
     """Test of one reduction, with its shift and interval in percent; None where it was not tested."""
     chosen = (tests["measure"] == measure) & (tests["variable"] == variable) & (tests["second"] == model)
-    found = tests[chosen & tests["shift"].notna()]
-    return None if found.empty else found.assign(**{end: 100 * found[end] for end in ENDS}).iloc[0]
+    tested = tests[chosen & tests["shift"].notna()]
+    return None if tested.empty else tested.assign(**{end: 100 * tested[end] for end in ENDS}).iloc[0]
 
 
 def baseline_table(run: ResponseRun) -> Table | None:
@@ -189,13 +189,13 @@ def baseline_table(run: ResponseRun) -> Table | None:
         return None
     tests = run.over.baselines
     rows = []
-    for (variable, model), found in tests.groupby(["variable", "model"], sort=False):
+    for (variable, model), of_model in tests.groupby(["variable", "model"], sort=False):
         cells = []
-        for row in (found[found["first"] == kind].iloc[0] for kind in BASELINE_WORDS):
+        for row in (of_model[of_model["first"] == kind].iloc[0] for kind in BASELINE_WORDS):
             interval = f"[{number(row['low'], 3)}, {number(row['high'], 3)}]"
             shift = f"{number(row['shift'], 3)} {direction_found(row)}\n{interval}"
             cells.append(shift if math.isfinite(row["p"]) else "not tested")
-        rows.append((label(str(variable)), MODEL_WORDS[str(model)], str(int(found["n"].max())), *cells))
+        rows.append((label(str(variable)), MODEL_WORDS[str(model)], str(int(of_model["n"].max())), *cells))
     order = [label(str(variable)) for variable in dict.fromkeys(tests["variable"])]
     rows.sort(key=lambda row: order.index(row[0]))
     caption = (
@@ -214,7 +214,7 @@ def baseline_sentences(run: ResponseRun) -> list[str]:
     if run.over is None or not len(run.over.baselines):
         return []
     tests = run.over.baselines
-    said = []
+    sentences = []
     for model in dict.fromkeys(tests["model"]):
         parts = []
         for kind, words in BASELINE_WORDS.items():
@@ -225,9 +225,9 @@ def baseline_sentences(run: ResponseRun) -> list[str]:
                 which = f"any of {counted(len(rows), 'variable')}" if len(names) == len(rows) else "; ".join(names)
                 parts.append(f"{words} (in {which})")
         network = f"The {MODEL_WORDS[str(model)]} network"
-        said.append(
+        sentences.append(
             f"{network} does not significantly exceed {listing(parts)}."
             if parts
             else f"{network} exceeds every baseline in all variables."
         )
-    return said
+    return sentences

@@ -3,23 +3,16 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from pathlib import Path
+from typing import Any
 
 from gaitdisc.processing.curves_figure import curves_figures
 from gaitdisc.processing.page import save_cycle_blocks, save_cycle_tables, write_cycles_page
 from gaitdisc.processing.pooled_cycles import WALK
-from gaitdisc.report.figure import Figure, SavedFigure, file_names, largest_inline, save_figures
+from gaitdisc.report.figure import Figure, file_names, largest_inline, save_figures
 from gaitdisc.report.page import draw_side_by_side, save_block, write_page
-from gaitdisc.report.table import (
-    Table,
-    findings_table,
-    flatten,
-    provenance_tables,
-    refusals_table,
-    save_table,
-    save_tables,
-)
+from gaitdisc.report.table import findings_table, flatten, provenance_tables, refusals_table, save_table, save_tables
 from gaitdisc.response.held_out import draw_held_out, residual_figures
 from gaitdisc.response.over_participants_page import over_blocks
 from gaitdisc.response.pair_tests import comparison_figures, comparison_sentences, comparison_tables
@@ -38,19 +31,6 @@ from gaitdisc.response.walks_page import fits_table, strides_figure, tabulate_dr
 FIGURES_A_PERSON = 5
 MOST_OPEN = 2  # with more participants than this, the first screen is brief and their sections are folded
 _FILTER_WORDS = ("filter", "cutoff", "low_pass", "high_pass", "lowpass", "highpass", "order", "envelope", "band")
-
-
-@dataclass(frozen=True, eq=False)
-class Section:
-    """What the page shows of one participant."""
-
-    participant: str
-    anchor: str
-    sentences: list[str]  # the answer for this participant; empty where there is no response
-    r2: Table | None
-    reasons: list[str]
-    dropped: Table | None
-    figures: dict[str, list[SavedFigure]]
 
 
 def write_report(run: ResponseRun, folder: Path) -> Path:
@@ -102,7 +82,8 @@ def write_report(run: ResponseRun, folder: Path) -> Path:
     return write_page("report", shown, folder)
 
 
-def _section(run: ResponseRun, person: str, name: str, folder: Path, limit: int) -> Section:
+def _section(run: ResponseRun, person: str, name: str, folder: Path, limit: int) -> dict[str, Any]:
+    """What the page shows of one participant; no sentences and no R2 where there is no response."""
     response = next(iter(run.responses), None)
     strides = strides_figure(run, person, name)
     drawn: dict[str, list[Figure]] = {
@@ -113,15 +94,15 @@ def _section(run: ResponseRun, person: str, name: str, folder: Path, limit: int)
     }
     r2, dropped = (r2_table(response, name) if response else None), tabulate_dropped(run, person, name)
     save_tables((table for table in (r2, dropped) if table is not None), folder)
-    return Section(
-        participant=person,
-        anchor=f"participant-{name}",
-        sentences=participant_sentences(response) if response else [],
-        r2=r2,
-        reasons=not_computed(run, response) if response else [],
-        dropped=dropped,
-        figures={subject: save_figures(figures, folder, limit) for subject, figures in drawn.items()},
-    )
+    return {
+        "participant": person,
+        "anchor": f"participant-{name}",
+        "sentences": participant_sentences(response) if response else [],
+        "r2": r2,
+        "reasons": not_computed(run, response) if response else [],
+        "dropped": dropped,
+        "figures": {subject: save_figures(figures, folder, limit) for subject, figures in drawn.items()},
+    }
 
 
 def method_sentences(run: ResponseRun) -> list[str]:

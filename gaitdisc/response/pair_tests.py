@@ -52,14 +52,14 @@ def comparison_sentences(run: ResponseRun) -> list[str]:
         return [f"{tests.too_few}. The numbers describe these participants only."]
     counts = tests.families.groupby("family")["different"].sum()
     total = int((tests.families["family"] == "pair").sum())
-    said = [f"{int(counts.get(family, 0))} over {_FAMILY_WORDS[family]}" for family in FAMILIES]
+    differing = [f"{int(counts.get(family, 0))} over {_FAMILY_WORDS[family]}" for family in FAMILIES]
     every = counted(total, "test")
     return [
         *(_verdict(tests, first, second) for first, second in PAIRS[:3]),
         "A non-significant difference does not show equality: the interval of the shift says how large it may be.",
         _floor(tests),
         _say_unexplained(tests),
-        f"For {every} of the three pairs, {listing(said)} show a difference (families; the first is used).",
+        f"Differences in {every} of the three pairs, by family: {listing(differing)}. The first family is used.",
     ]
 
 
@@ -131,22 +131,22 @@ def _families_table(tests: PairTests) -> Table:
     rows = []
     for family in FAMILIES:
         for first, second in PAIRS[:3]:
-            found = tests.families
-            found = found[(found["family"] == family) & (found["first"] == first) & (found["second"] == second)]
-            named = [label(str(variable)) for variable in found.loc[found["different"], "variable"]]
+            tested = tests.families
+            tested = tested[(tested["family"] == family) & (tested["first"] == first) & (tested["second"] == second)]
+            named = [label(str(variable)) for variable in tested.loc[tested["different"], "variable"]]
             rows.append((
                 _FAMILY_WORDS[family],
                 f"{_WORDS[first]}, {_WORDS[second]}",
-                _range(found["tests"], "d"),
-                _range(found["critical"], ".4f"),
-                f"{len(named)} of {len(found)}",
+                _range(tested["tests"], "d"),
+                _range(tested["critical"], ".4f"),
+                f"{len(named)} of {len(tested)}",
                 ", ".join(named) if named else "none",
             ))  # fmt: skip
     caption = (
         f"The same tests with other families, n = {counted(tests.participants, 'participant')}, alpha = "
         f"{tests.alpha:g} in each. Level: the level at which the step-down procedure stopped, printed in the "
         "dissertation as “Sidak α = 0.013”. With eight variables per pair and four rejected it is 0.0127; with three "
-        "pairs per variable it cannot be."
+        "pairs per variable no level has this value."
     )
     columns = ("family", "pair", "tests in it", "level at the stop", "different", "which")
     return Table("tests-families", caption, columns, tuple(rows), tests.families)

@@ -2,24 +2,36 @@
 
 from __future__ import annotations
 
+import json
 from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from functools import cached_property, partial
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pandas as pd
 from numpy.typing import NDArray
 
 from gaitdisc.errors import SchemaError, ShapeError
+from gaitdisc.model import Model, augment
 from gaitdisc.processing.pooled_cycles import CYCLES, WALK, PooledCycles, WalkSummary
-from gaitdisc.recording import PERCENT
+from gaitdisc.processing.samples import gait_samples
+from gaitdisc.recording import PERCENT, Recording, Trial
 from gaitdisc.response.participants_result import OVER, TESTS, OverParticipants, PairTests, table_of_people
 from gaitdisc.saved.kind import CSV, Kind, pick_arrays
 from gaitdisc.saved.study_run import StudyRun, load_run_as, save_whole_run
 from gaitdisc.saved.unit_folder import Arrays, lies_on_disk, may_lie_on_disk
 from gaitdisc.words import as_html
 
+PROCESSING = (
+    "filters",
+    "strides",
+    "treadmill",
+    "models",
+    "quality",
+    "conditions",
+)  # settings that a walk is processed by
 QUESTIONS = ("modalities", "sensitivity")  # answered in folders beside a run
 MODELS = ("nominal", "augmented", "exo")
 BASELINES = ("ridge", "linear", "null")
@@ -43,7 +55,7 @@ class HeldOut:
     bands: Mapping[str, NDArray[np.float64]] = field(default_factory=dict)
 
 
-@may_lie_on_disk("held_out", "residuals")
+@may_lie_on_disk("held_out", "residuals", "weights")
 @dataclass(frozen=True, eq=False)
 class ParticipantResponse:
     """Nominal, Exo, Discrepancy and Augmented for one participant (Eqs. 4.2-4.5), tested on held-out walking."""
@@ -64,6 +76,8 @@ class ParticipantResponse:
     # points; keys among `MODELS`
     residuals: Mapping[str, NDArray[np.float64]]
     held_out_s: float  # length of the held-out part [s]
+    # scales and weights of the networks, as `nominal_x_mean`; empty in results of older versions
+    weights: Mapping[str, NDArray[Any]] = field(default_factory=dict)
 
     def __post_init__(self) -> None:
         """Check shapes once, before they are saved."""
@@ -97,10 +111,24 @@ class ParticipantResponse:
         return self._r2.get((variable, model, kind, walk), float("nan"))
 
     @cached_property
-    def _r2(self) -> dict[tuple[str, str, str, str], float]:
-        """R2 by variable, model, kind and walk: a report reads each of them many times."""
-        columns = (self.r2[name] for name in ("variable", "model", "kind", "walk", "r2"))
-        return {(v, model, kind, walk): float(value) for v, model, kind, walk, value in zip(*columns, strict=True)}
+    def _r2(self) -> dict[Any, float]:
+        return self.r2.set_index(["variable", "model", "kind", "walk"])["r2"].astype(float).to_dict()
+
+    def model(self, name: str) -> Model:
+        """Fitted network `nominal`, `exo` or `discrepancy`, or `augmented`, the sum of the first and the last."""
+        if name == "augmented":
+            return augment(self.model("nominal"), self.model("discrepancy"))
+        arrays = pick_arrays(self.weights, f"{name}_")
+        if not arrays:
+            raise SchemaError(
+                "a prediction needs the weights of `nominal`, `exo`, `discrepancy` or `augmented`",
+                f"the response of {self.participant} has none of {name!r}",
+                "Choose one of these, or fit again a response that an older version saved without weights.",
+            )
+        from gaitdisc.models.feedforward import FeedForward
+        from gaitdisc.models.trained_network import restore_network
+
+        return restore_network(self.inputs, self.outputs, arrays, FeedForward(len(self.inputs), len(self.outputs)))
 
 
 @dataclass(frozen=True, eq=False)
@@ -138,6 +166,7 @@ def _find_held_out(arrays: Arrays) -> HeldOut:
 def _predict(response: ParticipantResponse) -> dict[str, NDArray[np.float64]]:
     held = response.held_out
     every = {"predicted": held.predicted, "band": held.bands, "residual": response.residuals}
+    every["weights"] = response.weights
     own = {f"{word}_{model}": values for word, of in every.items() for model, values in of.items()}
     return {"time": held.time, "phi": held.phi, "measured": held.measured, **own}
 
@@ -147,7 +176,11 @@ RESPONSE = Kind(
     "response.json",
     ("participant", "inputs", "outputs", "units", "held_out_s"),
     {"r2": CSV("r2.csv", R2_COLUMNS), "fits": CSV("fits.csv", FIT_COLUMNS)},
-    {"held_out": _find_held_out, "residuals": partial(pick_arrays, prefix="residual_")},
+    {
+        name: partial(pick_arrays, prefix=f"{word}_")
+        for name, word in (("residuals", "residual"), ("weights", "weights"))
+    }
+    | {"held_out": _find_held_out},
     _predict,
     unit=lambda response: response.participant,
 )
@@ -218,6 +251,46 @@ class ResponseRun(StudyRun):
         """Participants with reported models or cycles."""
         names = [response.participant for response in self.responses]
         return tuple(dict.fromkeys([*names, *(one.subject for one in self.cycles if len(one.kept))]))
+
+    def predict(self, walk: Trial, model: str = "augmented", participant: str = "") -> Recording:
+        """Predict second derivatives along another walk, which is processed with the settings of this run.
+
+        Parameters
+        ----------
+        walk : Trial
+            A walk with the inputs of the model, as `gaitdisc.read` returns it.
+        model : str
+            `nominal`, `exo`, `discrepancy` or `augmented`.
+        participant : str
+            Person whose model predicts; may be omitted if the run has only one.
+
+        Returns
+        -------
+        Recording
+            Outputs [unit/s2], as `gaitdisc.differentiate` returns measured ones; NaN where an input is missing.
+
+        Raises
+        ------
+        SchemaError
+            If the run has no such person or model, or an older version saved it without weights.
+        """
+        from gaitdisc.ingest.study import Study
+        from gaitdisc.processing.process import processed
+
+        own = [response for response in self.responses if participant in ("", response.participant)]
+        if len(own) != 1:
+            found = f"found {participant!r}; the run has {', '.join(self.reported) or 'none'}"
+            raise SchemaError("a prediction needs one participant of the run", found, "Name one of them.")
+        response, settings = own[0], self.provenance.settings
+        chosen = {key: settings[key] for key in PROCESSING if key in settings}
+        study = Study.model_validate_json(json.dumps({**chosen, "participants": [{"id": response.participant}]}))
+        trajectory = processed(walk, study).trajectory
+        samples, _ = gait_samples(trajectory, response.outputs)
+        values = np.full((len(trajectory.time), len(response.outputs)), np.nan)
+        values[np.searchsorted(trajectory.time, samples.time)] = response.model(model)(samples.x)
+        measured = (trajectory.channels[column] for column in trajectory.columns(response.outputs))
+        channels = tuple(replace(one, unit=unit) for one, unit in zip(measured, response.units, strict=True))
+        return Recording(trajectory.time, values, channels, walk.subject, walk.condition)
 
     def to_frame(self) -> pd.DataFrame:
         """R2 of every participant, variable, model, kind and walk, one row each."""

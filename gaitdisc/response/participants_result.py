@@ -97,10 +97,6 @@ class OverParticipants:
             found = length
         return found
 
-    def tables(self) -> dict[str, pd.DataFrame]:
-        """Return every table by its name."""
-        return {name: getattr(self, name) for name in TABLES}
-
 
 def table_of_people(people: Sequence[Any], field: str, columns: Sequence[str]) -> pd.DataFrame:
     """A table that each of some participants has, one below the other, with who it is of; without rows for nobody."""

@@ -41,7 +41,7 @@ def study_sentences(run: ResponseRun) -> list[str]:
         who,
         f"The models explain the following shares of the variance of held-out device walking ({run.exo}), median "
         f"[quartiles] over participants of each participant's median over variables: {', '.join(parts)}.",
-        _study_verdict(table["augmented_on_exo"] - table["nominal_on_exo"]),
+        _verdict(table, "median over participants; better in", MARGIN, "participant", ""),
     ]
     ridge = (table["ridge_augmented_on_exo"] - table["augmented_on_exo"]).dropna()
     if len(ridge):
@@ -81,44 +81,32 @@ def participant_sentences(response: ParticipantResponse) -> list[str]:
             "On held-out walking without the device, on which it was trained, the Nominal model reaches "
             f"{number(middle['nominal_on_nominal'])}."
         )
-    sentences.append(_verdict(table, middle))
-    for sentence in (_ridge(middle), _null(table, middle)):
-        if sentence:
-            sentences.append(sentence)
-    return sentences
+    sentences.append(_verdict(table, "median of the differences; better in", 1e-12, "variable", _say_closed(middle)))
+    return [*sentences, *filter(None, (_ridge(middle), _null(table, middle)))]
 
 
-def _verdict(table: pd.DataFrame, middle: pd.Series) -> str:
+def _verdict(table: pd.DataFrame, about: str, least: float, row: str, closed: str) -> str:
+    """Whether the Discrepancy model helps; a row of the table is better from a gain of `least` on."""
     gain = (table["augmented_on_exo"] - table["nominal_on_exo"]).dropna()
     if not len(gain):
         return "It was not computed whether the Discrepancy model helps."
     median = float(gain.median())
-    better = f"better in {int((gain > 0).sum())} of {counted(len(gain), 'variable')}"
+    better = f"({about} {int((gain >= least).sum())} of {counted(len(gain), row)})"
     if median >= MARGIN:
-        return (
-            f"The Discrepancy model helps: R² rises by {number(median)} (median of the differences; "
-            f"{better}){_say_closed(middle)}."
-        )
+        return f"The Discrepancy model helps: R² rises by {number(median)} {better}{closed}."
     if median <= -MARGIN:
-        return (
-            f"The Discrepancy model makes the prediction worse: R² falls by {number(-median)} (median of the "
-            f"differences; {better})."
-        )
-    return (
-        "The Discrepancy model does not help: the Augmented model is no better than the Nominal model (median of the "
-        f"differences {number(median, 3)}; {better})."
-    )
+        return f"The Discrepancy model makes the prediction worse: R² falls by {number(-median)} {better}."
+    same = "the Augmented model is no better than the Nominal model"
+    return f"The Discrepancy model does not help: {same}, and R² changes by {number(median, 3)} {better}."
 
 
 def _say_closed(middle: pd.Series) -> str:
     nominal, augmented, exo = (float(middle[column]) for column in _ON_EXO.values())
-    if not np.isfinite(exo) or exo - nominal < 0.01:
+    if not np.isfinite(exo) or exo - nominal < 0.01 or augmented <= nominal:
         return ""
     share = (augmented - nominal) / (exo - nominal)
     if share >= 1:
         return ", equal to the Exo model or above it"
-    if share <= 0:
-        return ""
     return f", {100 * share:.0f}\u00a0% of the way from the Nominal to the Exo model"
 
 
@@ -154,22 +142,6 @@ def _null(table: pd.DataFrame, middle: pd.Series) -> str:
         return f"{start}."
     named = f" ({'; '.join(label(variable) for variable in lost)})" if len(lost) <= MOST_NAMED else ""
     return f"{start}, and in {len(lost)} of {counted(len(table), 'variable')} the Augmented model is no better{named}."
-
-
-def _study_verdict(gains: pd.Series) -> str:
-    gains = gains.dropna()
-    if not len(gains):
-        return "It was not computed whether the Discrepancy model helps."
-    median = float(gains.median())
-    better = f"better in {int((gains >= MARGIN).sum())} of {counted(len(gains), 'participant')}"
-    if median >= MARGIN:
-        return f"The Discrepancy model raises R² by {number(median)} (median over participants; {better})."
-    if median <= -MARGIN:
-        return f"The Discrepancy model lowers R² by {number(-median)} (median over participants; {better})."
-    return (
-        "The Discrepancy model does not help: the Augmented model is no better than the Nominal model (median "
-        f"difference {number(median, 3)}; {better})."
-    )
 
 
 def _median_iqr(values: pd.Series) -> str:

@@ -72,14 +72,8 @@ VARIANTS = Kind(
 
 def save_variant_run(run: VariantRun, folder: Path) -> None:
     """Save what was found over the participants, beside theirs, which were saved as they were computed."""
-    data = {
-        "title": run.title,
-        "exo": run.exo,
-        "question": run.question,
-        "people": [each.participant for each in run.people],
-        "refusals": plain(run.refusals),
-        "held_out_s": list(run.held_out_s),
-    }
+    data = {name: plain(getattr(run, name)) for name in ("title", "exo", "question", "refusals", "held_out_s")}
+    data["people"] = [each.participant for each in run.people]
     save_unit(folder, "variant_run.json", data, {"tests.csv": run.tests}, {})
 
 
@@ -94,13 +88,11 @@ def load_variant_run(folder: Path) -> VariantRun:
     """Load what was found over the participants."""
     data, tables, _ = load_unit(folder, "variant_run.json", {"tests.csv": VARIANT_TEST_COLUMNS})
     return VariantRun(
-        title=data["title"],
-        exo=data["exo"],
-        question=data["question"],
+        **{name: data[name] for name in ("title", "exo", "question")},
         people=tuple(VARIANTS.load(folder / "people" / name) for name in data["people"]),
         tests=with_words(tables["tests.csv"], "left_out"),
         refusals=tuple(Refusal(**one) for one in data["refusals"]),
-        held_out_s=(data["held_out_s"][0], data["held_out_s"][1]),
+        held_out_s=tuple(data["held_out_s"]),
     )
 
 

@@ -35,11 +35,11 @@ def modalities_figure(run: VariantRun) -> Figure | None:
     families = list(dict.fromkeys(numbers["without"]))
     drawn, [row] = panels(1, len(groups), ROW * (len(families) + 1), Room(left=2.0, bottom=0.5))
     for axes, group in zip(row, groups, strict=True):
-        own = numbers[numbers["variables"] == group]
+        of_group = numbers[numbers["variables"] == group]
         for model, offset in zip(SHOWN, (-0.17, 0.17), strict=True):
             look = MODELS[model]
             for place, family in enumerate(families):
-                values = own.loc[(own["without"] == family) & (own["model"] == model), "fall"].to_numpy()
+                values = of_group.loc[(of_group["without"] == family) & (of_group["model"] == model), "fall"].to_numpy()
                 values = np.minimum(values, FARTHEST)
                 axes.plot(values, np.full(len(values), place + offset), look.mark, color=look.colour, ms=2, alpha=0.45)
                 axes.plot(np.median(values), place + offset, look.mark, color=look.colour, ms=5)
@@ -47,7 +47,7 @@ def modalities_figure(run: VariantRun) -> Figure | None:
         axes.set_yticks(range(len(families)), [family_words(name) for name in families] if axes is row[0] else [])
         axes.set_ylim(len(families) - 0.4, -0.6)
         axes.set_xscale("symlog", linthresh=0.01)
-        axes.set_xlim(min(-0.02, float(own["fall"].min()) * 1.1), FARTHEST)
+        axes.set_xlim(min(-0.02, float(of_group["fall"].min()) * 1.1), FARTHEST)
         ticks = [tick for tick in (-0.1, -0.01, 0.0, 0.01, 0.1, 1.0) if axes.get_xlim()[0] <= tick]
         axes.set_xticks(ticks, [f"{tick:g}".replace("-", "\u2212") for tick in ticks])
         axes.minorticks_off()
@@ -90,9 +90,9 @@ def _group(run: VariantRun) -> pd.DataFrame:
 
 def modalities_table(run: VariantRun) -> Table:
     """Shift of R2 of the Augmented model without each family, by variable; a star where it is shown to differ."""
-    own = run.tests[run.tests["model"] == "augmented"]
-    cells = [number(float(str(row.shift)), 3) + ("*" if row.different else "") for row in own.itertuples()]
-    shown = own.assign(cell=cells).pivot_table("cell", "variant", "variable", aggfunc="first", sort=False)
+    tests = run.tests[run.tests["model"] == "augmented"]
+    cells = [number(float(str(row.shift)), 3) + ("*" if row.different else "") for row in tests.itertuples()]
+    shown = tests.assign(cell=cells).pivot_table("cell", "variant", "variable", aggfunc="first", sort=False)
     rows = tuple((family_words(str(family)), *row) for family, row in zip(shown.index, shown.to_numpy(), strict=True))
     caption = (
         f"Hodges-Lehmann shift of R² [1] of the Augmented model on the held-out device walk ({run.exo}) when the "
@@ -108,20 +108,20 @@ def modalities_sentences(run: VariantRun) -> tuple[str, ...]:
     numbers = falls(run)
     if not len(numbers):
         return ("No participant's models could be fitted.",)
-    said = []
+    sentences = []
     for group, words in (("angles", "joint angles"), ("EMG", "EMG")):
-        own = numbers[(numbers["variables"] == group) & (numbers["model"] == "augmented")]
-        if not len(own):
+        of_group = numbers[(numbers["variables"] == group) & (numbers["model"] == "augmented")]
+        if not len(of_group):
             continue
-        middle = own.groupby("without", sort=False)["fall"].median().sort_values(ascending=False, kind="stable")
+        middle = of_group.groupby("without", sort=False)["fall"].median().sort_values(ascending=False, kind="stable")
         most = [f"{family_words(str(name))} ({number(fall, 3)})" for name, fall in middle.head(3).items()]
-        said.append(f"Among {words}, the Augmented model loses most R² (medians) without {listing(most)}.")
-    said.append(
+        sentences.append(f"Among {words}, the Augmented model loses most R² (medians) without {listing(most)}.")
+    sentences.append(
         "A fall shows information that the other inputs cannot replace. Joint angles and EMG of one walk are "
         "correlated, so an input family may be informative even if R² does not fall without it. The falls of two "
         "families do not add up."
     )
-    return tuple(said)
+    return tuple(sentences)
 
 
 def family_words(family: str) -> str:
@@ -159,11 +159,11 @@ def orders(run: VariantRun) -> pd.DataFrame:
         index=["variant", "participant"], columns="model", values="r2", aggfunc="median", sort=False
     )
     holds = (middle["nominal"] < middle["augmented"]).groupby(level="variant", sort=False)
-    found = holds.agg(participants="count", holds="sum")
+    counts = holds.agg(participants="count", holds="sum")
     higher = run.tests[run.tests["different"].astype(bool) & (run.tests["shift"] > 0)]
-    found["variables"] = table["variable"].nunique()
-    found["different"] = higher.groupby("variant").size().reindex(found.index).fillna(0) if len(run.tests) else np.nan
-    return found.reset_index()
+    counts["variables"] = table["variable"].nunique()
+    counts["different"] = higher.groupby("variant").size().reindex(counts.index).fillna(0) if len(run.tests) else np.nan
+    return counts.reset_index()
 
 
 def sensitivity_table(run: VariantRun) -> Table:
@@ -172,8 +172,8 @@ def sensitivity_table(run: VariantRun) -> Table:
     groups = [group for group in GROUPS if group in set(medians["variables"])]
     rows = []
     for setting in held.itertuples():
-        own = medians[medians["variant"] == setting.variant].set_index("variables").reindex(groups)
-        cells = own[["nominal", "augmented", "exo", "null"]].to_numpy(float).ravel()
+        of_setting = medians[medians["variant"] == setting.variant].set_index("variables").reindex(groups)
+        cells = of_setting[["nominal", "augmented", "exo", "null"]].to_numpy(float).ravel()
         people = f"{setting.holds} of {setting.participants}"
         tested = f"{setting.different:.0f} of {setting.variables}" if len(run.tests) else "not tested"
         rows.append((str(setting.variant), *map(number, cells), people, tested))
@@ -198,7 +198,7 @@ def sensitivity_sentences(run: VariantRun) -> tuple[str, ...]:
     medians = setting_medians(run)
     failing = medians[~(medians["nominal"] < medians["augmented"])]
     cases = counted(len(medians), "case")
-    said = [
+    sentences = [
         f"In the medians, Nominal < Augmented holds in all {cases} (a setting and a group of variables)."
         if not len(failing)
         else f"In the medians, Nominal < Augmented fails in {len(failing)} of {cases}: "
@@ -208,13 +208,13 @@ def sensitivity_sentences(run: VariantRun) -> tuple[str, ...]:
     low = medians[medians["augmented"] <= medians["null"]]
     if len(low):
         where = ", ".join(f"{row.variant} ({row.variables})" for row in low.itertuples())
-        said.append(f"The Augmented model does not exceed the noise null with the same filters in: {where}.")
-    lost = sorted({name for each in run.people for name in each.left_away})
+        sentences.append(f"The Augmented model does not exceed the noise null with the same filters in: {where}.")
+    lost = sorted({name for person in run.people for name in person.left_away})
     for name in lost:
-        whom = [each for each in run.people if name in each.left_away]
-        who, why = ", ".join(each.participant for each in whom), whom[0].left_away[name]
-        said.append(f"{name} is left out for {who}: {why}")
-    return tuple(said)
+        people = [person for person in run.people if name in person.left_away]
+        who, why = ", ".join(person.participant for person in people), people[0].left_away[name]
+        sentences.append(f"{name} is left out for {who}: {why}")
+    return tuple(sentences)
 
 
 def write_variants(run: VariantRun, folder: Path) -> Path:

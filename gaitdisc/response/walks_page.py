@@ -153,15 +153,9 @@ def walks_table(run: ResponseRun) -> Table:
             "findings": len(walk.findings),
         })  # fmt: skip
     columns = (
-        "quality",
-        "participant",
-        "walk",
-        "length [s]",
-        "rate [Hz]",
-        "contacts by",
-        "strides kept / dropped",
+        "quality", "participant", "walk", "length [s]", "rate [Hz]", "contacts by", "strides kept / dropped",
         "findings",
-    )
+    )  # fmt: skip
     caption = (
         f"Processed walks, n = {len(run.walks)}. Green: nothing, or notes only; amber: warnings, some samples or "
         "channels are affected; red: the trial is refused."
@@ -191,22 +185,13 @@ def fits_table(run: ResponseRun) -> Table:
     """What was fitted, on how much, with which decay, in how long."""
     numbers = table_of_people(run.responses, "fits", FIT_COLUMNS)
     rows = [
-        (str(row.participant), MODEL_WORDS.get(str(row.model), str(row.model)), str(row.kind), _plain(row.decay),
-         _plain(row.epochs), _plain(row.n_training), _plain(row.n_inner))
+        (str(row.participant), MODEL_WORDS.get(str(row.model), str(row.model)), str(row.kind), f"{row.decay:g}",
+         f"{row.epochs:.0f}", f"{row.n_training:.0f}", f"{row.n_inner:.0f}")
         for row in numbers.itertuples(index=False)
     ]  # fmt: skip
-    headings = (
-        "participant", "model", "kind", "decay chosen", "epochs", "training samples", "inner samples",
-    )  # fmt: skip
+    headings = ("participant", "model", "kind", "decay chosen", "epochs", "training samples", "inner samples")
     caption = (
         f"Fits, n = {len(rows)}; decay: strength of the regularisation, chosen on inner samples, a contiguous last "
         "part of the training samples, without held-out samples."
     )
     return Table("fits", caption, headings, tuple(rows), numbers)
-
-
-def _plain(value: object) -> str:
-    if not isinstance(value, int | float) and not hasattr(value, "item"):
-        return str(value)
-    figure = float(value)  # type: ignore[arg-type]
-    return "–" if pd.isna(figure) else f"{figure:g}" if abs(figure) < 1e5 else f"{figure:.0f}"

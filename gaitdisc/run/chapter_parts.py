@@ -33,7 +33,7 @@ PARTS = (
     Part(3, "lorenz", "ch3_lorenz", "3.4.2, Figs. 3.6-3.11", 25, 0.5, libraries=METHODS),
     Part(3, "burgers", "ch3_burgers", "3.4.3, Fig. 3.12", 60, 0.3, libraries=METHODS),
     Part(3, "measurement_bias", "ch3_measurement_bias", "3.4.4, Fig. 3.13", 8, 0.2, libraries=METHODS),
-    Part(3, "who_names", "ch3_who_names", "who names the hidden effect, 3.4 and 3.5", 30, 0.3, libraries=METHODS),
+    Part(3, "who_names", "ch3_who_names", "which method names the effect, 3.4 and 3.5", 30, 0.3, libraries=METHODS),
     Part(3, "seeds", "ch3_seeds", "the cells of `tables`, computed again: every set, start and seed", 120, 0.3,
          libraries=METHODS),
     Part(3, "further", "ch3_further", "methods, noise, starts and trajectories that 3.4 and 3.5 also mention", 40, 0.5,

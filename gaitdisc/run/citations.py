@@ -51,7 +51,7 @@ MENTIONED = {  # a method in words -> the keys of data_schema/methods.bib
     "multiple shooting": ("bock1984",),
     "damped least squares": ("levenberg1944", "marquardt1963"),
     "information criterion": ("schwarz1978",),
-    "a term read by regression on a library": ("brunton2016",),
+    "a term identified by regression on a library": ("brunton2016",),
     "spiked samples": ("hampel1974",),
     "SINDy": ("brunton2016",),
     "an ensemble of SINDy": ("fasel2022",),
@@ -153,7 +153,7 @@ def list_methods(result: Any) -> Iterator[str]:
         if result.held_out.p == result.held_out.p:  # a test was made
             yield TESTED[0]
         if any(one.reads_as for one in (*result.effects, *result.rivals)):
-            yield "a term read by regression on a library"
+            yield "a term identified by regression on a library"
         if any("spike" in finding.kind for finding in result.findings):
             yield "spiked samples"
     elif isinstance(result, Mismatch):

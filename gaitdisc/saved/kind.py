@@ -141,7 +141,7 @@ def find_kind(folder: Path, drawn: bool = False) -> Kind[Any]:
         FolderError = SchemaError if folder.exists() else type("SchemaError", (SchemaError, FileNotFoundError), {})
         raise FolderError(
             f"a saved result must be a folder with one of {', '.join(KINDS)}",
-            f"{folder.name} {'holds ' + list_names(held) if folder.is_dir() else 'is no folder'}",
+            f"{folder.name} {'holds ' + list_names(held) if folder.is_dir() else 'is not a folder'}",
             "Name the folder that the command or .save(folder) wrote.",
         )
     kind = load_word(KINDS[file])

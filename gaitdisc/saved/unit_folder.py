@@ -36,11 +36,11 @@ Kind = TypeVar("Kind")
 Arrays = Mapping[str, Values]
 KEPT_FILES = 2  # of which the arrays stay in memory: both walks of one participant
 AGAIN = "Run the command that wrote it again. `gaitdisc run` keeps undamaged parts and computes the others again."
-CHANGED = "changed since it was saved (SHA-256 differs)"
+CHANGED = "has changed since it was saved (SHA-256 differs)"
 
 
 class DamagedError(SchemaError):
-    """A file of results that is not as it was saved."""
+    """A file of results has changed since it was saved."""
 
     path: Path
     what: str
@@ -106,7 +106,7 @@ def lies_on_disk(thing: object, field: str) -> bool:
 def damage(path: Path, what: str, do: str = AGAIN) -> DamagedError:
     """Return the refusal of a file that is not as it was saved."""
     error = DamagedError(
-        "every file of a results folder must be as it was saved", f"{path.parent.name}/{path.name} is {what}", do
+        "every file of a results folder must be as it was saved", f"{path.parent.name}/{path.name} {what}", do
     )
     error.path, error.what = path, what
     return error
@@ -115,7 +115,7 @@ def damage(path: Path, what: str, do: str = AGAIN) -> DamagedError:
 def of_another_format(path: Path, found: object, ours: int) -> DamagedError:
     """Return the refusal of a file that another version of gaitdisc wrote."""
     do = f"Another version wrote it. Install that version to read it, or compute it again with {__version__}."
-    return damage(path, f"of format {str(found)[:20]}, not {ours}", do)
+    return damage(path, f"has format {str(found)[:20]}, not {ours}", do)
 
 
 class _Field:
@@ -143,9 +143,9 @@ def _arrays(path: Path, sha256: str) -> Arrays:
         with np.load(io.BytesIO(content), allow_pickle=False) as stored:
             return {key: stored[key] for key in stored.files}
     except FileNotFoundError:
-        raise damage(path, "missing") from None
+        raise damage(path, "is missing") from None
     except (OSError, ValueError, EOFError, zipfile.BadZipFile) as error:
-        raise damage(path, f"not readable ({error})") from error
+        raise damage(path, f"cannot be read ({error})") from error
 
 
 OWN = "own_sha256"
@@ -154,19 +154,19 @@ OWN = "own_sha256"
 def read_sealed(path: Path) -> dict[str, Any]:
     """Read a JSON file that `seal_text` made, if it is as it was written."""
     if not path.is_file():
-        raise damage(path, "missing")
+        raise damage(path, "is missing")
     try:
         data = json.loads(path.read_text(encoding="utf-8"))
         own = data.pop(OWN, None) if isinstance(data, dict) else None
         found = content_sha256(data) if own is not None else None
     except RecursionError:
-        raise damage(path, "not readable as JSON (nested too deeply)") from None
+        raise damage(path, "cannot be read as JSON (nested too deeply)") from None
     except (OSError, ValueError) as error:
-        raise damage(path, f"not readable as JSON ({error})") from error
+        raise damage(path, f"cannot be read as JSON ({error})") from error
     if not isinstance(data, dict):
-        raise damage(path, "not a JSON object")
+        raise damage(path, "is not a JSON object")
     if own is None:
-        raise damage(path, f"without its own hash: an older version of gaitdisc wrote it, or {OWN} was removed")
+        raise damage(path, f"has no hash of its own: an older version of gaitdisc wrote it, or {OWN} was removed")
     if found != own:
         raise damage(path, CHANGED)
     return data
@@ -188,11 +188,11 @@ def check_files(folder: Path, hashes: Mapping[str, str]) -> None:
     for file, wanted in hashes.items():
         path = folder / file
         if not path.is_file():
-            raise damage(path, "missing")
+            raise damage(path, "is missing")
         try:
             found = file_sha256(path)
         except OSError as error:
-            raise damage(path, f"not readable ({error.strerror})") from error
+            raise damage(path, f"cannot be read ({error.strerror})") from error
         if found != wanted:
             raise damage(path, CHANGED)
 
@@ -248,13 +248,13 @@ def load_unit(
         try:
             tables[file] = read_csv(folder / file, words).rename(columns=EARLIER)
         except (OSError, ValueError) as error:  # what pandas cannot parse is a ValueError
-            raise damage(folder / file, f"not readable as a table ({error})") from error
+            raise damage(folder / file, f"cannot be read as a table ({error})") from error
     for file, wanted in (columns or {}).items():
         if file not in tables:
-            raise damage(folder / file, f"not among the files that {name} names")
+            raise damage(folder / file, f"is not among the files that {name} names")
         absent = [column for column in wanted if column not in tables[file]]
         if absent:
-            raise damage(folder / file, f"without the columns {', '.join(absent)}")
+            raise damage(folder / file, f"lacks the columns {', '.join(absent)}")
     return Unit(data, tables, StoredArrays(folder / "arrays.npz", data["sha256"].get("arrays.npz", "")))
 
 
@@ -296,7 +296,7 @@ def read_json(path: Path) -> dict[str, Any]:
         raise of_another_format(path, data.get("format"), FORMAT)
     wrong = next(iter(_validator(path.stem).iter_errors(data)), None)
     if wrong is not None:
-        raise damage(path, f"not in the expected form at {wrong.json_path}: {wrong.message[:200]}")
+        raise damage(path, f"does not have the expected form at {wrong.json_path}: {wrong.message[:200]}")
     return data
 
 

@@ -122,7 +122,7 @@ def _check_equations(simulation: Parts) -> None:
             nearest = nearest_word(name, states)
             remedy = f"Did you mean {nearest!r}?" if nearest else f"The states are {', '.join(states)}."
             raise SimulationError(
-                "an equation must belong to a state", f"{name!r} is none", remedy, ("equations", name)
+                "an equation must belong to a state", f"{name!r} is not a state", remedy, ("equations", name)
             )
     for name in states:
         if given.count(name) != 1:

@@ -41,7 +41,7 @@ class Simulation(Parts):
     source : Path, optional
         File of the simulation.
     layout : str
-        Text of that file, to keep its comments and order when it is written back.
+        Text of the file, whose comments and order are kept when it is written back.
     model : str
         Model file of an engine (OpenSim, MuJoCo) that contains the equations.
     inexact : float
@@ -179,8 +179,7 @@ class Simulation(Parts):
 
         Parameters
         ----------
-        state : str
-            Its name.
+        state : str            Name of the state.
         equation : str
             Expression in the names of the simulation.
         """

@@ -278,12 +278,12 @@ def bundled(name: str) -> Simulation:
     Parameters
     ----------
     name : str
-        `pendulum`, `lorenz` and so on; the message of an unknown name lists all.
+        `pendulum`, `lorenz` or another; the refusal of an unknown name lists all.
 
     Raises
     ------
     ReadError
-        If there is none of that name.
+        If no simulation has this name.
 
     Examples
     --------

@@ -43,7 +43,7 @@ def write_simulation(simulation: Simulation | PythonSimulation, path: Path | str
     Raises
     ------
     WriteError
-        If it cannot be written; an older file is unchanged.
+        If the file cannot be written; an older file is unchanged.
 
     Examples
     --------

@@ -22,7 +22,7 @@ def r2(measured: ArrayLike, predicted: ArrayLike) -> NDArray[np.float64]:
     Parameters
     ----------
     measured, predicted : array_like (sample, column), or (sample,) [each column's unit]
-        Held-out samples, and what a model says of them. Rows and columns are taken as they stand.
+        Held-out samples and their predictions. Rows and columns must be in the same order.
 
     Returns
     -------

@@ -43,7 +43,7 @@ def signed_rank(
     Parameters
     ----------
     first, second : array_like (pair,)
-        In one unit, pair by pair. Two Series are paired by their index, in whatever order.
+        Numbers in one unit, in the order of the pairs. Two Series are paired by their index.
     left_out : mapping of int to str, optional
         Pairs that are left out, with the reason. Other missing numbers are refused, because silently dropping one of 11
         pairs doubles the smallest possible p.

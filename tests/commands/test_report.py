@@ -26,7 +26,7 @@ def test_any_saved_result_is_drawn_by_its_folder(tmp_path, called, unpainted):
 def test_a_folder_with_no_page_to_draw_is_refused(tmp_path, called):
     (tmp_path / "model.json").write_text("{}")
     assert says(called("report", tmp_path, ends=REFUSED).stderr, "no page", "above", "`models`")
-    assert "nowhere is no folder" in called("report", tmp_path / "nowhere", ends=REFUSED).stderr
+    assert "nowhere is not a folder" in called("report", tmp_path / "nowhere", ends=REFUSED).stderr
 
 
 @pytest.fixture(scope="module")
@@ -56,7 +56,7 @@ def test_one_person_before_and_after_beside_a_reference(called, run_folder, tmp_
 
 def test_what_is_not_there_is_refused_in_words(called, run_folder, tmp_path):
     nobody = called("report", run_folder, "--person", "P99", ends=1)
-    assert "'P99'; there are P07, P08" in nobody.stderr
+    assert "'P99' is not; it has P07, P08" in nobody.stderr
     half = called("report", run_folder, "--before", "s1")
     assert says(half.stderr, "--person, --before", "--after")
     none = called("report", run_folder, "--reference", tmp_path / "none")

@@ -41,14 +41,14 @@ def test_a_port_times_0_is_said_and_the_others_are_searched(measured):
 
 def test_a_state_that_nothing_sees_and_the_port_that_moves_it_are_said(measured):
     port, state = findings_of(HEAT, measured)
-    assert says(port, "'warmth'", "no", "what is measured")
+    assert says(port, "'warmth'", "no", "measured channels")
     assert says(state, "no", "'heat'", "no")
 
 
 def test_a_parameter_without_influence_is_no_candidate(measured):
     more = MASS.replace("[ports.load]", "[parameters.colour]\nvalue = 3.0\n[ports.load]")
     case = set_up_case(parse_simulation(more), measured)
-    assert says(case.measured.findings[-1].what, "'colour'", "no", "what is measured")
+    assert says(case.measured.findings[-1].what, "'colour'", "no", "measured channels")
     assert all(one.place != "colour" for one in case.search.candidates)
     assert any(one.place == "k" for one in case.search.candidates)
 

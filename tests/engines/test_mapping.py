@@ -161,8 +161,8 @@ def mapping():
 @pytest.mark.parametrize(
     ("factors", "words"),
     [
-        ((1, -1), r"column 'knee' has the other sign: .* expression = \"-\(57.2957795\*knee\)\""),
-        ((-1, -1), r"column 'hip' has the other sign, and so does 'knee'"),
+        ((1, -1), r"column 'knee' has the opposite sign: .* expression = \"-\(57.2957795\*knee\)\""),
+        ((-1, -1), r"column 'hip' has the opposite sign, and so does 'knee'"),
         ((1, np.pi / 180), r"'knee' is in radians: .* unit = \"rad\", expression = \"knee\""),
         ((np.pi / 180, np.pi / 180), r"is in radians, and so is '\w+'"),
         ((180 / np.pi, 1), r"'hip' is in degrees"),

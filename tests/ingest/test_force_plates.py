@@ -99,7 +99,7 @@ def test_the_zero_span_is_removed_unless_the_plate_is_loaded_then():
     loaded = _rows()[::-1].copy()
     streams, _, findings = _read(np.vstack([loaded, loaded[-1:].repeat(400, axis=0)]), _file(ZERO=np.array([1, 10])))
     assert streams["forces"][0][0, 2] == pytest.approx(600)
-    assert says(findings[0].what, "600 N", "samples 1", "10")
+    assert says(findings[0].what, "600 N", "samples, 1 to 10")
 
 
 def test_a_plate_far_from_its_foot_is_reported():

@@ -238,7 +238,7 @@ def test_known_hips_are_found_whatever_the_landmarks_say(name):
     for joint, place in true.items():
         np.testing.assert_allclose(hips[joint], place, atol=1e-5)
     assert [finding.kind for finding in findings] == ["functional hip"] * 2
-    assert says(findings[0].what, "21 mm", "from the landmarks")
+    assert says(findings[0].what, "21 mm", "by the landmarks")
 
 
 @pytest.mark.parametrize(("skin_mm", "within_mm"), [(1.0, 3.0), (5.0, 13.0)])

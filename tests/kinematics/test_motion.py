@@ -189,7 +189,7 @@ def test_an_ankle_apart_from_the_line_of_a_foot_that_rolls_is_said():
     seen = [move_body(markers_of(one, PLUG_IN_GAIT), static_of(PLUG_IN_GAIT), None, MEASURES) for one in (known, roll)]
     plain, said = ([one for one in moved.findings if one.kind == "rolled foot"] for moved in seen)
     assert not plain and len(said) == 1
-    assert says(said[0].what, "ankle_angle_r", "deg from the line heel to toe")
+    assert says(said[0].what, "ankle_angle_r", "deg from the line from heel to toe")
 
 
 EXCHANGED = {f"{side}{end}": f"{other}{end}" for side, other in ("LR", "RL") for end in PIG_ENDS}

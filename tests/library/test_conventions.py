@@ -15,8 +15,6 @@ NOT_A_SERIES = {
 OTHERS = {  # checks that fail for another reason
     "check_estimators_nan_inf": "NaN is a missing reading, which a window may contain",
     "check_positive_only_tag_during_fit": "its data are one-dimensional states as well",
-    "check_estimators_unfitted": "a TrainingError with its remedy, not a NotFittedError: could be mended",
-    "check_do_not_raise_errors_in_init_or_set_params": "the rate is converted at once: could be mended",
     "check_complex_data": "refused as any array, in this package's words",
     **{f"check_estimator_sparse_{part}": "refused as any array" for part in ("tag", "array", "matrix")},
 }

@@ -42,7 +42,7 @@ def test_a_folder_without_a_result_is_refused(tmp_path):
     (tmp_path / "notes.txt").write_text("")
     with pytest.raises(SchemaError, match=r"folder with one.*run.json.*notes.txt"):
         gd.load(tmp_path)
-    with pytest.raises(SchemaError, match="nothere is no folder"):
+    with pytest.raises(SchemaError, match="nothere is not a folder"):
         gd.load(tmp_path / "nothere")
 
 
@@ -52,7 +52,7 @@ def test_a_discovery_that_was_edited_or_is_of_another_format_is_refused(tmp_path
     file = manufactured().save(tmp_path) / "discovery.json"
     data = read_sealed(file)
     file.write_text(seal_text(data | {"format": 2}))
-    with pytest.raises(SchemaError, match="of format 2, not 1"):
+    with pytest.raises(SchemaError, match="has format 2, not 1"):
         gd.load(tmp_path)
     file.write_text(seal_text({key: value for key, value in data.items() if key != "gap"}))
     with pytest.raises(SchemaError, match=r"not.*.KeyError: 'gap'"):

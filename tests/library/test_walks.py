@@ -5,7 +5,7 @@ import pandas as pd
 import pytest
 
 import gaitdisc as gd
-from gaitdisc.errors import ChannelError, GaitdiscError, ReadError, SamplingError, StrideError
+from gaitdisc.errors import ChannelError, GaitdiscError, ReadError, SamplingError, SchemaError, StrideError
 from gaitdisc.kinematics.motion import move_body
 from gaitdisc.response.participant_response import R2_COLUMNS
 
@@ -167,13 +167,10 @@ def test_two_trials_and_their_files_say_the_same(walks, tmp_path):
     assert isinstance(found, gd.Mismatch) and found.to_frame()["channel"].unique().tolist() == ["ankle_angle_r"]
 
 
-def test_a_region_is_as_large_as_the_smallest_that_is_reported(walks):
+def test_a_region_is_as_large_as_the_smallest_reported_and_one_channel_may_be_a_word(walks):
     found = gd.compare(walks["exo"], walks["nominal"], ["ankle_angle_r"], smallest_deg=3.5)
     assert len(found.regions) and (found.regions["gap"].abs() >= 3.5).all()
     assert not len(gd.compare(walks["exo"], walks["nominal"], ["ankle_angle_r"], smallest_deg=30.0).regions)
-
-
-def test_one_channel_may_be_named_by_a_word(walks):
     assert gd.compare(walks["exo"], walks["nominal"], "ankle_angle_r").names == ("ankle_angle_r",)
 
 
@@ -194,18 +191,21 @@ def test_two_walks_become_a_run_that_is_saved_and_drawn(long, tmp_path):
     assert ridge["augmented"] > ridge["nominal"]  # a spring at the ankle that only the one walk has
     again = gd.load(run.save(tmp_path / "run"))
     assert isinstance(again, gd.ResponseRun) and again.to_frame().equals(table)
+    predicted, held = again.predict(long["exo"]), run.responses[0].held_out
+    assert predicted.channels[0].unit == "deg/s2" and np.isnan(predicted.values[0, 0])
+    rows = np.searchsorted(predicted.time, held.time)
+    np.testing.assert_allclose(predicted.values[rows], held.predicted["augmented"], rtol=1e-4)
+    with pytest.raises(SchemaError, match=r"none of 'ridge'.*older version saved without weights"):
+        again.predict(long["exo"], "ridge")
     assert again.provenance.settings["models"]["outputs"] == list(OUTPUTS)
     assert gd.plot.r2(again).get_xlim()[1] == 1.0
     assert gd.plot.curves(again, "ankle_angle_r").get_title() == "ankle angle, right"
     assert "median R² of augmented" in again._repr_html_()
 
 
-def test_an_output_that_is_no_angle_of_both_is_refused(long):
+def test_an_output_that_is_no_angle_of_both_and_a_share_in_percent_are_refused(long):
     with pytest.raises(ChannelError, match="'ankle_angle_q' is not among hip_flexion_r"):
         gd.fit_response(long["nominal"], long["exo"], ("ankle_angle_q",))
-
-
-def test_a_share_in_percent_is_refused_and_one_output_is_a_name(long):
     with pytest.raises(SamplingError, match=r"held_out_share.*0.*12.5"):
         gd.fit_response(long["nominal"], long["exo"], held_out_share=12.5)
     with pytest.raises(ChannelError, match="'ankle' is not among"):

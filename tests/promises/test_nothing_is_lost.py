@@ -293,7 +293,7 @@ def test_after_a_full_disk_the_earlier_result_stands_whole(tmp_path, monkeypatch
     save("new", sentence="Another answer.")
     assert load_discovery(tmp_path).sentence == "Another answer."
     (tmp_path / "augmented.toml").write_text("changed")
-    with pytest.raises(gd.GaitdiscError, match=r"augmented\.toml is changed"):
+    with pytest.raises(gd.GaitdiscError, match=r"augmented\.toml has changed"):
         load_discovery(tmp_path)
 
 

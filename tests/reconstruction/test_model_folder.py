@@ -136,7 +136,7 @@ def test_a_model_that_was_edited_or_is_of_before_it_had_a_hash_is_refused(saved,
     data = json.loads(whole)
     data.pop("own_sha256")
     file.write_text(json.dumps(data))
-    with pytest.raises(SchemaError, match=r"model\.json.*without its own hash"):
+    with pytest.raises(SchemaError, match=r"model\.json.*has no hash of its own"):
         load_model(tmp_path)
 
 

@@ -62,5 +62,5 @@ def test_values_of_two_conditions_stand_side_by_side():
 def test_what_is_left_out_has_its_reason():
     table = tabulate_left_out([made_cycles(out=1)], "P01")
     assert table is not None and len(table.rows) == 2
-    assert says(table.rows[0][-1], "no", "other foot inside")
+    assert says(table.rows[0][-1], "no", "other foot within")
     assert tabulate_left_out([made_cycles(out=0)], "P01") is None

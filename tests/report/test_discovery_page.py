@@ -175,7 +175,7 @@ def test_what_a_file_says_is_text_and_never_markup(tmp_path):
     ("section", "says", "no_word_of"),
     [
         (SIMULATION, "Trials were divided into short runs.", "Inverse dynamics"),
-        (ENGINE, "The engine computed the accelerations along the smoothed record", "Inverse dynamics"),
+        (ENGINE, "The engine then computed the accelerations along the smoothed record", "Inverse dynamics"),
         (TRACKED, "Each block of time was predicted", "short runs. The initial state"),
         (DEVICE, "A moment model of this person was calibrated", "short runs. The initial state"),
     ],

@@ -137,9 +137,11 @@ def test_a_place_that_cannot_be_written_is_said(run, tmp_path):
 def test_the_paired_tests_have_their_section_and_the_same_bytes(tested_maker, tmp_path, monkeypatch):
     """Without the figures of each participant, which are drawn and compared above."""
     none = {subject: [] for subject in ("held_out", "residual", "curves", "strides")}
-    brief = partial(response_page.Section, sentences=[], r2=None, reasons=[], dropped=None, figures=none)
+    brief = partial(dict, sentences=[], r2=None, reasons=[], dropped=None, figures=none)
     monkeypatch.setattr("gaitdisc.report.page.MOST_PROCESSES", 1)
-    monkeypatch.setattr(response_page, "_section", lambda _, person, name, *__: brief(person, f"participant-{name}"))
+    monkeypatch.setattr(
+        response_page, "_section", lambda _, person, name, *__: brief(participant=person, anchor=f"participant-{name}")
+    )
     run = tested_maker(6, ("hip_flexion_r",))
     text = write_report(run, tmp_path / "a").read_text(encoding="utf-8")
     assert text.index("What the models explain") < text.index("Which model explains more") < text.index(">P01</h2>")

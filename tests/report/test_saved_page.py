@@ -99,7 +99,7 @@ def test_a_folder_without_a_result_is_refused_with_what_it_holds(tmp_path):
     with pytest.raises(SchemaError, match=r"a saved result.*run.json.*study.toml"):
         draw_saved(tmp_path)
     (tmp_path / "discovery.json").write_text(json.dumps({"verdict": "no_gap"}))
-    with pytest.raises(SchemaError, match="without its own hash"):
+    with pytest.raises(SchemaError, match="has no hash of its own"):
         draw_saved(tmp_path)
 
 

@@ -200,7 +200,7 @@ def test_the_discrepancy_model_learns_what_the_nominal_model_misses_of_device_wa
 
     def fit(part, progress):
         progress(1.0)
-        return Fit(Offset(part), 0.0, 0, len(part), 0, 0.0)
+        return Fit(Offset(part), 0.0, 0, len(part), 0)
 
     nominal, exo = samples(10.0), samples(17.0, seed=1)
     models = fit_models(nominal, exo, fit, told.append)
@@ -215,7 +215,6 @@ def test_the_discrepancy_model_learns_what_the_nominal_model_misses_of_device_wa
 def test_both_kinds_say_how_they_were_fitted():
     for fit in (fit_linear(samples(3.0)), fit_network(samples(3.0))):
         assert (fit.n_training, fit.n_inner) == (400, 60)
-        assert fit.seconds > 0
 
 
 def walk(seed: int, gain: float, count: int = 2000) -> Samples:

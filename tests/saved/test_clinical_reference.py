@@ -29,7 +29,7 @@ def test_a_person_is_beside_the_group_of_the_own_speed_with_scores_and_without_l
     assert says(grown.beside[1], "“free”", "83 people", "0.36", "0.50", "0.41")
     assert grown.beside[0] == f"Published: {SOURCE[2:]}."
     assert grown.profile is not None and grown.profile.both.people == 83
-    assert says(grown.silent, "no single legs", "limits") and grown.numbers == ()
+    assert says(grown.silent, "limits", "single legs") and grown.numbers == ()
     unknown = read_beside(made_person(), reference)
     assert says(unknown.beside[1], "“free”, 83 people; no")
     slow = read_beside(replace(made_person(), leg_m=2.5), reference)
@@ -41,7 +41,7 @@ def test_a_person_is_beside_the_group_of_the_own_speed_with_scores_and_without_l
     [
         (published_table().replace(SOURCE + "\n", ""), "has no source"),
         (published_table().replace(",sd\n", ",spread\n"), "has no column sd"),
-        (published_table().replace("knee_flexion", "knee"), "slow knee: a variable must be one of pelvis_tilt"),
+        (published_table().replace("knee_flexion", "knee"), "slow knee: the variable must be one of pelvis_tilt"),
         (published_table(lambda row: "" if ",98," in row or ",100," in row else row), "found 49 from 0 to 96 %"),
         (published_table().replace("2.5\n", "-2.5\n"), "with mean and sd"),
     ],

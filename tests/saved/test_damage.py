@@ -4,6 +4,7 @@ import contextlib
 import json
 import os
 import random
+import re
 import shutil
 
 import numpy as np
@@ -116,7 +117,7 @@ def test_damaged_bytes_are_refused_in_words(folder, place):
             try:
                 read(folder, place)
             except SchemaError as error:
-                assert f"{file.name} is " in str(error) and says(str(error), "`gaitdisc run` keeps")
+                assert re.search(rf"{file.name} (is|has|lacks|cannot|does) .*`gaitdisc run` keeps", str(error))
                 assert len(damage_lines(folder)) == 1
             else:  # of the JSON file, blanks between its words alone
                 assert json.loads(content) == json.loads(whole)
@@ -158,7 +159,7 @@ def test_an_edited_number_or_word_is_found(folder, place):
     for key, value in whole.items():
         other = 3.0 if value != 3.0 else 4.0
         file.write_text(json.dumps({**whole, key: other}))
-        with pytest.raises(SchemaError, match=r"\.json is "):
+        with pytest.raises(SchemaError, match=r"\.json (is|has|cannot) "):
             read(folder, place)
         assert len(damage_lines(folder)) == 1
 
@@ -171,7 +172,7 @@ def test_a_run_of_before_the_hash_says_so(folder):
     with pytest.raises(SchemaError, match=r"run\.json.*version of gaitdisc"):
         load_run(folder)
     [line] = damage_lines(folder)
-    assert line.startswith("modalities/people/P01/variants.json, ") and says(line, "5 more: without its own hash")
+    assert line.startswith("modalities/people/P01/variants.json, ") and says(line, "5 more: has no hash of its own")
 
 
 def test_a_pipe_in_the_place_of_a_file_is_not_waited_for(folder):

@@ -59,8 +59,8 @@ def test_another_order_and_another_editors_line_ends_change_nothing(tmp_path):
     ("changed", "words"),
     [
         (lambda text: text.replace("100.0", "999.0"), "walk.json.*edited|walk.json.*changed"),
-        (lambda text: text.replace(OWN, "other"), "walk.json.*without its own hash: an older version of gaitdisc"),
-        (lambda text: text[:-8], "walk.json.*not readable as JSON"),
+        (lambda text: text.replace(OWN, "other"), "walk.json.*has no hash of its own: an older version of gaitdisc"),
+        (lambda text: text[:-8], "walk.json.*cannot be read as JSON"),
         (lambda text: "[" * 100_000, "walk.json.*nested too deeply"),
         (lambda text: "[1, 2]", "walk.json.*not a JSON object"),
     ],
@@ -129,10 +129,10 @@ def test_a_missing_file_and_another_format(response, tmp_path):
         load_run(tmp_path)
     RESPONSE.save(response, tmp_path, "key")
     resealed(tmp_path / "response.json", lambda data: data.update(format=99))
-    with pytest.raises(SchemaError, match="of format 99, not 1"):
+    with pytest.raises(SchemaError, match="has format 99, not 1"):
         RESPONSE.load_keyed(tmp_path)
     (tmp_path / "response.json").write_text("{")
-    with pytest.raises(SchemaError, match="not readable as JSON"):
+    with pytest.raises(SchemaError, match="cannot be read as JSON"):
         RESPONSE.load_keyed(tmp_path)
 
 

@@ -68,19 +68,19 @@ def found():
 def test_the_smallest_set_that_does_is_marked(found):
     rows = search_table(found).rows
     assert [row[0] for row in rows] == ["1", "2 *", "3"]
-    assert says(rows[1][1], "hip flexion, right", "knee angle, left")
+    assert says(rows[1][1], "right hip flexion", "left knee angle")
     assert rows[1][2:5] == ("0.500", "2.00", "153")
 
 
 def test_the_sentence_says_how_many_which_what_one_more_brings_and_the_cost(found):
     [said] = search_sentences(found)
-    assert says(said, "2 sensors are enough", "hip flexion, right", "knee angle, left", "by 4 %")
+    assert says(said, "2 sensors are enough", "right hip flexion", "left knee angle", "by 4 %")
     assert said.endswith("(search: 987 regressions, 1.5 s).")
 
 
 def test_a_search_that_was_too_short_says_so(found):
     [said] = search_sentences(found.iloc[:2])
-    assert says(said, "best set of 2 sensors", "hip flexion, right", "knee angle, left", "may not be enough")
+    assert says(said, "best set of 2 sensors", "right hip flexion", "left knee angle", "may not be enough")
     assert "no larger one was tried" in said and "are enough" not in said
 
 

@@ -59,7 +59,7 @@ def test_its_parts_stand_in_the_order_of_a_clinic(page):
     text = page.read_text(encoding="utf-8")
     headings = re.findall(r"<h2[^>]*>([^<]*)</h2>", text)
     wanted = ["What stands out", "Time and distance", "Scores", "Kinematics, walk",
-              "Moments, powers and forces, walk", "EMG, walk", "All values that the rules look at"]  # fmt: skip
+              "Moments, powers and forces, walk", "EMG, walk", "All values that the rules use"]  # fmt: skip
     assert headings[: len(wanted)] == wanted
     assert headings[-3:] == ["Turn", "walk and turn", "How it was made"]
     assert text.count('role="img"') == text.count('aria-label="') - text.count('role="region"')
