@@ -179,12 +179,10 @@ def test_two_runs_in_one_folder(folder, monkeypatch, said):
     assert says(words, f"{os.getpid()}", f"{folder}/run/")
 
 
-def test_a_run_that_was_moved_to_another_machine_goes_on_there(folder, monkeypatch, tmp_path_factory, said, called):
-    written(folder, walker("P01"))
-    said("run", folder, "--quiet", ends=0)
-    there = tmp_path_factory.mktemp("another") / "machine"
-    shutil.copytree(folder, there)
-    shutil.rmtree(folder / "run")
+def test_a_run_that_was_moved_to_another_machine_goes_on_there(ran, monkeypatch, tmp_path, said, called, request):
+    there = shutil.copytree(ran, tmp_path / "machine")
+    here = ran.rename(tmp_path / "here")
+    request.addfinalizer(lambda: here.rename(ran))
     monkeypatch.setattr(socket, "gethostname", lambda: "another")
     kept = (there / "run" / "responses" / "P01" / "response.json").stat().st_mtime_ns
     said("run", there, "--quiet", ends=0)

@@ -74,7 +74,7 @@ CLEAN = {
 }
 
 
-@pytest.mark.parametrize("seed", [0, 1])
+@pytest.mark.parametrize("seed", [0, pytest.param(1, marks=pytest.mark.slow)])
 @pytest.mark.parametrize("name", CLEAN)
 def test_trials_that_were_recorded_alike_draw_no_finding(name, seed):
     given, truth, how = CLEAN[name]

@@ -44,6 +44,7 @@ def test_what_a_stated_error_explains_as_well_is_not_named():
     assert "stated errors of 'push' explain" in said and said in found.sentence
 
 
+@pytest.mark.slow
 def test_a_term_beside_a_stated_error_is_named_with_its_number_in_its_interval():
     measured = _wandering(record(with_load("-30*max(0, x - 0.25)"), SEED), 2.0, 0.3)
     found, _ = discover(_stating(mass(), sd=2.0, wander=0.3), measured)

@@ -292,6 +292,7 @@ def test_few_markers_show_nothing():
     assert person_findings(few, _person(size=1.3), "walk.c3d") == []
 
 
+@pytest.mark.slow
 def test_six_people_in_seventy_two_pairs(gait_data):
     walks, standing = {}, {}
     with C3DReader() as reader:

@@ -14,6 +14,7 @@ import pooled_cycles
 import pytest
 
 
+@pytest.mark.slow
 def test_the_table_prints_and_its_numbers_are_those_of_walking(capsys):
     found = cohort_norms.run(quick=True)
     printed = capsys.readouterr().out
@@ -47,6 +48,7 @@ def of(values, *names):
     return np.array([values[MUSCLES.index(name)] for name in names])
 
 
+@pytest.mark.slow
 def test_emg_angle_and_rate_explain_the_moments():
     explained = cohort_muscles.run(quick=True)["explained"]
     assert np.all(np.median(explained, axis=0) > (0.7, 0.8, 0.9))  # hip, knee, ankle
@@ -67,6 +69,7 @@ def test_the_cohorts_muscles_are_as_those_of_people():
     assert np.all(np.median(found["explained"], axis=0) > (0.7, 0.8, 0.9))
 
 
+@pytest.mark.slow
 def test_every_variable_has_its_difference(capsys):
     apart = no_discrepancy.run(quick=True)
     printed = capsys.readouterr().out
@@ -82,17 +85,14 @@ def test_every_sum_has_its_p():
     assert found[-1] == 1
 
 
-@pytest.mark.parametrize("correlation", [0.0, 0.8])
+@pytest.mark.parametrize("correlation", [0.0, pytest.param(0.8, marks=pytest.mark.slow)])
 def test_a_family_raises_no_more_false_alarms_than_it_may(correlation):
     studies = 2000
     found = family_wise_error.false_alarms(11, 8, correlation, studies)
     assert found["one pair"] <= 0.05 + 3 * (0.05 * 0.95 / studies) ** 0.5
     assert found["all"] <= 0.05 + 3 * (0.05 * 0.95 / studies) ** 0.5
     assert found["one pair"] <= found["pair"] <= 3 * 0.05 + 0.02  # three families have three chances
-
-
-def test_a_family_is_not_needlessly_strict():
-    assert family_wise_error.false_alarms(11, 8, 0.0, 2000)["one pair"] > 0.03
+    assert correlation or found["one pair"] > 0.03  # and is not needlessly strict
 
 
 def test_events_of_one_person_found_without_the_file_s_own(gait_data):

@@ -29,6 +29,7 @@ def test_one_person_agrees_with_plug_in_gait(data):
     assert found["pelvis_tilt"][2] == "-"
 
 
+@pytest.mark.slow
 def test_opensim_s_planar_model_is_nearest_to_ours_in_the_plane(data):
     rows = against_opensim(data)
     free, planar = (np.median([float(row[column]) for row in rows]) for column in (2, 4))
@@ -45,6 +46,7 @@ def several(gait_data):
     return bodies(gait_data.parent)
 
 
+@pytest.mark.slow
 def test_skin_slides_by_what_the_table_says(several):
     body = several[-1]
     sliding = slid(body, 10.0, np.random.default_rng(0)).values - body.rigid.values
@@ -53,6 +55,7 @@ def test_skin_slides_by_what_the_table_says(several):
     assert 1e3 * np.sqrt(np.mean(sliding[:, thigh] ** 2)) == pytest.approx(10, rel=0.2)
 
 
+@pytest.mark.slow
 def test_markers_are_lost_a_fifth_of_a_second_at_a_time(several):
     body = several[-1]
     gone = np.isnan(lost(body, 10, np.random.default_rng(0)).values) & np.isfinite(body.markers.values)
