@@ -52,8 +52,7 @@ def check_regular(path: Path, largest_bytes: int = LARGEST_BYTES) -> int:
 def refuse_nul(path: Path) -> None:
     """Refuse a name that no system can have."""
     if "\0" in str(path):
-        found = f"found {str(path.name)!r}"
-        raise ReadError("a file name must not contain a NUL character", found, "Correct the name.")
+        raise ReadError("a file name must not contain a NUL character", f"found {path.name!r}", "Correct the name.")
 
 
 def size_in_words(count: int) -> str:
@@ -66,8 +65,7 @@ def file_sha256(path: Path) -> str:
 
     Unchanged means: same file number, size, and times of writing and of change, to the nanosecond.
     """
-    known = recall_sha256(path)
-    if known:
+    if known := recall_sha256(path):
         return known
     check_regular(path)
     with path.open("rb") as file:

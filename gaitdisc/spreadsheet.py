@@ -1,7 +1,7 @@
 """Tables as CSV that a spreadsheet shows as they are: text that it would take for a formula begins with an apostrophe.
 
-Recordings come from elsewhere, and so do the words in them: a channel named `=HYPERLINK(...)` would be computed by the
-program that opens the table. The rule is OWASP's (CSV injection). Numbers stay numbers: -0.5 is no formula.
+A channel named `=HYPERLINK(...)` would be computed by the program that opens the table (OWASP: CSV injection). Numbers
+stay numbers: -0.5 is no formula.
 """
 
 from __future__ import annotations
@@ -12,8 +12,6 @@ import re
 from collections.abc import Iterable, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
-
-import numpy as np
 
 from gaitdisc.whole_file import whole_file
 
@@ -89,15 +87,14 @@ def read_csv(path: Path, words: Sequence[str] = (), skiprows: int = 0) -> pd.Dat
     """
     import pandas as pd
 
-    kinds = dict.fromkeys(words, str)
     read = {"engine": "python", "keep_default_na": False, "na_values": [""], "skiprows": skiprows}
-    table = pd.read_csv(path, dtype=kinds, **read)
-    if tuple(map(int, pd.__version__.split(".")[:2])) < (3, 1):  # which read 0.3 as 0.30000000000000004
-        cells = pd.read_csv(path, dtype=str, **read)
-        for place in np.flatnonzero([kind.kind == "f" for kind in table.dtypes]):
-            table.isetitem(place, cells.iloc[:, place].to_numpy(object).astype(float))
+    table = texts = pd.read_csv(path, dtype=dict.fromkeys(words, str), **read)
+    if tuple(map(int, pd.__version__.split(".")[:2])) < (3, 1):  # which reads 0.3 as 0.30000000000000004
+        texts = pd.read_csv(path, dtype=str, **read)
     for place in range(len(table.columns)):
         if table.dtypes.iloc[place].kind not in _NUMBERS:
             plain = table.iloc[:, place].map(lambda cell: unquote(cell) if isinstance(cell, str) else cell)
             table.isetitem(place, plain.to_numpy())
+        elif table.dtypes.iloc[place].kind == "f":
+            table.isetitem(place, texts.iloc[:, place].to_numpy(object).astype(float))
     return table.rename(columns=unquote)
