@@ -197,6 +197,6 @@ def test_a_damaged_unit_is_told_by_report_and_mended_by_run(ran, tmp_path, said,
     whole = damaged.read_bytes()
     damaged.write_bytes(whole[: len(whole) // 2])
     words = said("report", folder / "run", ends=REFUSED)
-    assert f"P01/{file} is" in words and says(words, "`gaitdisc run` keeps")
+    assert f"P01/{file} " in words and says(words, "`gaitdisc run` keeps")
     said("run", folder, "--quiet", ends=0)
     assert damaged.read_bytes() == whole
