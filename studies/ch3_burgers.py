@@ -13,9 +13,10 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from command_line import report_line
+from command_line import QUICK, argument, command_line
 
-GIVEN = report_line(__name__, __doc__, "ch3_burgers")  # before the slow imports
+OUT = argument("folder", "where the report goes", Path("ch3_burgers"))
+GIVEN = command_line(__name__, __doc__, OUT, QUICK)  # before the slow imports
 
 import numpy as np
 from chapter3.augmented_run import with_learned_rates

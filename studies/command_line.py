@@ -55,13 +55,6 @@ def command_line(module: str, description: str | None, *arguments: Argument) -> 
     return parser.parse_args()
 
 
-def report_line(
-    module: str, description: str | None, folder: str, meaning: str = "where the report goes"
-) -> argparse.Namespace:
-    """The command line of a study that writes a report."""
-    return command_line(module, description, argument("folder", meaning, Path(folder)), QUICK)
-
-
 def tables_line(module: str, description: str | None, folder: str, tables: tuple[str, ...]) -> argparse.Namespace:
     """The command line of a study whose tables are computed one by one, kept beside it and printed again."""
     return command_line(

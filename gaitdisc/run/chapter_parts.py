@@ -29,10 +29,10 @@ class Part(NamedTuple):
 PARTS = (
     Part(3, "tables", "ch3_tables", "every table of 3.4, printed from the included cells", 0.1, 0.1,
          words=("all",), quick_words=("all",)),
-    Part(3, "van_der_pol", "ch3_van_der_pol", "3.4.1, Figs. 3.2-3.5, 3.11", 20, 0.7, libraries=METHODS),
-    Part(3, "lorenz", "ch3_lorenz", "3.4.2, Figs. 3.6-3.11", 25, 0.5, libraries=METHODS),
+    Part(3, "van_der_pol", "ch3_systems", "3.4.1, Figs. 3.2-3.5, 3.11", 20, 0.7, ("van_der_pol", OUT), (), METHODS),
+    Part(3, "lorenz", "ch3_systems", "3.4.2, Figs. 3.6-3.11", 25, 0.5, ("lorenz", OUT), (), METHODS),
     Part(3, "burgers", "ch3_burgers", "3.4.3, Fig. 3.12", 60, 0.3, libraries=METHODS),
-    Part(3, "measurement_bias", "ch3_measurement_bias", "3.4.4, Fig. 3.13", 8, 0.2, libraries=METHODS),
+    Part(3, "measurement_bias", "ch3_systems", "3.4.4, Fig. 3.13", 8, 0.2, ("measurement_bias", OUT), (), METHODS),
     Part(3, "who_names", "ch3_who_names", "who names the hidden effect, 3.4 and 3.5", 30, 0.3, libraries=METHODS),
     Part(3, "seeds", "ch3_seeds", "the cells of `tables`, computed again: every set, start and seed", 120, 0.3,
          libraries=METHODS),

@@ -33,6 +33,7 @@ INSIDE = {
 LONG = {
     "as_a_user": 151,
     "c3d_in_place": 145,
+    "ch3_systems": 144,  # three sections, with what each states
     "ch5_further": 127,
     "device_from_files": 140,
     "engine_cases": 128,  # the cases of both studies
