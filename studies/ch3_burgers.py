@@ -23,9 +23,9 @@ from chapter3.augmented_run import with_learned_rates
 from chapter3.burgers import burgers, local_cell, places, recorded_field
 from chapter3.cell import NOISES, DiscrepancyCell, cell_of, learned_model
 from chapter3.methods import Method, MethodSettings
-from chapter3.pages import Result, field_figure, grid_table, statements_table, written
+from chapter3.pages import field_figure, grid_table, statements_table, written
 from chapter3.record import APPROACHES, Conditions, Record, recorded
-from further import result_text
+from further import Result, result_text
 
 import gaitdisc as gd
 from gaitdisc.report.page import Block

@@ -16,18 +16,11 @@ import sys
 import time
 from pathlib import Path
 
-from command_line import argument, command_line
+from command_line import argument, tables_line
 
 TABLES = ("methods", "noise", "filters", "gain", "trajectories", "variance")
-GIVEN = command_line(
-    __name__,
-    __doc__,
-    argument("folder", "a file for each number that was computed", Path("ch3_further")),
-    argument("--seeds", "noise seeds 0 to one less than this", 6),
-    argument("--tables", "which of them are computed", list(TABLES)),
-    argument("--keep", "write studies/ch3_further.csv as well", False),
-    argument("--print", "compute nothing; print this table", "", metavar="TABLE"),
-)  # before the slow imports
+SEEDS = argument("--seeds", "noise seeds 0 to one less than this", 6)
+GIVEN = tables_line(__name__, __doc__, "ch3_further", TABLES, SEEDS)  # before the slow imports
 
 import warnings
 

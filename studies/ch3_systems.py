@@ -30,9 +30,9 @@ from typing import NamedTuple
 
 from chapter3.cell import ALL_METHODS, FOUR_METHODS, NOISES, grid
 from chapter3.methods import MethodSettings
-from chapter3.pages import Result, Stated, blocks_of, written
+from chapter3.pages import Stated, blocks_of, written
 from chapter3.record import APPROACHES, Approach, Conditions, System, system_of
-from further import result_text
+from further import Result, result_text
 
 import gaitdisc as gd
 

@@ -23,9 +23,9 @@ from ch3_systems import biased_masses, lorenz, oscillators
 from chapter3.cell import NOISES
 from chapter3.methods import Method
 from chapter3.naming import HiddenEffect, discover_answer, method_answer, namings_table, read_namings
-from chapter3.pages import Result, naming_figure, naming_table, written
+from chapter3.pages import naming_figure, naming_table, written
 from chapter3.record import Conditions, KnownRates, StochasticRates, recorded, system_of
-from further import result_text
+from further import Result, result_text
 
 import gaitdisc as gd
 from gaitdisc.report.page import Block
