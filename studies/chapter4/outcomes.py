@@ -99,10 +99,9 @@ def energy(quick: bool) -> Iterator[Number]:
         yield Number(kind, "p", "", float((1 + np.sum(null >= explained)) / (1 + len(null))))
         for place, person in enumerate(PEOPLE):
             yield Number(kind, "RMSE [W]", person, float(np.sqrt(np.mean((predicted - change)[place] ** 2))))
-    for place, person in enumerate(PEOPLE):
-        others = np.delete(change, place, axis=0).mean(axis=0)
-        yield Number("no setting known (null)", "RMSE [W]", person, float(change[place].std()))
-        yield Number("setting known, mean of the others", "RMSE [W]", person, float((others - change[place]).std()))
     others = np.array([np.delete(change, k, axis=0).mean(axis=0) for k in range(len(PEOPLE))])
+    for own, by_others, person in zip(change, others, PEOPLE, strict=True):
+        yield Number("no setting known (null)", "RMSE [W]", person, float(own.std()))
+        yield Number("setting known, mean of the others", "RMSE [W]", person, float((by_others - own).std()))
     explained = float(1 - np.mean((others - change) ** 2) / np.mean(change**2))
     yield Number("setting known, mean of the others", "within persons: R2 [1]", "", explained)

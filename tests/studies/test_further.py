@@ -34,6 +34,8 @@ def test_a_table_is_computed_once_kept_and_printed_again(tmp_path, capsys):
     further.main(given(tmp_path / "elsewhere", print="one"), tables, tmp_path / "kept.csv")
     assert capsys.readouterr().out == first * 2
     assert calls == [True]
+    further.main(given(tmp_path / "later", tables=["two"]), {"two": tables["one"]}, tmp_path / "kept.csv")
+    assert set(pd.read_csv(tmp_path / "kept.csv")["table"]) == {"one", "two"}  # what is kept of others stays
     assert says(first, "ridge | 2 [1, 3]", "n = 2 people", "1 diverged |")
     assert "| null | 4 |" in first
 
