@@ -83,14 +83,6 @@ def _hardest_table(tests: pd.DataFrame) -> str:
     return markdown_table("part | muscle | n | W | p | level | adjusted p | change [%] | 95 % | rank-biserial", rows)
 
 
-def _every_table(tests: pd.DataFrame) -> str:
-    found = []
-    for (part, muscle), rows in tests.groupby(["part", "variable"], sort=False):
-        cells = [f"**{r.shift:+.0f}**" if r.different else f"{r.shift:+.0f}" for r in rows.itertuples()]
-        found.append((part, muscle, *cells))
-    return markdown_table(" | ".join(["part", "muscle", *dict.fromkeys(tests["setting"])]), found)
-
-
 if __name__ == "__main__":
     walks, faulty, tests = run(GIVEN.data)
     least = gd.signed_rank(np.zeros(len(PEOPLE)), np.arange(1.0, len(PEOPLE) + 1)).p
@@ -100,6 +92,11 @@ if __name__ == "__main__":
     print(f"left out, {len(faulty)} of {len(PEOPLE) * len(electrodes_of())} electrodes:")
     print("; ".join(f"{person} {name}: {reason}" for (person, name), reason in faulty.items()))
     print(f"\n{HARDEST} against {EASIEST}:\n\n" + _hardest_table(tests))
-    print(f"\nChange against {EASIEST} [%]:\n\n" + _every_table(tests))
+    found = []
+    for (part, muscle), rows in tests.groupby(["part", "variable"], sort=False):
+        cells = [f"**{r.shift:+.0f}**" if r.different else f"{r.shift:+.0f}" for r in rows.itertuples()]
+        found.append((part, muscle, *cells))
+    heads = " | ".join(["part", "muscle", *dict.fromkeys(tests["setting"])])
+    print(f"\nChange against {EASIEST} [%]:\n\n" + markdown_table(heads, found))
     different = f"{int(tests['different'].sum())} of {len(tests)} tests"
     print(f"\n{different}, each family the six muscles of one part and setting")

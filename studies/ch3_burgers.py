@@ -13,18 +13,19 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from command_line import report_line
+from command_line import QUICK, argument, command_line
 
-GIVEN = report_line(__name__, __doc__, "ch3_burgers")  # before the slow imports
+OUT = argument("folder", "where the report goes", Path("ch3_burgers"))
+GIVEN = command_line(__name__, __doc__, OUT, QUICK)  # before the slow imports
 
 import numpy as np
 from chapter3.augmented_run import with_learned_rates
 from chapter3.burgers import burgers, local_cell, places, recorded_field
 from chapter3.cell import NOISES, DiscrepancyCell, cell_of, learned_model
 from chapter3.methods import Method, MethodSettings
-from chapter3.pages import Result, field_figure, grid_table, statements_table, written
+from chapter3.pages import field_figure, grid_table, statements_table, written
 from chapter3.record import APPROACHES, Conditions, Record, recorded
-from further import result_text
+from further import Result, result_text
 
 import gaitdisc as gd
 from gaitdisc.report.page import Block

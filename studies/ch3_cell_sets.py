@@ -5,9 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 
 import ch3_burgers
-import ch3_lorenz
-import ch3_measurement_bias
-import ch3_van_der_pol
+from ch3_systems import FINE, SECTIONS, biased_masses, lorenz, oscillators
 from chapter3.burgers import burgers, local_cell, recorded_field
 from chapter3.cell import FOUR_METHODS, NOISES, DiscrepancyCell, cell_of
 from chapter3.kept_cells import FURTHER
@@ -43,23 +41,21 @@ class CellSet:
 
 def cell_sets() -> dict[str, CellSet]:
     """Every set by its name, in the order in which they are computed."""
-    pol, mass = ch3_van_der_pol.systems(), ch3_measurement_bias.systems()
-    text, code, lorenz = pol["text"], pol["code"], ch3_lorenz.system()
+    (text, code), mass, chaotic = oscillators().values(), biased_masses(), lorenz()
     long, short, swing = Conditions(duration_s=LONG), Conditions(duration_s=SHORT), Conditions(duration_s=20.0)
-    fine = Conditions(dt_s=ch3_lorenz.FINE_DT_S, duration_s=ch3_lorenz.FINE_S)
-    bias = {"approach": "state", "settings": ch3_measurement_bias.SETTINGS}
+    bias = {"approach": "state", "settings": SECTIONS["measurement_bias"].settings}
     found = {
         "van_der_pol_text": CellSet(text, long),
-        "lorenz": CellSet(lorenz, long),
+        "lorenz": CellSet(chaotic, long),
         "van_der_pol_code": CellSet(code, long),
         "van_der_pol_text_short": CellSet(text, short, noises=NOISES[1:]),
-        "lorenz_short": CellSet(lorenz, short, noises=NOISES[1:]),
-        "lorenz_fine": CellSet(lorenz, fine, methods=("sindy", "gp", "nn"), noises=NOISES[:1]),
+        "lorenz_short": CellSet(chaotic, short, noises=NOISES[1:]),
+        "lorenz_fine": CellSet(chaotic, FINE, methods=("sindy", "gp", "nn"), noises=NOISES[:1]),
         "mass_code": CellSet(mass["code"], swing, **bias),
         "mass_text": CellSet(mass["text"], swing, **bias),
         "van_der_pol_text_state": CellSet(text, long, "state"),
         "van_der_pol_code_state": CellSet(code, long, "state"),
-        "lorenz_state": CellSet(lorenz, long, "state"),
+        "lorenz_state": CellSet(chaotic, long, "state"),
         "burgers": CellSet(
             burgers(ch3_burgers.CUBICS["text, with the pulse of the code"]),
             long,

@@ -16,18 +16,11 @@ import sys
 import time
 from pathlib import Path
 
-from command_line import argument, command_line
+from command_line import argument, tables_line
 
 TABLES = ("methods", "noise", "filters", "gain", "trajectories", "variance")
-GIVEN = command_line(
-    __name__,
-    __doc__,
-    argument("folder", "a file for each number that was computed", Path("ch3_further")),
-    argument("--seeds", "noise seeds 0 to one less than this", 6),
-    argument("--tables", "which of them are computed", list(TABLES)),
-    argument("--keep", "write studies/ch3_further.csv as well", False),
-    argument("--print", "compute nothing; print this table", "", metavar="TABLE"),
-)  # before the slow imports
+SEEDS = argument("--seeds", "noise seeds 0 to one less than this", 6)
+GIVEN = tables_line(__name__, __doc__, "ch3_further", TABLES, SEEDS)  # before the slow imports
 
 import warnings
 
@@ -71,12 +64,6 @@ def compute(folder: Path, tables: list[str], seeds: int) -> None:
         print(said, file=sys.stderr, flush=True)
 
 
-def gathered(folder: Path) -> pd.DataFrame:
-    """Every number of a folder, in the order of the tables."""
-    table = pd.concat([pd.read_csv(path) for path in sorted(folder.glob("*.csv"))], ignore_index=True)
-    return table.sort_values(COLUMNS[:-1], kind="stable", ignore_index=True)
-
-
 def printed(table: pd.DataFrame, name: str) -> str:
     """One table as documents hold it: median [least, greatest] over the seeds."""
     some, rows = table[table["table"] == name], []
@@ -85,10 +72,8 @@ def printed(table: pd.DataFrame, name: str) -> str:
         found = some[some["row"] == row].groupby(["system", "noise"])
         said = [said_of(found.get_group(one), "value") if one in found.groups else "" for one in columns]
         if row.endswith(OFF):
-            inside = (some[some["row"] == row].set_index(["system", "noise"])["value"].abs() <= SIDES).groupby(
-                level=[0, 1]
-            )
-            said = [f"{words}; {inside.sum()[one]} inside {SIDES}" for words, one in zip(said, columns, strict=True)]
+            inside = [(found.get_group(one)["value"].abs() <= SIDES).sum() for one in columns]
+            said = [f"{words}; {count} inside {SIDES}" for words, count in zip(said, inside, strict=True)]
         rows.append((row, str(found.size().max()), *said))
     headings = (HEADINGS[name], "n", *(f"{system}, {100 * noise:g} % noise" for system, noise in columns))
     return markdown_table(" | ".join(headings), rows)
@@ -99,7 +84,8 @@ if __name__ == "__main__":
         print(printed(pd.read_csv(CELLS), GIVEN.print))
     else:
         compute(GIVEN.folder, GIVEN.tables, GIVEN.seeds)
-        found = gathered(GIVEN.folder)
+        table = pd.concat([pd.read_csv(path) for path in sorted(GIVEN.folder.glob("*.csv"))], ignore_index=True)
+        found = table.sort_values(COLUMNS[:-1], kind="stable", ignore_index=True)
         print("\n\n".join(printed(found, name) for name in TABLES if name in set(found["table"])))
         if GIVEN.keep:
             save_table(found, CELLS)

@@ -6,10 +6,8 @@ from collections.abc import Callable, Iterator
 from functools import partial
 from typing import NamedTuple
 
-import ch3_lorenz
-import ch3_measurement_bias
-import ch3_van_der_pol
 import numpy as np
+from ch3_systems import biased_masses, lorenz, oscillators
 from chapter3.augmented_run import with_learned_rates
 from chapter3.biased_sensor import filter_numbers
 from chapter3.cell import FORECAST, PartAccuracy, cell_of, learned_model
@@ -37,7 +35,7 @@ class Number(NamedTuple):
 
 def systems() -> dict[str, System]:
     """The text's oscillator, and Lorenz."""
-    return {"Van der Pol": ch3_van_der_pol.systems()["text"], "Lorenz": ch3_lorenz.system()}
+    return {"Van der Pol": oscillators()["text"], "Lorenz": lorenz()}
 
 
 def score(part: PartAccuracy, system: str) -> float:
@@ -64,7 +62,7 @@ def numbers(tables: list[str]) -> Iterator[Number]:
     for noise in NOISES:
         for start in ("windows", "unscented", "ensemble", "true state (oracle)") if "filters" in tables else ():
             yield Number("filters", start, "Lorenz", noise, partial(of_filter, systems()["Lorenz"], noise, start))
-    yield from (Number("gain", *each) for each in filter_numbers(ch3_measurement_bias.systems(), "gain" in tables))
+    yield from (Number("gain", *each) for each in filter_numbers(biased_masses(), "gain" in tables))
     for count, sacrificed in ((1, 0.0), (4, 0.0), (8, 0.0), (1, SACRIFICED_S)) if "trajectories" in tables else ():
         for method in ("sindy", "gp"):
             row = f"{METHOD_WORDS[method]}, {count} start{'s' * (count > 1)}"

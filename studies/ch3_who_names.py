@@ -14,21 +14,18 @@ from pathlib import Path
 
 from command_line import KEPT, QUICK, argument, command_line
 
-GIVEN = command_line(
-    __name__,
-    __doc__,
-    argument("folder", KEPT, Path("ch3_who_names")),
-    QUICK,
-)  # before the slow imports
+OUT = argument("folder", KEPT, Path("ch3_who_names"))
+GIVEN = command_line(__name__, __doc__, OUT, QUICK)  # before the slow imports
 
 import numpy as np
 import pandas as pd
+from ch3_systems import biased_masses, lorenz, oscillators
 from chapter3.cell import NOISES
 from chapter3.methods import Method
 from chapter3.naming import HiddenEffect, discover_answer, method_answer, namings_table, read_namings
-from chapter3.pages import Result, naming_figure, naming_table, written
+from chapter3.pages import naming_figure, naming_table, written
 from chapter3.record import Conditions, KnownRates, StochasticRates, recorded, system_of
-from further import result_text
+from further import Result, result_text
 
 import gaitdisc as gd
 from gaitdisc.report.page import Block
@@ -44,22 +41,18 @@ CUBIC = ("y", "cubic_stiffness")
 
 def cases(seed: int = 0) -> tuple[HiddenEffect, ...]:
     """Every case."""
-    names = ("van_der_pol", "van_der_pol_published", "lorenz", "mass_spring_damper")
-    text, code, lorenz, free = map(gd.bundled_simulation, names)
-    minus, plus = (gd.Term("y", "equation", "cubic_stiffness", f"{eps}*x**3") for eps in (-0.01, 0.01))
-    by_text = system_of(free.with_effect(gd.Term("force", "port", "cubic", "x**3")), gain=(1.01,))
-    by_code = system_of(free.with_effect(gd.Term("v", "equation", "cubic", "x**3")), gain=(1.1,))
-    hidden, alike = system_of(text, minus), system_of(text)
+    (hidden, code), (by_text, by_code), fast = oscillators().values(), biased_masses().values(), lorenz()
+    text = gd.bundled_simulation("van_der_pol")
+    alike, slow = system_of(text), system_of(gd.bundled_simulation("lorenz"))
     begun = replace(system_of(text, start=START), assumed=alike.start)
     pushed, both = (replace(s, true=StochasticRates(s.true, (0.0, PUSH), seed)) for s in (alike, hidden))
     cubic, gain = {"y": {"x**3": -0.01}}, ("x", "sensor_gain")
     damping = {"y": {"y": MU - 0.5, "x**2*y": 0.5 - MU}}
     mu = replace(alike, true=KnownRates(text.with_values({"mu": MU})))
-    fast, slow = system_of(lorenz, gd.Term("x", "equation", "cubic", "0.01*x**3")), system_of(lorenz)
     only = replace(hidden, observation=np.eye(2)[:1])
     return (
         HiddenEffect("Van der Pol, text", "−0.01 x³", hidden, CUBIC, 0.01, cubic),
-        HiddenEffect("Van der Pol, code", "+0.01 x³", system_of(code, plus), CUBIC, -0.01, {"y": {"x**3": 0.01}}),
+        HiddenEffect("Van der Pol, code", "+0.01 x³", code, CUBIC, -0.01, {"y": {"x**3": 0.01}}),
         HiddenEffect("Lorenz", "+0.01 x³", fast, ("x", CUBIC[1]), -0.01, {"x": {"x**3": 0.01}}),
         HiddenEffect("biased mass, code", "gain 1.1", by_code, gain, 1.1, {"x": {"x": 0.1}}, "state", 20.0),
         HiddenEffect("biased mass, text", "gain 1.01", by_text, gain, 1.01, {"x": {"x": 0.01}}, "state", 20.0),

@@ -1,9 +1,9 @@
-"""What the field studies of chapter 5 have in common: their result, and how it is written."""
+"""What the field studies of chapter 5 have in common: their fields and routes."""
 
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from dataclasses import asdict, dataclass, replace
+from dataclasses import asdict, replace
 from pathlib import Path
 
 import numpy as np
@@ -26,20 +26,10 @@ from command_line import SHARED
 import gaitdisc as gd
 from gaitdisc.reconstruction.window_model import fit_reconstructor
 from gaitdisc.reconstruction.windows import Lags
-from gaitdisc.report.page import Block, write_blocks, write_markdown
-from gaitdisc.report.table import Table
 
 FIELDS = SHARED / "fields"
 WALKS = 12  # fitted, before one that never was
-
-
-@dataclass(frozen=True, eq=False)
-class Result:
-    """A field study of chapter 5."""
-
-    cells: tuple[FieldCell, ...]
-    tables: tuple[Table, ...]
-    page: Path
+ABOUT = "chapter 5, on fields that can be had."
 
 
 def fields() -> Iterator[tuple[gd.Field, FieldTask, str]]:
@@ -104,11 +94,3 @@ def unseen_walks(field: gd.Field, task: FieldTask, kinds: Sequence[str]) -> list
     unseen, *walks = [random_walk(field, 100 + k, start=int(start)) for k, start in enumerate(starts)]
     apart = unseen_path(field, walks, unseen, replace(task, departures=True), ("delay ridge",))
     return unseen_path(field, walks, unseen, task, kinds) + apart
-
-
-def written(cells: Sequence[FieldCell], blocks: Sequence[Block], title: str, folder: Path) -> Result:
-    """Write page, figures, tables, and all tables once more as Markdown."""
-    page = write_blocks(title, "Ebers 2023, chapter 5, on fields that can be had.", blocks, folder)
-    tables = tuple(table for block in blocks for table in block.tables)
-    write_markdown(blocks, folder)
-    return Result(tuple(cells), tables, page)

@@ -1,11 +1,16 @@
-"""Chapter 5 and 6.2.3 beyond their figures, on real recordings: the text's own network, real people, forecasts.
+"""Chapter 5 and 6.2.3 beyond their figures, and what came after them, on real recordings.
 
-    python studies/ch5_further.py [FOLDER] [--tables text latent population ahead turns] [--keep] [--quick]
+    python studies/ch5_further.py [FOLDER] [--tables text latent population ahead turns ...] [--keep] [--quick]
     python studies/ch5_further.py --print TABLE
 
 `text`: SHRED as the dissertation's code has it, beside ours. `latent`: the latent state of Fig. 5.1 beside the states'
 modes. `population`: each of ten real people by models of the others. `ahead`: forecasts of running by a model for each
 time ahead, and by carrying SHRED's latent state on. `turns`: forecasts of children who turn.
+
+Later methods, each beside what the program does already. `few`: a runner in a condition that no model saw, after ten
+strides of it. `speed`: how long a stride lasts, as one more input (parametric models). `spread`: the interval that five
+SHREDs' spread gives (UQ-SHRED). `simulated`: models of simulated walkers on a real one (DA-SHRED), with readings or
+latent states aligned.
 """
 
 from __future__ import annotations
@@ -14,7 +19,7 @@ from pathlib import Path
 
 from command_line import tables_line
 
-TABLES = ("text", "latent", "population", "ahead", "turns")
+TABLES = ("text", "latent", "population", "ahead", "turns", "few", "speed", "spread", "simulated")
 GIVEN = tables_line(__name__, __doc__, "ch5_further", TABLES)  # before the slow imports
 
 from collections.abc import Iterator
@@ -23,7 +28,7 @@ from dataclasses import replace
 import numpy as np
 import pandas as pd
 from ch5_fields import fields
-from chapter5.people import SAGITTAL, ahead, parts_of, real_people, rmse, runner, turns
+from chapter5.people import SAGITTAL, ahead, few, parts_of, real_people, rmse, runner, simulated, speed, spread, turns
 from chapter5.reconstruct_field import reconstruct_field
 from chapter5.routes import fixed_at_random
 from further import Made, Number, main
@@ -119,6 +124,13 @@ MADE = {
     "population": Made(population, "RMSE of 7 angles [deg], one person left out"),
     "ahead": Made(ahead, "RMSE of 12 angles [deg], runner, split in time, n = 1 run"),
     "turns": Made(turns, "RMSE of 10 angles [deg], one child left out", "children"),
+    "few": Made(few, "RMSE of 7 angles [deg], welk007, ten strides known, n = 1 person"),
+    "speed": Made(speed, "7 angles, one person on a treadmill, one walk left out", "walks"),
+    "spread": Made(spread, "90 % intervals, one runner, split in time", "angles"),
+    "simulated": Made(
+        lambda quick: simulated(quick, GIVEN.folder / "recordings"),
+        "7 angles, S01's last four walks, fitted to simulated walkers",
+    ),
 }
 
 if __name__ == "__main__":

@@ -34,18 +34,18 @@ import pandas as pd
 from chapter5 import gait
 from chapter5.disturbances import disturbed
 from chapter5.gait import SAGITTAL, Wanted
-from further import result_text
+from further import Result, result_text, write_page
 
 from gaitdisc.reconstruction.reconstruct_study import SUBJECT
 from gaitdisc.reconstruction.window_model import KINDS
 from gaitdisc.reconstruction.windows import RANDOM, RULES
-from gaitdisc.report.page import Block, write_blocks
+from gaitdisc.report.page import Block
 
 LEFT_OUT = "one person left out"
-ABOUT = "Ebers 2023, chapter 5, computed anew."
+ABOUT = "chapter 5, computed anew."
 
 
-def individual(wanted: Wanted) -> gait.Result:
+def individual(wanted: Wanted) -> Result:
     """Reconstruct everybody from own walks, with every sensor set, and write the page."""
     walks, blocks, summaries = gait.walkers(wanted), [], []
     for name, study in walks.items():
@@ -60,8 +60,7 @@ def individual(wanted: Wanted) -> gait.Result:
     split, first = leaks(walks, wanted), Block("sets", "Table 5.2", (), tables=(sets,))
     of_noise = disturbed(walks["cohort"], wanted.folder, wanted.quick)
     blocks = [first, *blocks, Block("splits", "The split", (), tables=(split,)), of_noise]
-    page = write_blocks("Individual models, section 5.3.3", ABOUT, blocks, wanted.folder)
-    return gait.Result(table, page, (sets, split))
+    return write_page(table, blocks, "Individual models, section 5.3.3", ABOUT, wanted.folder)
 
 
 def leaks(walks: Mapping[str, gait.Study], wanted: Wanted) -> gait.Table:
@@ -76,7 +75,7 @@ def leaks(walks: Mapping[str, gait.Study], wanted: Wanted) -> gait.Table:
     return gait.sensor_sets_table(own, gait.NOTHING_PRINTED, "splits", f"as named; {RANDOM}: {RULES[RANDOM]}")
 
 
-def population(wanted: Wanted) -> gait.Result:
+def population(wanted: Wanted) -> Result:
     """Reconstruct everybody by models of the others, before and after ten strides, and write the page."""
     study = gait.cohort(wanted.folder / "recordings", *((4, 30.0) if wanted.quick else ()))
     sets = [words for words in gait.SENSORS if words not in gait.PELVIS]
@@ -86,8 +85,7 @@ def population(wanted: Wanted) -> gait.Result:
     figure = gait.sensor_sets_figure(errors, study.title, "population", LEFT_OUT)
     numbers = gait.sensor_sets_table(table, gait.printed("population"), "population", LEFT_OUT)
     blocks = [Block("population", "Table 5.2", tuple(gait.calibration_sentences(table)), (figure,), (numbers,))]
-    page = write_blocks("Population models, section 5.3.3", ABOUT, blocks, wanted.folder)
-    return gait.Result(table, page, (numbers,))
+    return write_page(table, blocks, "Population models, section 5.3.3", ABOUT, wanted.folder)
 
 
 if __name__ == "__main__":

@@ -23,11 +23,11 @@ from collections.abc import Sequence
 from dataclasses import replace
 
 import pandas as pd
-from ch5_fields import Result, fields, on_departures, reconstructed_maps, route_cells, unseen_walks, written
+from ch5_fields import ABOUT, fields, on_departures, reconstructed_maps, route_cells, unseen_walks
 from chapter5.pages import field_table, histograms_figure, latent_figure, maps_figure, means_table, routes_figure
 from chapter5.reconstruct_field import FieldCell, latent_sizes, targets_of
 from chapter5.routes import Route, circuit, fixed_at_random, joined
-from further import result_text
+from further import Result, result_text, write_page
 
 import gaitdisc as gd
 from gaitdisc.reconstruction.window_model import KINDS
@@ -94,7 +94,7 @@ def run(
         every += [*cells, *apart, *unseen]
         of_routes += cells
     blocks.insert(1, Block("means", "Mean over the routes", (), tables=(means_table(of_routes, "means"),)))
-    return written(every, blocks, "Sea surface, section 5.3.2", folder)
+    return write_page(every, blocks, "Sea surface, section 5.3.2", ABOUT, folder)
 
 
 if __name__ == "__main__":

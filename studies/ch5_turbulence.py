@@ -25,12 +25,12 @@ GIVEN = command_line(
 
 from dataclasses import replace
 
-from ch5_fields import Result, middle_of, route_cells, written
+from ch5_fields import ABOUT, middle_of, route_cells
 from chapter5.pages import boxes_figure, flow_figure, histograms_figure, maps_figure, medians_table
 from chapter5.reconstruct_field import CEILING, FieldTask, prepare, targets_of
 from chapter5.routes import Route, fixed, fixed_at_random, random_walk
 from chapter5.turbulence import FlowSettings, record_turbulence
-from further import result_text
+from further import Result, result_text, write_page
 
 from gaitdisc.reconstruction.windows import RANDOM, Lags
 from gaitdisc.report.page import Block
@@ -78,7 +78,7 @@ def run(
         histograms_figure(best, "errors", "As Fig. 5.2, bottom"),
     )
     block = Block("flow", "One sensor in a turbulent flow", (STAND_IN,), drawn, (medians_table(cells, "models"),))
-    return written(cells, [block], "Turbulence, section 5.3.1", folder)
+    return write_page(cells, [block], "Turbulence, section 5.3.1", ABOUT, folder)
 
 
 if __name__ == "__main__":

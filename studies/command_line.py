@@ -55,21 +55,16 @@ def command_line(module: str, description: str | None, *arguments: Argument) -> 
     return parser.parse_args()
 
 
-def report_line(
-    module: str, description: str | None, folder: str, meaning: str = "where the report goes"
+def tables_line(
+    module: str, description: str | None, folder: str, tables: tuple[str, ...], further: Argument = QUICK
 ) -> argparse.Namespace:
-    """The command line of a study that writes a report."""
-    return command_line(module, description, argument("folder", meaning, Path(folder)), QUICK)
-
-
-def tables_line(module: str, description: str | None, folder: str, tables: tuple[str, ...]) -> argparse.Namespace:
     """The command line of a study whose tables are computed one by one, kept beside it and printed again."""
     return command_line(
         module,
         description,
-        argument("folder", "a file for each table that was computed, recordings and figures", Path(folder)),
+        argument("folder", "where what was computed is kept, recordings and figures", Path(folder)),
         argument("--tables", "which of them are computed", list(tables)),
         argument("--keep", f"write studies/{folder}.csv as well", False),
         argument("--print", "compute nothing; print this table", "", metavar="TABLE"),
-        QUICK,
+        further,
     )

@@ -1,4 +1,4 @@
-"""What studies of chapters have in common: their result as text, tables computed one by one, kept, and printed."""
+"""What studies of chapters have in common: their result and its page, tables computed one by one, kept, and printed."""
 
 from __future__ import annotations
 
@@ -6,7 +6,7 @@ import sys
 import time
 import warnings
 from argparse import Namespace
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import Any, NamedTuple
 
@@ -14,7 +14,8 @@ import numpy as np
 import pandas as pd
 from markdown_table import markdown_table
 
-from gaitdisc.report.table import as_markdown, save_table
+from gaitdisc.report.page import Block, write_blocks, write_markdown
+from gaitdisc.report.table import Table, as_markdown, save_table
 
 
 class Number(NamedTuple):
@@ -51,8 +52,9 @@ def main(given: Namespace, tables: Mapping[str, Made], kept: Path) -> None:
             print(f"{name}: {time.process_time() - begun:.0f} s of processor time", file=sys.stderr, flush=True)
     every = {name: read(given.folder / f"{name}.csv") for name in tables if (given.folder / f"{name}.csv").exists()}
     print("\n\n".join(printed(found, name, tables[name]) for name, found in every.items()))
-    if given.keep:
-        save_table(pd.concat(every.values(), ignore_index=True), kept)
+    if given.keep:  # in place of what was kept of these tables; the others stay
+        others = [read(kept).query("table not in @every")] if kept.exists() else []
+        save_table(pd.concat([*every.values(), *others], ignore_index=True), kept)
 
 
 def read(path: Path) -> pd.DataFrame:
@@ -83,6 +85,22 @@ def _said(values: np.ndarray, of: str) -> str:
     return f"{np.median(known):.3g} [{known.min():.3g}, {known.max():.3g}], n = {len(known)} {of}{lost}"
 
 
-def result_text(result: Any) -> str:
+class Result(NamedTuple):
+    """A study that has a page."""
+
+    cells: Any  # what was computed
+    tables: tuple[Table, ...]
+    page: Path
+
+
+def write_page(cells: Any, blocks: Sequence[Block], title: str, about: str, folder: Path) -> Result:
+    """Write page, figures, tables, and all tables once more as Markdown."""
+    folder.mkdir(parents=True, exist_ok=True)
+    page = write_blocks(title, f"Ebers 2023, {about}", blocks, folder)
+    write_markdown(blocks, folder)
+    return Result(cells, tuple(table for block in blocks for table in block.tables), page)
+
+
+def result_text(result: Result) -> str:
     """Every table of a study's result below its caption, and where its page is."""
     return "\n\n".join([*(f"{one.caption}\n\n{as_markdown(one)}" for one in result.tables), str(result.page)])

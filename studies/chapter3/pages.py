@@ -4,16 +4,16 @@ from __future__ import annotations
 
 import re
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 import numpy as np
 import pandas as pd
+from further import Result, write_page
 from numpy.typing import NDArray
 
 from gaitdisc.report.figure import Figure
-from gaitdisc.report.page import Block, write_blocks, write_markdown
+from gaitdisc.report.page import Block
 from gaitdisc.report.panels import Look, Room, decades, in_style, legend, legend_lines, panels
 from gaitdisc.report.table import Table, save_table, words_table
 from gaitdisc.words import unit_text
@@ -510,15 +510,6 @@ def _accuracy(cells: Sequence[DiscrepancyCell]) -> str:
     return f"{words[0]} ({words[1]}; {words[2]})"
 
 
-@dataclass(frozen=True, eq=False)
-class Result:
-    """A study of chapter 3."""
-
-    cells: Cells
-    tables: tuple[Table, ...]
-    page: Path
-
-
 def blocks_of(
     cells: Cells, figures: Mapping[str, str], stated: Sequence[Stated], systems: Mapping[str, System] | None = None
 ) -> list[Block]:
@@ -548,12 +539,9 @@ def blocks_of(
 
 
 def written(cells: Cells, blocks: Sequence[Block], title: str, folder: Path) -> Result:
-    """Write page, figures, tables, and all tables once more as Markdown."""
-    folder.mkdir(parents=True, exist_ok=True)
-    page = write_blocks(title, "Ebers 2023, chapter 3, computed anew.", blocks, folder)
-    tables = tuple(table for block in blocks for table in block.tables)
-    write_markdown(blocks, folder)
+    """Write the page, and what `recommend` could answer from."""
     measured = [cell for found in cells.values() for cell in found if cell.approach == "dynamics"]
+    result = write_page(cells, blocks, title, "chapter 3, computed anew.", folder)
     if measured:
         save_table(measured_cells(measured), folder / "measured_cells.csv")
-    return Result(cells, tables, page)
+    return result

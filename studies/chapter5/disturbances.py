@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -52,7 +52,8 @@ def disturbed(study: Study, folder: Path, quick: bool) -> Block:
         own = [(walk.recording, walk.phi) for walk in walks.people[person]]
         masked = (MASKED,) if "shred" in kinds else ()
         missing = against_missing(own, what, channels, (*kinds, *masked))
-        save_table(pd.concat([against_noise(own, what, channels, kinds), missing]), file)
+        rows = [*against_noise(own, what, channels, kinds), *missing]
+        save_table(pd.DataFrame(rows, columns=pd.Index(DISTURBED)), file)
     figure = disturbance_figure(pd.read_csv(file), f"{person}, {SAGITTAL} sensors")
     return Block("disturbed", "Noise and missing readings", (), (figure,))
 
@@ -70,21 +71,19 @@ def noisy(recording: Recording, sensors: Sequence[str], share: float, seed: int)
     return recording.with_values(values)
 
 
-def against_noise(walks: Walks, what: Sensing, channels: Sequence[Channel], kinds: Sequence[str]) -> pd.DataFrame:
+def against_noise(walks: Walks, what: Sensing, channels: Sequence[Channel], kinds: Sequence[str]) -> Iterator[tuple]:
     """RMSE of every kind of model against noise, temporal split; fitted to and tested on the same noise.
 
     returns: disturbance (`noise`), level [share of the sensor's standard deviation], model, rmse_deg (angles)
     """
-    rows = []
     for level in NOISES:
         parts = _disturbed_parts(walks, what, lambda walk, k, level=level: noisy(walk, what.sensors, level, k))
         for kind in kinds:
             done = fit_reconstructor(kind, what, parts.fitted(), parts.checked(), 0)
-            rows.append(("noise", level, kind, _rmse(done, parts.tested(), channels)))
-    return pd.DataFrame(rows, columns=pd.Index(DISTURBED))
+            yield "noise", level, kind, _rmse(done, parts.tested(), channels)
 
 
-def against_missing(walks: Walks, what: Sensing, channels: Sequence[Channel], kinds: Sequence[str]) -> pd.DataFrame:
+def against_missing(walks: Walks, what: Sensing, channels: Sequence[Channel], kinds: Sequence[str]) -> Iterator[tuple]:
     """RMSE of every kind of model against missing readings, temporal split; fitted to walks that lack none.
 
     Readings are lost one by one, each sensor by itself. The sensor's last known reading stands in their place; the
@@ -94,7 +93,6 @@ def against_missing(walks: Walks, what: Sensing, channels: Sequence[Channel], ki
     """
     parts = _disturbed_parts(walks, what, lambda walk, _: walk)
     fitted = {kind: fit_reconstructor(kind, what, parts.fitted(), parts.checked(), 0) for kind in kinds}
-    rows = []
     for level in SHARES:
         for kind, done in fitted.items():
 
@@ -103,8 +101,7 @@ def against_missing(walks: Walks, what: Sensing, channels: Sequence[Channel], ki
                 return holed if done.kind == MASKED else fill_readings(holed, what.sensors, "last", done.sensor_means)
 
             test = _disturbed_parts(walks, what, lost).tested()
-            rows.append(("missing", level, kind, _rmse(done, test, channels)))
-    return pd.DataFrame(rows, columns=pd.Index(DISTURBED))
+            yield "missing", level, kind, _rmse(done, test, channels)
 
 
 def _disturbed_parts(walks: Walks, what: Sensing, disturbed: Callable[[Recording, int], Recording]) -> Parts:

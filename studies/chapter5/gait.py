@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import tomllib
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from itertools import product
 from pathlib import Path
 from typing import Any, NamedTuple
@@ -56,15 +56,6 @@ LESS_THAN_NOTHING = (
 STEP, PITCH = 0.23, 1.4  # from one box to the next, and from one sensor set to the next
 
 
-@dataclass(frozen=True, eq=False)
-class Result:
-    """One of the two studies."""
-
-    table: pd.DataFrame  # a row a person, model, sensor set and seed
-    page: Path
-    tables: tuple[Table, ...]  # that are printed
-
-
 class Wanted(NamedTuple):
     """What is computed, and where it goes."""
 
@@ -74,7 +65,7 @@ class Wanted(NamedTuple):
     kinds: tuple[str, ...] = tuple(KINDS)
     seeds: int = 1
 
-    def cell(self, study: Study, sensors: str, place: str, **settings: str) -> dict[str, pd.DataFrame]:
+    def cell(self, study: Study, sensors: str, place: str, **settings: Any) -> dict[str, pd.DataFrame]:
         """Summary and errors of one sensor set in one data set, by seed; what is in the folder is not redone."""
         found, kinds = [], WITHOUT_NETWORK if self.quick else self.kinds
         both = {

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import copy
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass, replace
 from functools import partial
@@ -15,11 +16,16 @@ from numpy.typing import NDArray
 
 import gaitdisc as gd
 from gaitdisc.models.trained_network import TrainedNetwork
-from gaitdisc.reconstruction.calibration import calibrate
+from gaitdisc.models.trainer import train
+from gaitdisc.models.training_settings import TrainingSettings
+from gaitdisc.reconstruction.calibration import calibrate, first_strides
 from gaitdisc.reconstruction.reconstruct import persistence, phase_average
 from gaitdisc.reconstruction.sensed_walks import SensedWalk, read_walks
+from gaitdisc.reconstruction.state_errors import coverage, half_widths
 from gaitdisc.reconstruction.window_model import (
+    ENSEMBLE,
     WITHOUT_NETWORK,
+    Ensemble,
     Sensing,
     WindowModel,
     fit_reconstructor,
@@ -38,6 +44,7 @@ TOLD = tuple(name for name in ANGLES if name not in SAGITTAL)  # of the angles t
 LAGS = Lags(25, 4)
 Values = NDArray[np.float64]
 AHEAD_S, STEP, RANK, SINDY_RANK = (0.04, 0.12, 0.2, 0.4, 0.8), 4, 12, 4
+STRIDES, WEIGHT = 10, 10  # of a person whom no model saw
 
 
 @dataclass(frozen=True, eq=False)
@@ -232,3 +239,53 @@ def simulated(quick: bool, recordings: Path) -> Iterator[Number]:
             yield Number(row, "RMSE [deg]", "", rmse(missed))
             yield Number(row, "means taken off [deg]", "", rmse(missed - missed.mean(axis=0)))
     yield Number("the person's own mean (null)", "RMSE [deg]", "", rmse(few_real.y.mean(axis=0) - test.y))
+
+
+def few(quick: bool) -> Iterator[Number]:
+    """Each condition of one runner by models of the other, then by ten strides."""
+    walks = read_walks(first_person(exotendon(DATA)), SAGITTAL)
+    both: tuple[SensedWalk, ...] = next(iter(walks.people.values()))
+    what = Sensing(SAGITTAL, TOLD, LAGS, walks.rate_hz)
+    windows = [what.windows(walk.recording, walk.phi) for walk in both]
+    for place, walk in enumerate(both):
+        parts = split_by_trial(windows, [place], what.reach_s)
+        first = first_strides(parts.test, STRIDES, what.reach_s)
+        test, column = parts.tested().rows(first.rest), f"{walk.recording.condition} tested"
+        for kind in ("delay ridge", "fourier ridge") if quick else ("delay ridge", "fourier ridge", "shred"):
+            done = fit_reconstructor(kind, what, parts.fitted(), parts.checked())
+            found = {"as it is": done, "linear correction": calibrate(done, first.strides)}
+            inner = first.strides.last_block(0.2, what.reach_s)
+            if isinstance(done.model, TrainedNetwork):
+                found["descended further"] = replace(done, model=descended(done.model, *inner))
+            else:
+                found["ten strides alone"] = fit_reconstructor(kind, what, *inner)
+                repeated = stacked([parts.fitted(), *[inner[0]] * WEIGHT])
+                found[f"all, these {WEIGHT} times"] = fit_reconstructor(kind, what, repeated, inner[1])
+            for name, model in found.items():
+                yield Number(f"{kind}: {name}", column, "", rmse(model(test) - test.y))
+
+
+def descended(model: TrainedNetwork, fitted: gd.Samples, checked: gd.Samples) -> TrainedNetwork:
+    """A network that goes on from its weights, at a tenth of the rate, on a person's own strides."""
+    settings = TrainingSettings(epochs=5, batch=128, learning_rate=1e-3, decays=(0.01,))
+    return train(fitted, lambda *_: copy.deepcopy(model.network), settings, check=checked).network
+
+
+def spread(quick: bool) -> Iterator[Number]:
+    """Coverage and width of 90 % intervals on the test part of a run."""
+    walk, angles = runner()
+    what, parts = parts_of(walk, angles, LAGS)
+    training = parts.fitted().rows(slice(600)) if quick else parts.fitted()
+    done, test = fit_reconstructor(ENSEMBLE, what, training, parts.checked()), parts.tested()
+    half, missed = half_widths(done(parts.checked()) - parts.checked().y), done(test) - test.y
+    ensemble = done.model
+    assert isinstance(ensemble, Ensemble)
+    sd, checked = (1.645 * ensemble.spread(each.x) for each in (test, parts.checked()))
+    scaled = sd * np.quantile(np.abs(done(parts.checked()) - parts.checked().y) / checked, 0.9, axis=0)
+    for name, width in (("spread of five", sd), ("spread, scaled on the checked part", scaled),
+                        ("conformal (the program's)", np.tile(half, (len(test), 1)))):  # fmt: skip
+        for k, channel in enumerate(angles):
+            inside = coverage((np.abs(missed) / width)[:, [k]], np.ones(1))
+            yield Number(name, "covered [%]", channel.name, 100 * float(inside[0]))
+            yield Number(name, "half width [deg]", channel.name, float(width[:, k].mean()))
+    yield Number("(for scale: RMSE of the mean of five)", "half width [deg]", "", rmse(missed))

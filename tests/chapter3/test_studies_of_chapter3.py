@@ -1,9 +1,7 @@
 """The studies of chapter 3 answer as the chapter says."""
 
 import ch3_burgers
-import ch3_lorenz
-import ch3_measurement_bias
-import ch3_van_der_pol
+import ch3_systems
 import ch3_who_names
 import numpy as np
 import pytest
@@ -25,14 +23,14 @@ def test_the_quick_study_shows_both_metrics(tmp_path):
 
 
 def test_the_hidden_term_is_in_the_first_equation():
-    system = ch3_lorenz.system()
+    system = ch3_systems.lorenz()
     x = system.start[None]
     assert (system.true(x) - system.known(x)).round(9).tolist() == [[-5.12, 0.0, 0.0]]
 
 
 @pytest.mark.slow
 def test_no_learned_rate_loses_before_the_first_jump_but_that_of_dmd(tmp_path):
-    cells = ch3_lorenz.run(quick=True, folder=tmp_path).cells["done right"]
+    cells = ch3_systems.run("lorenz", quick=True, folder=tmp_path).cells["done right"]
     for cell in cells:
         if cell.approach == "dynamics" and cell.method not in ("dmd", "bopdmd"):
             part = cell.parts["oracle forecast"]
@@ -41,14 +39,14 @@ def test_no_learned_rate_loses_before_the_first_jump_but_that_of_dmd(tmp_path):
 
 @pytest.mark.parametrize("name", FILTERS[:2])
 def test_the_unscented_filter_finds_the_gain_from_either_start(name):
-    record = recorded(ch3_measurement_bias.systems()["code"], Conditions(noise=0.001, duration_s=20.0))
+    record = recorded(ch3_systems.biased_masses()["code"], Conditions(noise=0.001, duration_s=20.0))
     end, sd = filtered(record, name)
     assert 1 + end[2] == pytest.approx(1.1, abs=min(1e-3, 3 * sd))
 
 
 @pytest.mark.slow
 def test_every_method_removes_most_of_the_bias_without_noise(tmp_path):
-    cells = ch3_measurement_bias.run(quick=True, folder=tmp_path).cells
+    cells = ch3_systems.run("measurement_bias", quick=True, folder=tmp_path).cells
     assert all(
         cell.parts["reconstruction"].accuracy()[0] > 95
         for found in cells.values()
@@ -68,7 +66,7 @@ def test_the_system_is_drawn_with_the_rate_that_it_lacks(van_der_pol):
 
 
 def test_text_and_code_hide_a_term_of_opposite_sign_and_start_apart():
-    text, code = ch3_van_der_pol.systems()["text"], ch3_van_der_pol.systems()["code"]
+    text, code = ch3_systems.oscillators().values()
     x = text.start[None] * 0 + 2.0
     assert (text.true(x) - text.known(x))[0, 1] == pytest.approx(-0.08)
     assert (code.true(x) - code.known(x))[0, 1] == pytest.approx(0.08)
@@ -77,9 +75,10 @@ def test_text_and_code_hide_a_term_of_opposite_sign_and_start_apart():
 
 @pytest.mark.slow
 def test_the_quick_study_answers_every_statement(tmp_path):
-    result = ch3_van_der_pol.run(quick=True, folder=tmp_path)
-    captions = [ch3_van_der_pol.FIGURES[each] for each in ("system", "cost")]
-    assert [row[0] for row in result.tables[0].rows] == [where for where, *_ in ch3_van_der_pol.STATED] + captions
+    result = ch3_systems.run("van_der_pol", quick=True, folder=tmp_path)
+    section = ch3_systems.SECTIONS["van_der_pol"]
+    captions = [section.figures[each] for each in ("system", "cost")]
+    assert [row[0] for row in result.tables[0].rows] == [where for where, *_ in section.stated] + captions
     assert (tmp_path / "tables.md").exists()
 
 

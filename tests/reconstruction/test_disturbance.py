@@ -1,6 +1,7 @@
 import numpy as np
+import pandas as pd
 import pytest
-from chapter5.disturbances import NOISES, SHARES, against_missing, against_noise, noisy
+from chapter5.disturbances import DISTURBED, NOISES, SHARES, against_missing, against_noise, noisy
 
 KINDS = ("linear", "delay ridge")
 
@@ -17,7 +18,8 @@ def test_noise_is_on_the_sensors_alone_and_of_the_size_that_is_asked_for(pair):
 
 
 def test_the_error_grows_with_noise_and_history_is_worth_less(pair, walks):
-    found = against_noise(walks, pair.what, pair.channels[1:], KINDS).pivot_table("rmse_deg", "level", "model")
+    rows = against_noise(walks, pair.what, pair.channels[1:], KINDS)
+    found = pd.DataFrame(rows, columns=pd.Index(DISTURBED)).pivot_table("rmse_deg", "level", "model")
     assert found.index.tolist() == list(NOISES)
     assert found["delay ridge"].is_monotonic_increasing
     assert found["delay ridge"].iloc[0] < 0.01
@@ -26,7 +28,8 @@ def test_the_error_grows_with_noise_and_history_is_worth_less(pair, walks):
 
 
 def test_the_error_grows_with_missing_readings(pair, walks):
-    found = against_missing(walks, pair.what, pair.channels[1:], KINDS).pivot_table("rmse_deg", "level", "model")
+    rows = against_missing(walks, pair.what, pair.channels[1:], KINDS)
+    found = pd.DataFrame(rows, columns=pd.Index(DISTURBED)).pivot_table("rmse_deg", "level", "model")
     assert found.index.tolist() == list(SHARES)
     assert found["delay ridge"].is_monotonic_increasing
     assert np.isfinite(found.to_numpy()).all()

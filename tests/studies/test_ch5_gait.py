@@ -112,7 +112,7 @@ def test_the_runners_and_the_treadmill_walks_are_found(gait_data, tmp_path):
 @pytest.mark.slow
 def test_history_divides_the_error_and_windows_drawn_at_random_hide_it(tmp_path):
     result = ch5_gait.individual(Wanted(True, tmp_path))
-    rmse = result.table[result.table["sensors"] == "3 sagittal"].set_index("model")["rmse_deg"]
+    rmse = result.cells[result.cells["sensors"] == "3 sagittal"].set_index("model")["rmse_deg"]
     assert rmse["delay ridge"] < 0.35 * rmse["linear"]
     text = result.page.read_text(encoding="utf-8")
     assert "random (leaks)" in text and "the norm of the error" in text
@@ -128,5 +128,5 @@ def test_what_calibration_brings_is_said_in_degrees_and_percent():
 
 @pytest.mark.slow
 def test_ten_strides_of_a_new_person_halve_the_error(tmp_path):
-    rmse = ch5_gait.population(Wanted(True, tmp_path)).table.groupby(["sensors", "model"])["rmse_deg"].mean()
+    rmse = ch5_gait.population(Wanted(True, tmp_path)).cells.groupby(["sensors", "model"])["rmse_deg"].mean()
     assert rmse["3 sagittal", "delay ridge, calibrated"] < 0.5 * rmse["3 sagittal", "delay ridge"]

@@ -1,30 +1,16 @@
-"""Section 6.2.2 on real recordings: joint moments and metabolic power as outcomes of a response.
-
-    python studies/ch4_outcomes.py [FOLDER] [--tables moments energy] [--keep] [--quick]
-    python studies/ch4_outcomes.py --print TABLE
-
-`moments`: six children walk straight and turn; Nominal is fitted to the other children's straight walks, Exo to their
-turns, and each is scored on the turn of the child left out. `energy`: the power of eight people under nine settings of
-an ankle exoskeleton from EMG and ground forces, by models of the others; null: the person's settings shuffled.
-"""
+"""Joint moments and metabolic power as outcomes of a response: children who turn, people on an ankle exoskeleton."""
 
 from __future__ import annotations
 
-from pathlib import Path
-
-from command_line import tables_line
-
-TABLES = ("moments", "energy")
-GIVEN = tables_line(__name__, __doc__, "ch4_outcomes", TABLES)  # before the slow imports
-
 from collections.abc import Iterator
 from dataclasses import replace
+from pathlib import Path
 
 import numpy as np
-from ch4_energy import energy
+from ankle_exo_walks import PEOPLE, SETTINGS, read_walks
 from chapter5.gait import DATA
 from chapter5.people import ANGLES, CUTOFF_HZ
-from further import Made, Number, main
+from further import Number
 
 import gaitdisc as gd
 from gaitdisc.models.fourier_ridge import fit_fourier_ridge
@@ -81,10 +67,41 @@ def moments(quick: bool) -> Iterator[Number]:
                     yield Number(f"{model} on {word}", f"{joint}: RMSE [N m/kg]", person.name, float(missed_of))
 
 
-MADE = {
-    "moments": Made(moments, "stance, one child left out", "children"),
-    "energy": Made(energy, "metabolic power, one person left out, own mean known; nine settings each"),
-}
-
-if __name__ == "__main__":
-    main(GIVEN, MADE, Path(__file__).with_suffix(".csv"))
+def energy(quick: bool) -> Iterator[Number]:
+    """Power of each person from mean strides, by the other seven; tested over the person's nine settings."""
+    walks = read_walks(DATA / "ankle_exo_emg_grf")
+    curves = {key: table.to_numpy().T for key, table in walks.curves.items()}  # (signal, bin)
+    power = walks.energy_w.loc[list(PEOPLE), list(SETTINGS)].to_numpy()
+    change = power - power.mean(axis=1, keepdims=True)
+    emg = [k for k, name in enumerate(next(iter(walks.curves.values())).columns) if not name.startswith("F")]
+    kinds = {"EMG, mean of each": (emg, True), "ground forces, mean curves": (None, False), "both, means": ([], True)}
+    rng = np.random.default_rng(0)
+    for kind, (which, mean) in kinds.items():
+        rows = which or [k for k in range(22) if which is not None or k not in emg]
+        read = [[curves[person, setting][rows] for setting in SETTINGS] for person in PEOPLE]
+        x = np.array([[one.mean(axis=1) if mean else one.ravel() for one in own] for own in read])
+        x = x / np.abs(x).mean(axis=1, keepdims=True)  # a person's own size of each: the EMG's reference is unknown
+        own = x - x.mean(axis=1, keepdims=True)
+        parts = [gd.Samples(own[k], change[k][:, None], tuple(map(str, range(own.shape[2]))), ("W",),
+                            np.arange(9.0), np.zeros(9)) for k in range(len(PEOPLE))]  # fmt: skip
+        predicted = []
+        for place in range(len(PEOPLE)):
+            chosen = (place + 1) % len(PEOPLE)
+            fitted = [parts[k] for k in range(len(PEOPLE)) if k not in (place, chosen)]
+            model = fit_fourier_ridge(stacked(fitted), parts[chosen])
+            predicted.append(model(own[place])[:, 0])
+        predicted = np.array(predicted)
+        explained = 1 - np.mean((predicted - change) ** 2) / np.mean(change**2)
+        shuffled = [np.array([rng.permutation(row) for row in predicted]) for _ in range(200 if quick else 2000)]
+        null = np.array([1 - np.mean((each - change) ** 2) / np.mean(change**2) for each in shuffled])
+        yield Number(kind, "within persons: R2 [1]", "", float(explained))
+        yield Number(kind, "95 % of shuffled settings below [1]", "", float(np.quantile(null, 0.95)))
+        yield Number(kind, "p", "", float((1 + np.sum(null >= explained)) / (1 + len(null))))
+        for place, person in enumerate(PEOPLE):
+            yield Number(kind, "RMSE [W]", person, float(np.sqrt(np.mean((predicted - change)[place] ** 2))))
+    others = np.array([np.delete(change, k, axis=0).mean(axis=0) for k in range(len(PEOPLE))])
+    for own, by_others, person in zip(change, others, PEOPLE, strict=True):
+        yield Number("no setting known (null)", "RMSE [W]", person, float(own.std()))
+        yield Number("setting known, mean of the others", "RMSE [W]", person, float((by_others - own).std()))
+    explained = float(1 - np.mean((others - change) ** 2) / np.mean(change**2))
+    yield Number("setting known, mean of the others", "within persons: R2 [1]", "", explained)
