@@ -24,7 +24,7 @@ def demo(  # noqa: PLR0913, PLR0917 these are the options of a command
     ] = False,
     laboratory: Annotated[
         str,
-        typer.Option(help="Data of each walk: angles; markers and belts; or overground, short trials over two plates."),
+        typer.Option(help="Data of each walk: `angles`, `markers` (two belts), `overground` (short, two plates)."),
     ] = "angles",
     jobs: Jobs = 2,
     quiet: Quiet = False,

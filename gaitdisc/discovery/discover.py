@@ -82,7 +82,7 @@ def weigh_explanations(
     if not case.leaves_noise(verdict.found):
         kept = without_trial_apart(case)
         if kept is not case.measured:
-            progress("one trial does not agree with any explanation of the others: it is left out")
+            progress("one trial is an outlier: no explanation fits it together with the others; it is left out")
             measured, case = kept, begun(kept)
             as_read = case.as_read()
             verdict = decide(case, as_read)

@@ -165,7 +165,7 @@ def _over_time(discovery: Discovery, table: pd.DataFrame) -> Figure:
     fitted = ", its parameters fitted within their bounds" if discovery.corrections else ""
     caption = (
         f"Trial {trial}, {methods_used(discovery).held_out}. Left: measured (black), initial model{fitted} (orange, "
-        "dashed), with the identified effect (green); the gap is shaded. Right: measured minus each; grey band: two "
+        "dashed), with the identified effect (green). The gap is shaded. Right: residual of each model. Grey band: two "
         f"standard deviations of the noise. Typical section, {len(numbers)} samples."
     )
     return Figure("held_out", caption, _alt(discovery), numbers, drawn)
@@ -236,8 +236,8 @@ def _against_state(discovery: Discovery, table: pd.DataFrame) -> Figure:
         kept += [one.assign(channel=channel, unit=unit, what=word) for one, word in zip(gaps, words, strict=True)]
     legend(drawn, discovery_key(measured=False))
     caption = (
-        f"Measured minus simulated against the measured channel, all {len(table)} held-out samples; mean and standard "
-        "deviation in a bin. The residual of a complete model has no shape."
+        f"Residual (measured minus simulated) against the measured channel, all {len(table)} held-out samples: mean "
+        "and standard deviation in each bin. The residual of a complete model has no shape."
     )
     return Figure("against_state", caption, _alt(discovery), pd.concat(kept, ignore_index=True), drawn)
 
@@ -263,4 +263,4 @@ def discovery_key(measured: bool) -> list[Artist]:
 def _alt(discovery: Discovery) -> str:
     sizes = discovery.held_out.channels.items()
     errors = (f"{name} from {before:.3g} to {after:.3g}, noise {floor:.3g}" for name, (before, after, floor) in sizes)
-    return f"Root mean square of measured minus simulated, before and after: {'; '.join(errors)} (units of the file)."
+    return f"Root-mean-square residual before and after the effect is added: {'; '.join(errors)} (units of the file)."

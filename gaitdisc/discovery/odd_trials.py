@@ -227,9 +227,9 @@ def without_trial_apart(case: Case) -> Measured:
     if next_least < wanted:
         return measured
     what = (
-        f"trial {measured.trials[trial]!r} does not fit any explanation of the others: without it the residual of the "
-        f"best one is {least:.2g} standard deviations; without trial {measured.trials[other]!r}, the next candidate, "
-        f"it is {next_least:.2g}"
+        f"trial {measured.trials[trial]!r} is an outlier: no explanation fits it together with the others; the best "
+        f"explanation leaves a residual of {least:.2g} standard deviations without this trial, and of {next_least:.2g} "
+        f"without {measured.trials[other]!r}, the next candidate"
     )
     source = measured.source or case.search.base.title
     spoils = "this trial, which was left out; check its gain, its offset and whether a channel was constant"

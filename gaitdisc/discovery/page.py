@@ -63,10 +63,10 @@ def gap_table(discovery: Discovery) -> Table:
     moved = " (initial model, parameters with bounds fitted within these)" if discovery.corrections else ""
     held, fitted = (counted(size.pieces, "independent sample") for size in (discovery.held_out, discovery.train))
     caption = (
-        f"Root mean square of measured minus simulated, before{moved} and after, compared with noise "
-        "alone. Closed: share of the squared gap above the noise. p: one-sided test that the added effect correlates "
-        "with the residual, each sample weighted by its size, with its autocorrelation (Newey and West 1987); all "
-        f"channels together (held out: {held}, fitted: {fitted}). A name requires p below "
+        f"Root-mean-square residual (measured minus simulated) before{moved} and after the identified effect is added, "
+        "compared with noise alone. Closed: share of the squared gap above the noise. p: one-sided test that the added "
+        "effect correlates with the residual, all channels together, each sample weighted by its size, with its "
+        f"autocorrelation (Newey and West 1987; held out: {held}, fitted: {fitted}). A name requires p below "
         f"{discovery.held_out.alpha:g} on held-out data, the accepted false-positive rate."
     )
     if discovery.rivals and discovery.held_out.pieces and not discovery.effects:
@@ -128,8 +128,8 @@ def trials_table(discovery: Discovery) -> Table:
             rows.append((name, channel, *amounts))
             records.append((name, channel, before, after, unit))
     caption = (
-        "Root mean square of measured minus simulated, before and after, for each held-out trial "
-        f"({counted(len(runs.trial), 'run')}, each with its own initial state)."
+        "Root-mean-square residual (measured minus simulated) of each held-out trial, before and after the identified "
+        f"effect is added ({counted(len(runs.trial), 'run')}, each with its own initial state)."
     )
     columns = ("trial", "channel", "before", "after", "unit")
     return Table("trials", caption, columns[:-1], tuple(rows), _frame(records, columns))

@@ -142,8 +142,8 @@ def force_plates(
             matrix = matrices[place] if kind == 4 else np.empty((0, 0))
             at = np.asarray(convert(corners[place].T, length_unit, "m"), float)
             plate = ForcePlate(place + 1, kind, tuple(int(one) - 1 for one in own), at, origin, matrix)
-            sound = np.all(np.isfinite(plate.axes)) and np.all(np.isfinite(origin))
-            why = "" if sound else "has corners that span no surface"
+            why = "" if np.isfinite(origin).all() else "has an origin that is not finite"
+            why = why if np.isfinite(plate.axes).all() else "has corners that span no surface"
             if not why:
                 plates.append(plate)
         if why:
@@ -290,8 +290,8 @@ def _with_origin(
     if plate.kind in (2, 4) and _beside(turned, values, units) < STRAY:
         what = f"force plate {plate.number}: ORIGIN points from the surface to the sensors; its sign is reversed"
         return turned, [Finding("note", "plate origin", file, what, "nothing; the centre of pressure is inside")]
-    what = f"force plate {plate.number}: the centre of pressure lies outside the plate in {beside:.0%} of the loaded "
-    what += "samples"
+    what = f"force plate {plate.number}: the centre of pressure lies outside the plate in {100 * beside:.0f} % of the "
+    what += "loaded samples"
     return plate, [Finding("warning", "centre of pressure", file, what, "joint moments; check zero, ORIGIN, units")]
 
 
@@ -304,8 +304,8 @@ def _report_exchanged(measured: Sequence[tuple[ForcePlate, Values, tuple[str, ..
             continue
         if max(_beside_either(one, others, their_units), _beside_either(other, own, units)) < STRAY:
             what = (
-                f"force plates {one.number} and {other.number} are exchanged: the centre of pressure is outside each "
-                f"in {astray:.0%} of the loaded samples, but inside once their channels are exchanged"
+                f"the channels of force plates {one.number} and {other.number} are swapped: the centre of pressure is "
+                f"outside each plate in {100 * astray:.0f} % of the loaded samples, and inside with them swapped back"
             )
             spoils = "the assignment of feet to plates, moments and powers; correct FORCE_PLATFORM:CHANNEL"
             findings.append(Finding("warning", "swapped plates", file, what, spoils))

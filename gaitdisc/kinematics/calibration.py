@@ -86,7 +86,7 @@ def _check_complete(marker_set: MarkerSet, names: Mapping, file: str) -> None:
         raise ChannelError(
             f"the static trial must have every landmark of the marker set {marker_set.name}",
             f"{file} has no {lacking[0]}{several}",
-            "Name the marker in the set's [aliases], or use the marker set with these labels.",
+            "Name the marker in the set's [aliases], or choose the marker set that matches the labels of the file.",
         )
 
 
@@ -231,9 +231,9 @@ class _Builder:
                 followers[point] = self.static[segment].to_segment(place[None])[0]
         if len(followers) < FEWEST_POINTS:
             raise ChannelError(
-                f"segment {segment} needs at least {FEWEST_POINTS} points",
-                f"{self.file} has {', '.join(followers) or 'none'}, and no {', '.join(absent)}",
-                "Attach the markers, or use the marker set with these labels.",
+                f"segment {segment} must have at least {FEWEST_POINTS} points",
+                f"{self.file} has {', '.join(followers) or 'none'}; missing: {', '.join(absent)}",
+                "Attach the missing markers, or choose the marker set that matches the labels of the file.",
             )
         return followers
 

@@ -193,7 +193,8 @@ def _gaps_and_shape(
         what += "the other markers define it there"
         findings.append(Finding("note", "bridged", file, what, "", spans=spans_s(markers.time, bridged)))
     if unknown.any():
-        what = f"{segment} is unknown in {int(unknown.sum())} of {frames} frames: fewer than 3 or collinear points"
+        what = f"the pose of {segment} is unknown in {int(unknown.sum())} of {frames} frames: it has fewer than 3 "
+        what += "usable points there, or they are collinear"
         spoils = "its joints there; fill the gaps, or add a marker off the line"
         findings.append(Finding("warning", "gap", file, what, spoils, spans=spans_s(markers.time, unknown)))
     typical = float(np.nanmedian(residual)) if np.isfinite(residual).any() else 0.0

@@ -273,9 +273,9 @@ def place_markers(places: Mapping[str, Values], calibration: Calibration, file: 
         if len(points) < FEWEST_POINTS:
             absent = [point for point in body if point not in points]
             raise ChannelError(
-                f"segment {segment} needs at least {FEWEST_POINTS} points",
-                f"{file or 'the trial'} has {', '.join(points) or 'none'}, and no {', '.join(absent)}",
-                "Use the marker set with these labels, or name the markers in its [aliases].",
+                f"segment {segment} must have at least {FEWEST_POINTS} points",
+                f"{file or 'the trial'} has {', '.join(points) or 'none'}; missing: {', '.join(absent)}",
+                "Choose the marker set that matches the labels of the file, or name the markers in its [aliases].",
             )
         own = [point for point in points if point in places]
         there = np.stack([places[point] for point in own], axis=1)

@@ -77,7 +77,8 @@ def discover(
 
     References
     ----------
-    docs/discover.md: multiple shooting; effects are ranked by their prediction of data that were not fitted.
+    docs/discover.md: multiple shooting; effects are ranked by how well the model with the effect predicts held-out
+    data.
 
     Examples
     --------

@@ -112,7 +112,7 @@ def highpass(
     Raises
     ------
     SamplingError
-        For the reasons of `lowpass`.
+        If `lowpass` would refuse the same arguments.
 
     Examples
     --------

@@ -38,8 +38,8 @@ def load(
     Raises
     ------
     SchemaError
-        If the folder contains no result, or one that is damaged, incomplete or in a format that this version cannot
-        read (docs/compatibility.md).
+        If the folder contains no result, or if the result is damaged, incomplete or in a format that this version
+        cannot read (docs/compatibility.md).
 
     Examples
     --------

@@ -119,7 +119,7 @@ def _test(walks: Sequence[SensedWalk], person: str, condition: str) -> list[int]
     if not tested or len(tested) == len(words):
         raise SchemaError(
             "a split across conditions needs walks of the tested condition and others for training",
-            f"--condition is {condition!r}, {person} has {', '.join(sorted(set(words)))}",
+            f"--condition is {condition!r}, but {person} has only {', '.join(sorted(set(words)))}",
             "Name a condition with --condition, or use another split.",
         )
     return tested

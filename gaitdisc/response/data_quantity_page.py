@@ -47,7 +47,7 @@ def quantity_figure(run: ResponseRun) -> Figure | None:
         f"R² [1] of the second derivative, median over variables, on the held-out device walk ({run.exo}) against the "
         f"length of the training part (its {' or '.join(parts)} seconds), n = "
         f"{counted(len(run.quantities), 'participant')}; split: last {tail_words(run)} s of each walk held out for "
-        f"all lengths. Thick: median over participants; thin: each participant; networks only.{edge} After Fig. 4.4 "
+        f"all lengths. Thick: median over participants. Thin: each participant. Networks only.{edge} After Fig. 4.4 "
         "of the dissertation."
     )
     return Figure("quantity", caption, alt, numbers, drawn)

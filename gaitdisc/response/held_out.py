@@ -119,8 +119,8 @@ def _caption(response: ParticipantResponse, rows: pd.DataFrame) -> str:
     return (
         f"{response.participant}: the last {WINDOW_S:g} s of the held-out device walk, n = "
         f"{counted(len(rows), 'sample')} shown of {len(held.time)}; split: last {response.held_out_s:.4g} s held out, "
-        f"used by no model. Black: measured second derivative; {models}; shaded: the residual of each model. {band}R² "
-        "(Nominal → Augmented) is over all held-out samples. Each panel has its own unit; titles in red: left; in "
+        f"used by no model. Black: measured second derivative; {models}. Shaded: the residual of each model. {band}R² "
+        "(Nominal → Augmented) is over all held-out samples. Each panel has its own unit. Titles in red: left; in "
         "blue: right."
     )
 
@@ -216,7 +216,7 @@ def _residual_figure(response: ParticipantResponse, numbers: pd.DataFrame, name:
     caption = (
         f"{response.participant}: residual of the second derivative, measured minus predicted, over the stride of the "
         f"held-out device walk, n = {counted(len(each), 'stride')}; split: last {response.held_out_s:.4g} s held out. "
-        f"Black: mean; {interval}; faint: every stride. A perfect model has a mean of zero. Each row has one scale "
+        f"Black: mean; {interval}. Faint: every stride. A perfect model has a mean of zero. Each row has one scale "
         "and one unit. Titles in red: left; in blue: right."
     )
     parts = [

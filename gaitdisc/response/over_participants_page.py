@@ -104,7 +104,7 @@ def reduction_figure(run: ResponseRun) -> Figure | None:
         "Residual (measured minus predicted second derivative) averaged over the held-out strides of the device walk "
         f"({run.exo}): 1 − its size / its size under the Nominal model, measured from peak to peak and as root mean "
         f"square over the stride; n = {counted(reductions['participant'].nunique(), 'participant')}; split: last "
-        f"{tail_words(run)} s held out. Marks: participants; values below {number(LOWEST, 0)} % are at the edge. After "
+        f"{tail_words(run)} s held out. Marks: participants. Values below {number(LOWEST, 0)} % are at the edge. After "
         "Fig. 4.3 of the dissertation: 52.8 %, hip, one participant; the measure is not stated."
     )
     return Figure("reduction", caption, " ".join(reduction_sentences(run)), reductions, drawn)

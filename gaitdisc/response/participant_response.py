@@ -262,7 +262,7 @@ class ResponseRun(StudyRun):
         model : str
             `nominal`, `exo`, `discrepancy` or `augmented`.
         participant : str
-            Person whose model predicts; may be omitted if the run has only one.
+            Participant whose model predicts; may be omitted if the run has only one.
 
         Returns
         -------
@@ -272,7 +272,7 @@ class ResponseRun(StudyRun):
         Raises
         ------
         SchemaError
-            If the run has no such person or model, or an older version saved it without weights.
+            If the run has no such participant or model, or if an older version saved it without weights.
         """
         from gaitdisc.ingest.study import Study
         from gaitdisc.processing.process import processed

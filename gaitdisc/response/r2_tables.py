@@ -244,9 +244,9 @@ def r2_table(response: ParticipantResponse, name: str) -> Table:
     samples, without = sample_counts(response), sample_counts(response, "nominal")
     caption = (
         f"{response.participant}: R² [1] of the second derivative of each variable (unit in brackets) on held-out "
-        f"device walking; columns marked “no device”: the walk without it; n = {samples} samples of the device walk "
-        f"and {without} of the walk without; split: last {response.held_out_s:.4g} s of each walk held out, used by "
-        "no model. Ridge: with harmonics of percent stride in addition to the network's inputs, and on these inputs "
+        f"device walking, and on the walk without the device in columns marked “no device”; n = {samples} samples "
+        f"with and {without} without the device; split: last {response.held_out_s:.4g} s of each walk held out, used "
+        "by no model. Ridge: with harmonics of percent stride in addition to the network's inputs, and on these inputs "
         "alone. Null: R² of band-limited noise alone."
     )
     numbers = table.reset_index()

@@ -155,7 +155,7 @@ def settings_around(angles_hz: float, emg_hz: float, emg: bool = True) -> tuple[
     """Settings to try: the study's low-passes of angles and rectified EMG [Hz], then one changed at a time."""
     angles = [Setting(f"angles {hz:g} Hz", hz, emg_hz) for hz in ANGLES_HZ if hz != angles_hz]
     envelopes = [Setting(f"EMG {hz:g} Hz", angles_hz, hz) for hz in EMG_HZ if emg and hz != emg_hz]
-    lengths = [Setting(f"{share:.0%} of the training part", angles_hz, emg_hz, share) for share in SHARES]
+    lengths = [Setting(f"{100 * share:.0f} % of the training part", angles_hz, emg_hz, share) for share in SHARES]
     return (Setting(AS_STUDIED, angles_hz, emg_hz), *angles, *envelopes, *lengths)
 
 

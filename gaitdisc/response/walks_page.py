@@ -128,8 +128,8 @@ def _caption(participant: str, numbers: pd.DataFrame) -> str:
     return (
         f"{participant}: every stride of each walk, from initial contact to the next of the same foot, n = "
         f"{' and '.join(parts)}; entire walks, no split. Light: kept; black, taller: dropped, with the letter of its "
-        "reason in the table below. Under each strip: duration of every stride [s] over time; left red triangles, "
-        "right blue discs, dropped crosses."
+        "reason in the table below. Under each strip: duration of every stride [s] over time. Red triangles: left; "
+        "blue discs: right; crosses: dropped."
     )
 
 

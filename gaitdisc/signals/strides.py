@@ -182,12 +182,12 @@ def verify_walking(
     if found.regularity < LEAST_REGULARITY:
         fails.append(f"hips and knees repeat with a correlation of {found.regularity:.2f}")
     if found.knee_deg < LEAST_KNEE_DEG:
-        fails.append(f"the range of a knee is at most {found.knee_deg:.0f} deg")
+        fails.append(f"the range of motion is {found.knee_deg:.0f} deg at the knee that moves more")
     if fails:
         raise StrideError(
             f"a walk must have at least {counted(fewest, 'stride')} over {100 * least_coverage:.0f} % of the trial, a "
-            f"stride-to-stride correlation of at least {LEAST_REGULARITY:g}, and a range of one knee of "
-            f"{LEAST_KNEE_DEG:g} deg or more",
+            f"stride-to-stride correlation of at least {LEAST_REGULARITY:g}, and a knee range of motion of at least "
+            f"{LEAST_KNEE_DEG:g} deg on one side",
             f"{kinematics.source.file or 'the recording'}: {'; '.join(fails)}",
             "Remove calibration and range-of-motion trials from the study, or cut the trial to its walking part.",
         )

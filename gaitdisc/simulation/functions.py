@@ -71,8 +71,8 @@ def simulation_from_function(
     Raises
     ------
     SimulationError
-        If the function has too few arguments, a default that is not a number, always raises an error, or returns
-        different derivatives when it is called again.
+        If the function has too few arguments or a default that is not a number, if it always raises an error, or if
+        it returns different derivatives when it is called again.
 
     Examples
     --------

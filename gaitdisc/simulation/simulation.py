@@ -107,7 +107,7 @@ class Simulation(Parts):
         Parameters
         ----------
         sensor : Sensor
-            Sensor, which names its channel.
+            New sensor; it replaces the sensor of the same channel.
         """
         return replace(self, sensors=(*(one for one in self.sensors if one.channel != sensor.channel), sensor))
 

@@ -104,7 +104,7 @@ def test_the_zero_span_is_removed_unless_the_plate_is_loaded_then():
 
 def test_a_plate_far_from_its_foot_is_reported():
     _, _, findings = _read(_rows((0.9, 0, -0.04)), _file())
-    assert says(findings[0].what, "centre of pressure lies outside", "100%")
+    assert says(findings[0].what, "centre of pressure lies outside", "100 %")
 
 
 def _two_belts(channels, sense=1):
@@ -126,7 +126,7 @@ def test_plates_with_each_others_channels_are_reported(sense):
     first, second = list(range(1, 7)), list(range(7, 13))
     assert not [one for one in _two_belts([first, second], sense) if one.severity == "warning"]
     (swapped,) = [one for one in _two_belts([second, first], sense) if one.kind == "swapped plates"]
-    assert says(swapped.what, "plates 1", "2", "100%")
+    assert says(swapped.what, "plates 1", "2", "100 %")
 
 
 def test_a_plate_that_nobody_stepped_on():
@@ -143,6 +143,7 @@ def test_a_plate_that_nobody_stepped_on():
         ({"CHANNEL": np.array([[1], [2], [3], [4], [5], [60]])}, "names channels 1, 2, 3, 4, 5, 60 of 6"),
         ({"CORNERS": np.zeros((3, 4, 1))}, "has corners that span no surface"),
         ({"CORNERS": np.zeros((3, 2, 1))}, "has no corners or no origin"),
+        ({"ORIGIN": np.full((3, 1), np.nan)}, "has an origin that is not finite"),
         ({"units": ["ADC"] * 6}, "has channel #1 in 'ADC'"),
         ({"units": [""] * 6}, "states no units; read as N and N mm"),
     ],

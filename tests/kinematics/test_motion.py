@@ -200,7 +200,7 @@ EXCHANGED = {f"{side}{end}": f"{other}{end}" for side, other in ("LR", "RL") for
     [
         (markers_of(known_angles(60), PLUG_IN_GAIT, MIRRORED), ShapeError, r"walk\.c3d.*left.*right"),
         (renamed(WALK, EXCHANGED), ShapeError, "left and right are exchanged"),
-        (without(WALK, "RTHI"), ChannelError, r"thigh_r.*3 points.*walk\.c3d.*RKNE.*no RTHI"),
+        (without(WALK, "RTHI"), ChannelError, r"thigh_r.*3 points.*walk\.c3d.*RKNE.*missing: RTHI"),
     ],
     ids=["mirrored", "sides exchanged", "a marker less"],
 )

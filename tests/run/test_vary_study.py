@@ -63,7 +63,7 @@ def test_a_cut_off_changes_what_is_tested(first_time):
     _, found, _ = first_time["sensitivity"]
     middle = found.table[found.table["kind"] == "network"].groupby(["variant", "model"])["r2"].median()
     assert middle["angles 12 Hz", "exo"] < middle["angles 4 Hz", "exo"]  # faster noise is less predictable
-    assert {"25% of the training part", "50% of the training part"} <= set(found.table["variant"])
+    assert {"25 % of the training part", "50 % of the training part"} <= set(found.table["variant"])
     assert "null" in set(found.table["kind"])
 
 
