@@ -130,8 +130,7 @@ def make_discovery(base: Simulation, joints: list[JointFinding]) -> Discovery:
         units=units,
         runs=Runs(np.arange(1), joints[0].joint.time[None], np.zeros((1, 0)), *walk, names=("whole walk",)),
     )
-    sizes = found.held_out.channels.values()
-    if named or not ordered or all(before < CRITERIA.agrees * floor for before, _, floor in sizes):
+    if named or not ordered or all(one.at_noise for one in joints):
         return write_sentence(found, base, tuple(best for _, best in named))
     first, (one,) = ordered[0], rivals
     before, after = (np.sqrt(np.mean((first.joint.left - each) ** 2)) for each in (0.0, first.rivals[0].explained))

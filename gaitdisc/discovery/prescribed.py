@@ -28,6 +28,7 @@ GAP = 2  # samples to either side of it that nothing is learned from: what is ha
 CLOSED = 0.3  # of the squared moment that is left, which goes on held-out time
 ROUNDS, REFINED = 2, 4  # turns of learning the noise; candidates whose constants are searched between the grid's
 FLAT = 1e-9
+CHANCE = 0.05  # of a walk of which nothing is missing that is not said to agree
 UNTESTED = PairedTest(1.0, 0, 0.0)
 SAMPLES_A_NUMBER = 2.0  # of the low-pass: the samples that are kept hold each number that passes twice
 
@@ -92,6 +93,7 @@ class JointFinding:
     joint: ResidualMoment
     noise: Noise
     open_ones: int  # candidates at all joints
+    at_noise: bool = True  # whether noise of the angles makes as much (chi-squared test)
     named: Named | None = None
     rivals: tuple[Named, ...] = ()  # best first
 
@@ -193,8 +195,12 @@ class JointFinding:
 
 def joint_finding(joint: ResidualMoment, candidates: tuple[Candidate, ...], joints: int = 1) -> JointFinding:
     """Weigh every candidate at one of some joints; name the best where evidence and held-out time bear it out."""
+    from scipy.stats import chi2
+
     floor = CRITERIA.model_error * float(np.std(joint.demanded))
     found = JointFinding(joint, find_noise(joint.angle_noise[:, :, None], least=floor), len(candidates) * joints)
+    size = float((found._white(joint.left) ** 2).sum())
+    found = replace(found, at_noise=bool(chi2.sf(size, len(joint.time)) > CHANCE / joints))
     ordered: list[Named] = []
     for _ in range(ROUNDS):
         coarse = found.weigh(candidates, refined=False)
