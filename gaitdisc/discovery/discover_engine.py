@@ -102,7 +102,7 @@ def search(fit: EngineFit, base: EngineAnswer, request: Request, read: dict[Path
     mapping, engine, data, states = fit.mapping, fit.engine, fit.measured, fit.states
     request.progress(f"computing the accelerations of {engine.path.name} along the record by {engine.called}")
     linear, driven = expand(mapping, engine, data, states)
-    request = replace(request, added=saturations(mapping))
+    request = replace(request, added=saturations(mapping, getattr(engine, "servos", {})))
     if not request.effects:  # a limit is the input's own, and of no force
         request = replace(
             request, possible=lambda candidate: (candidate.kind, candidate.name) != ("port", "input_saturation")

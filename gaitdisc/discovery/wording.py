@@ -154,7 +154,8 @@ def _one(effect: FoundEffect, part: Part, base: Simulation, where: tuple[Whereab
         return f"{said}, {outside}" if outside else said
     estimate = next(iter(effect.estimates.values()))
     subject = f"the {'driving signal' if kind == 'input_error' else 'measured'} {effect.place}"
-    if effect.name == "input_saturation":
+    if effect.name.endswith("_saturation"):
+        subject = f"the force of {effect.place}" if effect.name == "force_saturation" else subject
         limits = (SATURATED[name].format(estimate_text(one)) for name, one in effect.estimates.items())
         return f"{subject} saturates {' and '.join(limits)}"
     return f"{subject} {_signal(effect.name, estimate)}"

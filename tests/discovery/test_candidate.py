@@ -196,7 +196,8 @@ def test_a_friction_that_drives_costs_more(case):
 
 
 def test_every_price_is_of_an_explanation_that_there_is(case):
-    names = {shape.name for shape in read_shapes()} | {one.name for one in case.search.candidates}
+    limits = saturations(mass(), {"push": (1.0, 0.0, "x")})
+    names = {shape.name for shape in read_shapes()} | {one.name for one in (*case.search.candidates, *limits)}
     assert {*BENT, *FLEXIBLE} <= names | {"unnamed"}
 
 
