@@ -126,15 +126,16 @@ def search(fit: EngineFit, base: EngineAnswer, request: Request, read: dict[Path
         found = replace(found, sentence=f"{found.sentence} {why}")
         return EngineAnswer(found, augmented, written, runs, engine)
     if found.effects and found.verdict != "wrong_initial_condition":
+        held = held_out(found, runs, data)
         if not engine.fibres:  # their runs take too long
-            found = fit.fitted(found, linear, runs.among(~held_out(found, runs, data)))
+            found = fit.fitted(found, linear, runs.among(~held))
         runs = replace(runs, after=fit.left(found, fit.parts, runs)).with_floor(hidden)
         both = list(zip(found.effects, fit.parts, strict=True))
         sure = tuple(part for one, part in both if request.effects or not one.small)
-        kept = sure if errs_less(runs, runs.before) else ()
+        kept = sure if errs_less(runs, runs.before, held) else ()
         for part in kept if len(kept) > 1 and not request.effects else ():
             others = tuple(one for one in fit.parts if one is not part)
-            if not errs_less(runs, fit.left(found, others, runs)):
+            if not errs_less(runs, fit.left(found, others, runs), held):
                 kept = tuple(one for one in kept if one is not part)
         if not kept:
             runs = replace(runs, after=runs.before)

@@ -169,10 +169,11 @@ class EngineFit:
         return replace(found, effects=tuple(effects))
 
 
-def errs_less(runs: OwnRuns, without: Values) -> bool:
-    """Whether the engine's runs without some of what was found (run, sample, channel) miss more, not by chance."""
+def errs_less(runs: OwnRuns, without: Values, held: NDArray[np.bool_]) -> bool:
+    """Whether runs without some of the answer (run, sample, channel) miss more by no chance, and held (run,) ones."""
     test = compare_errors(without, runs.after, runs.floor)
-    return test.bears_out and test.fall > CRITERIA.margin
+    before, after = (np.nansum((each[held] / runs.floor) ** 2) for each in (without, runs.after))
+    return bool(test.bears_out and test.fall > CRITERIA.margin and after <= before)
 
 
 def base_runs(engine: Engine, fit: EngineFit) -> OwnRuns:
