@@ -279,9 +279,7 @@ def list_candidates(
     return tuple(found)
 
 
-def saturations(
-    simulation: Simulation, servos: Mapping[str, tuple[float, float, str]] | None = None
-) -> tuple[Candidate, ...]:
+def saturations(simulation: Simulation, servos: Mapping[str, tuple[float, float, str]]) -> tuple[Candidate, ...]:
     """List inputs that act up to a limit alone: one above, one below, one of a size to either side, or two.
 
     servos: inputs whose force may be limited so: their gain, their force at 0 and that by motion
@@ -293,18 +291,17 @@ def saturations(
         "min(max({s}, -{limit}), {limit})": {"limit": "half widths of x"},
         "min(max({s}, {lower_limit}), {upper_limit})": two_sizes,
     }
-    of_inputs = (
+    found = [
         Candidate("input_error", "input", signal.name, "input_saturation", (form,), limits, signal.name)
         for signal in simulation.inputs
         for form, limits in forms.items()
-    )
-    of_forces = []
-    for name, (gain, constant, moved) in (servos or {}).items():
+    ]
+    for name, (gain, constant, moved) in servos.items():
         rest, limits = f"{constant!r} + {moved}", {"limit": "half widths of x"}
         form = f"(min(max({gain!r}*{{s}} + {rest}, -{{limit}}), {{limit}}) - ({rest}))/{gain!r}"
         force = f"{gain!r}*{name} + {rest}"
-        of_forces.append(Candidate("input_error", "input", name, "force_saturation", (form,), limits, force))
-    return (*of_inputs, *of_forces)
+        found.append(Candidate("input_error", "input", name, "force_saturation", (form,), limits, force))
+    return tuple(found)
 
 
 def free_name(name: str, taken: Collection[str]) -> str:

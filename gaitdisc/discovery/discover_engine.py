@@ -159,9 +159,7 @@ def search(fit: EngineFit, base: EngineAnswer, request: Request, read: dict[Path
 def without_beside(found: Discovery, effects: tuple[FoundEffect, ...], idle: tuple[FoundEffect, ...]) -> Discovery:
     """Return an answer of some of its effects, and without explanations that only add to these."""
     kept, others = {(effect.name, effect.place) for effect in effects}, found.explanations[1:]
-    adding = [
-        explanation for explanation in others if kept < {(effect.name, effect.place) for effect in explanation.effects}
-    ]
+    adding = [other for other in others if kept < {(effect.name, effect.place) for effect in other.effects}]
     added = {(one.effects[-1].name, one.effects[-1].place) for one in adding}
     rivals = tuple(replace(rival, tied=rival.tied and (rival.name, rival.place) not in added) for rival in found.rivals)
     others = (explanation for explanation in others if explanation not in adding)

@@ -213,20 +213,16 @@ def joint_finding(joint: ResidualMoment, candidates: tuple[Candidate, ...], join
     near = [named for named in ordered if named.gained > max(ordered[0].gained - CRITERIA.margin, CRITERIA.margin)]
     proven = sorted(map(found.prove, near), key=lambda one: -one.held_out)
     alike = [named for named in proven if named.held_out > proven[0].held_out - CRITERIA.tie]  # of these the plainest
-    order = [
-        candidate.identity for candidate in candidates
-    ]  # of two with one penalty the first in the catalogue is the simpler
+    # of two with one penalty the first in the catalogue is the simpler
+    order = [candidate.identity for candidate in candidates]
     alike.sort(key=lambda one: (one.candidate.penalty(one.values), order.index(one.candidate.identity)))
     ordered = [*alike, *proven[len(alike) :], *ordered[len(near) :]]
-    first = ordered[0] if proven and is_supported(joint, ordered[0]) else None
-    return replace(found, named=first, rivals=tuple(ordered))
-
-
-def is_supported(joint: ResidualMoment, one: Named) -> bool:
-    """Whether an explanation is of a size that matters, and closes enough on held-out time."""
-    left, candidate = float(np.sum((joint.left - one.predicted) ** 2)), one.candidate
-    matters = not candidate.bounds or candidate.beyond_bounds(one.values["value"]) > 0
-    return matters and left < (1 - CLOSED) * float(np.sum(joint.left**2))
+    supported = False  # by an explanation of a size that matters, which closes enough on held-out time
+    if proven:
+        best, left = ordered[0], float(np.sum((joint.left - ordered[0].predicted) ** 2))
+        matters = not best.candidate.bounds or best.candidate.beyond_bounds(best.values["value"]) > 0
+        supported = matters and left < (1 - CLOSED) * float(np.sum(joint.left**2))
+    return replace(found, named=ordered[0] if supported else None, rivals=tuple(ordered))
 
 
 def _fall(before: float, after: float, count: int) -> float:

@@ -23,7 +23,6 @@ from gaitdisc.simulation.compiled_simulation import Compiled
 from gaitdisc.simulation.evaluating import Points, evaluate_many
 from gaitdisc.simulation.parts import Parameter, State
 from gaitdisc.simulation.running import compile_simulation
-from gaitdisc.simulation.simulation import Simulation
 
 AT_ONCE = 96
 MOST = 1000  # candidates that are scored on all segments; of more, some segments say which are worth it
@@ -145,20 +144,17 @@ class Scorer:
             observations=tuple((f"piece_{i}", piece) for i, piece in enumerate(pieces)),
             sensors=(),
         )
-        machine, values, states = self._extend(alone, slots, [cell.constants for cell in some])
+        machine = compile_simulation(alone)
+        values, states = self._extend(machine, slots, [cell.constants for cell in some])
         push = np.moveaxis(self.model.shooting.unfiltered(machine, states, values), 0, -2)
         return some, push.reshape(*push.shape[:2], -1)
 
-    def _extend(
-        self, simulation: Simulation, names: dict[str, str], tried: list[dict[str, float]]
-    ) -> tuple[Compiled, Values, Values]:
-        """A simulation with a candidate in it, made ready, and for each try parameters and states along the run.
+    def _extend(self, machine: Compiled, names: dict[str, str], tried: list[dict[str, float]]) -> tuple[Values, Values]:
+        """Parameters (version, parameter) and states along the run (version, segment, sample, state) of each try.
 
-        Parameters are (version, parameter), states (version, segment, sample, state), the candidate's own last.
-
+        machine: the simulation with a candidate in it, whose own states are the last
         names: for each slot the parameter that it is
         """
-        machine = compile_simulation(simulation)
         values = np.repeat(machine.defaults[None], len(tried), axis=0)
         values[:, : len(self.model.fit.values)] = self.model.fit.values
         for version, slots in enumerate(tried):
@@ -166,9 +162,9 @@ class Scorer:
                 values[version, machine.parameters.index(names[slot])] = value
         states = np.repeat(self.model.fit.states[None], len(tried), axis=0)
         if added := len(machine.states) - states.shape[-1]:
-            own = follow(self.model.shooting, simulation, values)[..., -added:]
+            own = follow(self.model.shooting, machine.simulation, values)[..., -added:]
             states = np.concatenate([states, np.stack([self.model.shooting.segments.of(one) for one in own])], axis=-1)
-        return machine, values, states
+        return values, states
 
     def _along(self, expressions: list[str]) -> Values:
         """Return expressions along the run (segment, sample, expression)."""
@@ -204,7 +200,8 @@ class Scorer:
         whole = limited or candidate.is_late
         over = np.ones(len(tried)) if whole else np.array([tried[0][slot] - none])
         simulation, names = candidate.in_fit(model.simulation, TRIED, dict.fromkeys(candidate.slots, 1.0))
-        machine, values, states = self._extend(simulation, names, tried)
+        machine = compile_simulation(simulation)
+        values, states = self._extend(machine, names, tried)
         seen = shooting.observed(machine, states, values)  # what changes though no state does
         seen -= shooting.observed(model.machine, model.fit.states[None], model.fit.values[None])
         columns = shooting.whiten(np.moveaxis(seen / over[:, None, None, None], 0, -1))

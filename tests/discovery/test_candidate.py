@@ -94,7 +94,7 @@ def test_a_limit_of_an_input_is_to_either_side_above_below_or_both():
     numbers, u = {"limit": "0.5", "upper_limit": "0.3", "lower_limit": "-0.2"}, np.linspace(-1, 1, 9)[:, None]
     t, x, machine = np.zeros(9), np.zeros((9, 2)), compile_simulation(mass())
     limits = np.array([[-9.0, 0.3], [-0.2, 9.0], [-0.5, 0.5], [-0.2, 0.3]])
-    for one, (low, high) in zip(saturations(mass()), limits, strict=True):
+    for one, (low, high) in zip(saturations(mass(), {}), limits, strict=True):
         clipped = compile_simulation(one.written(mass(), numbers))
         assert np.array_equal(clipped.rates(t, x, u), machine.rates(t, x, np.clip(u, low, high)))
 
