@@ -81,7 +81,10 @@ class Beam:
                 break
         for _ in range(EXCHANGES):
             best = self.best
-            self._exchange(best)
+            for gone in sorted(best.explanations) if len(best.explanations) > 1 else ():  # another in the place of each
+                fewer = self.without(best, gone)
+                for score in self._promising(fewer, NEXT):
+                    self._with(fewer, score)
             if self.best is best:
                 break
         return self.best
@@ -129,15 +132,6 @@ class Beam:
             parts = tuple(part for part in now.parts if part.candidate.identity != gone)
             self.known[wanted] = cross_validated(self.scale, now, parts)
         return self.known[wanted]
-
-    def _exchange(self, best: CrossValidated) -> None:
-        """Fit the sets with another explanation in the place of each of a set's own."""
-        if len(best.explanations) < 2:
-            return
-        for gone in sorted(best.explanations):
-            fewer = self.without(best, gone)
-            for score in self._promising(fewer, NEXT):
-                self._with(fewer, score)
 
     def material(self, now: CrossValidated) -> tuple[CrossValidated, list[Part]]:
         """Return a set less what closes too little of the gap, or not beyond chance; and what went, the last first."""

@@ -56,6 +56,7 @@ FLEXIBLE = (
     "phase_locked_moment",
     "unnamed",
     "input_saturation",
+    "force_saturation",
     "input_product",
     "periodic_forcing",
     "delayed_feedback",
@@ -278,8 +279,11 @@ def list_candidates(
     return tuple(found)
 
 
-def saturations(simulation: Simulation) -> tuple[Candidate, ...]:
-    """List inputs that act up to a limit alone: one above, one below, one of a size to either side, or two."""
+def saturations(simulation: Simulation, servos: Mapping[str, tuple[float, float, str]]) -> tuple[Candidate, ...]:
+    """List inputs that act up to a limit alone: one above, one below, one of a size to either side, or two.
+
+    servos: inputs whose force may be limited so: their gain, their force at 0 and that by motion
+    """
     two_sizes = {"lower_limit": "low quantiles of x", "upper_limit": "high quantiles of x"}
     forms = {
         "min({s}, {upper_limit})": {"upper_limit": "quantiles of x"},
@@ -287,11 +291,17 @@ def saturations(simulation: Simulation) -> tuple[Candidate, ...]:
         "min(max({s}, -{limit}), {limit})": {"limit": "half widths of x"},
         "min(max({s}, {lower_limit}), {upper_limit})": two_sizes,
     }
-    return tuple(
+    found = [
         Candidate("input_error", "input", signal.name, "input_saturation", (form,), limits, signal.name)
         for signal in simulation.inputs
         for form, limits in forms.items()
-    )
+    ]
+    for name, (gain, constant, moved) in servos.items():
+        rest, limits = f"{constant!r} + {moved}", {"limit": "half widths of x"}
+        form = f"(min(max({gain!r}*{{s}} + {rest}, -{{limit}}), {{limit}}) - ({rest}))/{gain!r}"
+        force = f"{gain!r}*{name} + {rest}"
+        found.append(Candidate("input_error", "input", name, "force_saturation", (form,), limits, force))
+    return tuple(found)
 
 
 def free_name(name: str, taken: Collection[str]) -> str:

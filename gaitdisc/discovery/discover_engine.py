@@ -102,7 +102,7 @@ def search(fit: EngineFit, base: EngineAnswer, request: Request, read: dict[Path
     mapping, engine, data, states = fit.mapping, fit.engine, fit.measured, fit.states
     request.progress(f"computing the accelerations of {engine.path.name} along the record by {engine.called}")
     linear, driven = expand(mapping, engine, data, states)
-    request = replace(request, added=saturations(mapping))
+    request = replace(request, added=saturations(mapping, getattr(engine, "servos", {})))
     if not request.effects:  # a limit is the input's own, and of no force
         request = replace(
             request, possible=lambda candidate: (candidate.kind, candidate.name) != ("port", "input_saturation")
@@ -126,15 +126,16 @@ def search(fit: EngineFit, base: EngineAnswer, request: Request, read: dict[Path
         found = replace(found, sentence=f"{found.sentence} {why}")
         return EngineAnswer(found, augmented, written, runs, engine)
     if found.effects and found.verdict != "wrong_initial_condition":
+        held = held_out(found, runs, data)
         if not engine.fibres:  # their runs take too long
-            found = fit.fitted(found, linear, runs.among(~held_out(found, runs, data)))
+            found = fit.fitted(found, linear, runs.among(~held))
         runs = replace(runs, after=fit.left(found, fit.parts, runs)).with_floor(hidden)
         both = list(zip(found.effects, fit.parts, strict=True))
         sure = tuple(part for one, part in both if request.effects or not one.small)
-        kept = sure if errs_less(runs, runs.before) else ()
+        kept = sure if errs_less(runs, runs.before, held) else ()
         for part in kept if len(kept) > 1 and not request.effects else ():
             others = tuple(one for one in fit.parts if one is not part)
-            if not errs_less(runs, fit.left(found, others, runs)):
+            if not errs_less(runs, fit.left(found, others, runs), held):
                 kept = tuple(one for one in kept if one is not part)
         if not kept:
             runs = replace(runs, after=runs.before)
@@ -158,9 +159,7 @@ def search(fit: EngineFit, base: EngineAnswer, request: Request, read: dict[Path
 def without_beside(found: Discovery, effects: tuple[FoundEffect, ...], idle: tuple[FoundEffect, ...]) -> Discovery:
     """Return an answer of some of its effects, and without explanations that only add to these."""
     kept, others = {(effect.name, effect.place) for effect in effects}, found.explanations[1:]
-    adding = [
-        explanation for explanation in others if kept < {(effect.name, effect.place) for effect in explanation.effects}
-    ]
+    adding = [other for other in others if kept < {(effect.name, effect.place) for effect in other.effects}]
     added = {(one.effects[-1].name, one.effects[-1].place) for one in adding}
     rivals = tuple(replace(rival, tied=rival.tied and (rival.name, rival.place) not in added) for rival in found.rivals)
     others = (explanation for explanation in others if explanation not in adding)

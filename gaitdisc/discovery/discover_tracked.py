@@ -113,9 +113,7 @@ def make_discovery(base: Simulation, joints: list[JointFinding]) -> Discovery:
     if not named:
         rivals = [_effect(base, one.rivals[0]) for one in ordered[:1]]
     units = tuple(sensor.unit for sensor in base.sensors)
-    measured, left = (
-        np.column_stack([getattr(joint.joint, name) for joint in joints]) for name in ("demanded", "left")
-    )
+    measured, left = (np.column_stack([getattr(one.joint, name) for one in joints]) for name in ("demanded", "left"))
     closed = np.column_stack([joint.named.predicted if joint.named else 0.0 * joint.joint.left for joint in joints])
     walk = [one[None] for one in (measured, measured - left, measured - left + closed)]
     found = Discovery(
@@ -130,8 +128,7 @@ def make_discovery(base: Simulation, joints: list[JointFinding]) -> Discovery:
         units=units,
         runs=Runs(np.arange(1), joints[0].joint.time[None], np.zeros((1, 0)), *walk, names=("whole walk",)),
     )
-    sizes = found.held_out.channels.values()
-    if named or not ordered or all(before < CRITERIA.agrees * floor for before, _, floor in sizes):
+    if named or not ordered or all(one.at_noise for one in joints):
         return write_sentence(found, base, tuple(best for _, best in named))
     first, (one,) = ordered[0], rivals
     before, after = (np.sqrt(np.mean((first.joint.left - each) ** 2)) for each in (0.0, first.rivals[0].explained))
@@ -242,9 +239,7 @@ def _simulation(walk: Pass) -> Simulation:
 def _candidates(base: Simulation, walk: Pass, more: tuple[Shape, ...]) -> list[Candidate]:
     """What may act at the joints: a device's shapes at their ports, muscles stronger or later, effects of the user."""
     joints = [walk.engine.coordinates[k] for k in walk.joints]
-    places = tuple(
-        Place("port", joint.port, ((joint.name, joint.speed),), (), (), joint.unit == "rad") for joint in joints
-    )
+    places = tuple(Place("port", one.port, ((one.name, one.speed),), (), (), one.unit == "rad") for one in joints)
     effects = {*EFFECTS, *(shape.name for shape in more)}
     every = list_candidates(base, places, (*read_shapes(), *more))
     return [one for one in every if one.kind == "parameter" or (one.name in effects and not one.states)]

@@ -55,10 +55,8 @@ def find_record_filter(
         cutoffs = dict.fromkeys(cutoffs, float(np.exp(np.mean(np.log(list(cutoffs.values()))))))
     passed = RecordFilter(tuple(cutoffs.get(number, cutoff) for number, cutoff in enumerate(stated)), measured.rate)
     findings = []
-    for number, cutoff in cutoffs.items():
-        what = (
-            f"assumed to be low-passed at {cutoff:.3g} Hz without lag (order 2, both directions), as its spectrum falls"
-        )
+    for number, hz in cutoffs.items():
+        what = f"assumed to be low-passed at {hz:.3g} Hz without lag (order 2, both directions), as its spectrum falls"
         spoils = "everything that depends on this filter; state lowpass in the simulation file if you know it"
         findings.append(Finding("note", "low-pass", measured.source, what, spoils, measured.channels[number]))
     return passed, tuple(findings)

@@ -11,6 +11,7 @@ from gaitdisc.discovery.criteria import CRITERIA
 from gaitdisc.discovery.result import Estimate
 from gaitdisc.discovery.scored_model import Part, ScoredModel
 from gaitdisc.recording.arrays import Values
+from gaitdisc.simulation.expression import names, parse
 from gaitdisc.simulation.simulation import Simulation
 from gaitdisc.simulation.unit_check import divide, find_unit, places_unit, unit_of_channel, unit_of_state
 
@@ -93,8 +94,10 @@ def slot_units(candidate: Candidate, base: Simulation) -> dict[str, str]:
         known |= {name: unit_of_state(base, rate) for name, rate in candidate.states.items()}
         factors = [divide(place, "1" if piece == "1" else find_unit(piece, known)) for piece in candidate.pieces]
         return dict(zip(candidate.slots, [*factors, *constants.values()], strict=True))
-    if candidate.constants:  # limits of an input
-        return dict.fromkeys(candidate.slots, own[candidate.place])
+    if candidate.constants:  # limits of an input, or of the force that it makes on a coordinate
+        moved = [own[name] for name in names(parse(candidate.role or candidate.place)) if name != candidate.place]
+        unit = ("N" if "m" in moved else "N m") if moved else own[candidate.place]
+        return dict.fromkeys(candidate.slots, unit)
     (slot,) = candidate.slots
     if slot in ("gain", "seconds"):
         return {slot: "1" if slot == "gain" else "s"}

@@ -57,9 +57,7 @@ class EngineFit:
 
     def in_mapping(self, found: Discovery, parts: tuple[Part, ...]) -> Simulation:
         """What was found, in the model's mapping; with the states that effects bring along behind the model's own."""
-        changed = self.mapping.with_values(
-            {correction.parameter: correction.found.value for correction in found.corrections}
-        )
+        changed = self.mapping.with_values({one.parameter: one.found.value for one in found.corrections})
         for part in parts:
             one, numbers = part.candidate, {slot: repr(value) for slot, value in part.values.items()}
             form = one.form if one.verdict == "input_error" else ""
@@ -169,10 +167,11 @@ class EngineFit:
         return replace(found, effects=tuple(effects))
 
 
-def errs_less(runs: OwnRuns, without: Values) -> bool:
-    """Whether the engine's runs without some of what was found (run, sample, channel) miss more, not by chance."""
+def errs_less(runs: OwnRuns, without: Values, held: NDArray[np.bool_]) -> bool:
+    """Whether runs without some of the answer (run, sample, channel) miss more by no chance, and held (run,) ones."""
     test = compare_errors(without, runs.after, runs.floor)
-    return test.bears_out and test.fall > CRITERIA.margin
+    before, after = (np.nansum((each[held] / runs.floor) ** 2) for each in (without, runs.after))
+    return bool(test.bears_out and test.fall > CRITERIA.margin and after <= before)
 
 
 def base_runs(engine: Engine, fit: EngineFit) -> OwnRuns:
@@ -207,9 +206,7 @@ def with_own_runs(found: Discovery, runs: OwnRuns, fit: EngineFit, base: Simulat
         channels = dict(zip(data.channels, map(tuple, rows.T.tolist()), strict=True))
         sizes.append(replace(size, before=whole[0], after=whole[1], noise_floor=whole[2], channels=channels))
     effects = tuple(replace(effect, held_out=1 - sizes[1].unexplained) for effect in found.effects)
-    named = [
-        replace(explanation, effects=effects, held_out=sizes[1]) for explanation in found.explanations[:1] if effects
-    ]
+    named = [replace(one, effects=effects, held_out=sizes[1]) for one in found.explanations[:1] if effects]
     shown = np.flatnonzero(held if held.any() else ~held)[:DRAWN]
     seen = data.observed[at.trial[shown, None], at.first[shown, None] + np.arange(at.length)]
     time = times[shown, None] + np.arange(at.length) / data.rate

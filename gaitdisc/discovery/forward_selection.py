@@ -64,7 +64,7 @@ class Selection:
         if len(best.parts) > 1:
             before, best = compared([before, self.refine(best)])
         gained = before.bic - best.bic
-        if gained < self.worth or not is_certain(best) or self.leaves_nothing_for(best):
+        if gained < self.worth or not is_certain(best) or (self.enough and 0 < len(self.model.parts) < len(best.parts)):
             return False
         self.explained, self.model = max(self.explained, gained), best
         self.explored.add(best.explanations)
@@ -81,14 +81,14 @@ class Selection:
         """By how much it must fall before the others are exchanged; two together may explain what neither does."""
         return CRITERIA.margin if len(self.model.parts) == 1 else self.worth
 
-    def leaves_nothing_for(self, longer: ScoredModel) -> bool:
+    @property
+    def enough(self) -> bool:
         """Whether what is selected leaves less than a simulation may err by: another may only stand in its place."""
-        more = 0 < len(self.model.parts) < len(longer.parts)
-        return more and self.scale is not None and self.scale.excess(self.model.fit) < CRITERIA.model_error
+        return self.scale is not None and self.scale.excess(self.model.fit) < CRITERIA.model_error
 
     def refine(self, pair: ScoredModel) -> ScoredModel:
         """Exchange what two or more explanations are, unless these leave far more than the sensors' noise."""
-        if len(pair.parts) == 2 and self.from_nothing:
+        if len(pair.parts) == 2 and self.from_nothing and not self.enough:
             firsts = [rival for rival in self.rivals if rival is not self.model]
             pair = beside_others(self.search, pair, firsts, self.explored)
         self.is_far = self.scale is not None and leaves(pair, self.scale.noise) > FAR

@@ -33,9 +33,8 @@ def with_constant_errors(simulation: Simulation) -> Simulation:
             (f"gain_of_{signal.name}", signal.gain, 1.0, "1"),
             (f"offset_of_{signal.name}", signal.sd, 0.0, signal.unit),
         ):
-            if (
-                error and not signal.wander and name not in simulation.values()
-            ):  # a file that was written has it already
+            # a file that was written has it already
+            if error and not signal.wander and name not in simulation.values():
                 bounds = value - BOUNDS * error, value + BOUNDS * error
                 simulation = simulation.with_parameter(Parameter(name, value, unit, *bounds))
                 text = f"{name}*{text}" if value else f"{text} + {name}"

@@ -28,6 +28,7 @@ GAP = 2  # samples to either side of it that nothing is learned from: what is ha
 CLOSED = 0.3  # of the squared moment that is left, which goes on held-out time
 ROUNDS, REFINED = 2, 4  # turns of learning the noise; candidates whose constants are searched between the grid's
 FLAT = 1e-9
+CHANCE = 0.05  # of a walk of which nothing is missing that is not said to agree
 UNTESTED = PairedTest(1.0, 0, 0.0)
 SAMPLES_A_NUMBER = 2.0  # of the low-pass: the samples that are kept hold each number that passes twice
 
@@ -92,6 +93,7 @@ class JointFinding:
     joint: ResidualMoment
     noise: Noise
     open_ones: int  # candidates at all joints
+    at_noise: bool = True  # whether noise of the angles makes as much (chi-squared test)
     named: Named | None = None
     rivals: tuple[Named, ...] = ()  # best first
 
@@ -193,8 +195,12 @@ class JointFinding:
 
 def joint_finding(joint: ResidualMoment, candidates: tuple[Candidate, ...], joints: int = 1) -> JointFinding:
     """Weigh every candidate at one of some joints; name the best where evidence and held-out time bear it out."""
+    from scipy.stats import chi2
+
     floor = CRITERIA.model_error * float(np.std(joint.demanded))
     found = JointFinding(joint, find_noise(joint.angle_noise[:, :, None], least=floor), len(candidates) * joints)
+    size = float((found._white(joint.left) ** 2).sum())
+    found = replace(found, at_noise=bool(chi2.sf(size, len(joint.time)) > CHANCE / joints))
     ordered: list[Named] = []
     for _ in range(ROUNDS):
         coarse = found.weigh(candidates, refined=False)
@@ -207,20 +213,16 @@ def joint_finding(joint: ResidualMoment, candidates: tuple[Candidate, ...], join
     near = [named for named in ordered if named.gained > max(ordered[0].gained - CRITERIA.margin, CRITERIA.margin)]
     proven = sorted(map(found.prove, near), key=lambda one: -one.held_out)
     alike = [named for named in proven if named.held_out > proven[0].held_out - CRITERIA.tie]  # of these the plainest
-    order = [
-        candidate.identity for candidate in candidates
-    ]  # of two with one penalty the first in the catalogue is the simpler
+    # of two with one penalty the first in the catalogue is the simpler
+    order = [candidate.identity for candidate in candidates]
     alike.sort(key=lambda one: (one.candidate.penalty(one.values), order.index(one.candidate.identity)))
     ordered = [*alike, *proven[len(alike) :], *ordered[len(near) :]]
-    first = ordered[0] if proven and is_supported(joint, ordered[0]) else None
-    return replace(found, named=first, rivals=tuple(ordered))
-
-
-def is_supported(joint: ResidualMoment, one: Named) -> bool:
-    """Whether an explanation is of a size that matters, and closes enough on held-out time."""
-    left, candidate = float(np.sum((joint.left - one.predicted) ** 2)), one.candidate
-    matters = not candidate.bounds or candidate.beyond_bounds(one.values["value"]) > 0
-    return matters and left < (1 - CLOSED) * float(np.sum(joint.left**2))
+    supported = False  # by an explanation of a size that matters, which closes enough on held-out time
+    if proven:
+        best, left = ordered[0], float(np.sum((joint.left - ordered[0].predicted) ** 2))
+        matters = not best.candidate.bounds or best.candidate.beyond_bounds(best.values["value"]) > 0
+        supported = matters and left < (1 - CLOSED) * float(np.sum(joint.left**2))
+    return replace(found, named=ordered[0] if supported else None, rivals=tuple(ordered))
 
 
 def _fall(before: float, after: float, count: int) -> float:

@@ -21,6 +21,7 @@ from gaitdisc.discovery.scored_model import Part, ScoredModel
 from gaitdisc.recording.arrays import Values
 from gaitdisc.simulation.compiled_simulation import Compiled
 from gaitdisc.simulation.evaluating import Points, evaluate_many
+from gaitdisc.simulation.parts import Parameter, State
 from gaitdisc.simulation.running import compile_simulation
 
 AT_ONCE = 96
@@ -129,31 +130,41 @@ class Scorer:
 
     def _with_own_states(self, candidate: Candidate, along: dict[str, Values]) -> tuple[list[_Cell], Values]:
         """Cells of a term with states of its own, and its pieces along the run (segment, sample, cell times piece)."""
-        some = self._cells(candidate, along)
-        machine, values, states = self._extend(candidate, [candidate.idle | cell.constants for cell in some])
-        pieces = candidate.pieces_at({slot: candidate.named(TRIED)[slot] for slot in candidate.constants or {}})
-        seen = tuple((f"piece_{i}", piece) for i, piece in enumerate(pieces))
-        observing = compile_simulation(replace(machine.simulation, observations=seen, sensors=()))
-        push = np.moveaxis(self.model.shooting.unfiltered(observing, states, values), 0, -2)
+        some, whole = self._cells(candidate, along), self.model.simulation
+        slots = {slot: candidate.named(TRIED)[slot] for slot in candidate.constants or {}}
+        own, pieces = candidate.states_at(slots), candidate.pieces_at(slots)
+        alone = replace(  # without what moves the simulation: its states are known along the run
+            whole,
+            states=(*whole.states, *(State(name) for name in own)),
+            parameters=(*whole.parameters, *(Parameter(name, 1.0) for name in slots.values())),
+            ports=(),
+            definitions=(*((port.name, "0") for port in whole.ports), *whole.definitions),
+            equations=(*((state.name, "0") for state in whole.states), *own.items()),
+            effects=(),
+            observations=tuple((f"piece_{i}", piece) for i, piece in enumerate(pieces)),
+            sensors=(),
+        )
+        machine = compile_simulation(alone)
+        values, states = self._extend(machine, slots, [cell.constants for cell in some])
+        push = np.moveaxis(self.model.shooting.unfiltered(machine, states, values), 0, -2)
         return some, push.reshape(*push.shape[:2], -1)
 
-    def _extend(self, candidate: Candidate, tried: list[dict[str, float]]) -> tuple[Compiled, Values, Values]:
-        """The simulation with a candidate in it, and for each try parameters and states along the run.
+    def _extend(self, machine: Compiled, names: dict[str, str], tried: list[dict[str, float]]) -> tuple[Values, Values]:
+        """Parameters (version, parameter) and states along the run (version, segment, sample, state) of each try.
 
-        Parameters are (version, parameter), states (version, segment, sample, state), the candidate's own last.
+        machine: the simulation with a candidate in it, whose own states are the last
+        names: for each slot the parameter that it is
         """
-        simulation, names = candidate.in_fit(self.model.simulation, TRIED, dict.fromkeys(candidate.slots, 1.0))
-        machine = compile_simulation(simulation)
         values = np.repeat(machine.defaults[None], len(tried), axis=0)
         values[:, : len(self.model.fit.values)] = self.model.fit.values
         for version, slots in enumerate(tried):
             for slot, value in slots.items():
                 values[version, machine.parameters.index(names[slot])] = value
         states = np.repeat(self.model.fit.states[None], len(tried), axis=0)
-        if candidate.states:
-            own = follow(self.model.shooting, simulation, values)[..., -len(candidate.states) :]
+        if added := len(machine.states) - states.shape[-1]:
+            own = follow(self.model.shooting, machine.simulation, values)[..., -added:]
             states = np.concatenate([states, np.stack([self.model.shooting.segments.of(one) for one in own])], axis=-1)
-        return machine, values, states
+        return values, states
 
     def _along(self, expressions: list[str]) -> Values:
         """Return expressions along the run (segment, sample, expression)."""
@@ -188,7 +199,9 @@ class Scorer:
             tried = [{slot: float(delay)} for delay in delays(self.rhythm, either_way)]
         whole = limited or candidate.is_late
         over = np.ones(len(tried)) if whole else np.array([tried[0][slot] - none])
-        machine, values, states = self._extend(candidate, tried)
+        simulation, names = candidate.in_fit(model.simulation, TRIED, dict.fromkeys(candidate.slots, 1.0))
+        machine = compile_simulation(simulation)
+        values, states = self._extend(machine, names, tried)
         seen = shooting.observed(machine, states, values)  # what changes though no state does
         seen -= shooting.observed(model.machine, model.fit.states[None], model.fit.values[None])
         columns = shooting.whiten(np.moveaxis(seen / over[:, None, None, None], 0, -1))

@@ -102,9 +102,7 @@ class Search:
 
     def sensible(self, model: ScoredModel) -> bool:
         """Whether every number of a model lies where it means what its name says."""
-        return bool(np.isfinite(model.fit.misfit)) and all(
-            low < value < high for value, (low, high) in self._limits(model)
-        )
+        return bool(np.isfinite(model.fit.misfit)) and all(low < one < high for one, (low, high) in self._limits(model))
 
     def shows(self, model: ScoredModel) -> bool:
         """Whether each relaxation is shorter than the longest trial, each yield narrower than what a run can show."""

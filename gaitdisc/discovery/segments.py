@@ -128,8 +128,6 @@ def cut_segments(
         raise SamplingError(f"a trial needs at least {4 + 2 * margin} samples", found, "Remove it.")
     if shortest // max(shortest // length, 1) != length:
         length = shortest // max(round(shortest / length), 1)
-    pairs = [
-        (trial, begin) for trial in trials for begin in range(0, int(samples[trial]) - 2 * margin - length + 1, length)
-    ]
+    pairs = [(trial, at) for trial in trials for at in range(0, int(samples[trial]) - 2 * margin - length + 1, length)]
     trial, begin = np.array(pairs, dtype=np.intp).T
     return Segments(trial, begin, length + 2 * margin, margin, every)

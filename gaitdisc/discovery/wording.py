@@ -64,13 +64,8 @@ def _say(discovery: Discovery, base: Simulation, parts: tuple[Part, ...]) -> str
     if discovery.verdict == "process_noise":
         where = at_place(effects[0].kind, effects[0].place)
         push = estimate_text(effects[0].estimates["strength"])
-        alone = discovery.held_out.of.endswith("quarter")
-        repeats = (
-            "one trial cannot show whether a deterministic effect is missing"
-            if alone
-            else "no deterministic effect is missing"
-        )
-        return f"Process noise of {push} (standard deviation) acts {where}; {repeats}."
+        other = "one trial cannot show whether a" if discovery.held_out.of.endswith("quarter") else "no"
+        return f"Process noise of {push} (standard deviation) acts {where}; {other} deterministic effect is missing."
     if discovery.verdict == "wrong_initial_condition":
         starts = " and ".join(f"{one.place} at {estimate_text(one.estimates['initial'])}" for one in effects)
         return f"Only the initial condition is wrong: trials begin with {starts}; the dynamics agree within noise."
@@ -154,7 +149,8 @@ def _one(effect: FoundEffect, part: Part, base: Simulation, where: tuple[Whereab
         return f"{said}, {outside}" if outside else said
     estimate = next(iter(effect.estimates.values()))
     subject = f"the {'driving signal' if kind == 'input_error' else 'measured'} {effect.place}"
-    if effect.name == "input_saturation":
+    if effect.name.endswith("_saturation"):
+        subject = f"the force of {effect.place}" if effect.name == "force_saturation" else subject
         limits = (SATURATED[name].format(estimate_text(one)) for name, one in effect.estimates.items())
         return f"{subject} saturates {' and '.join(limits)}"
     return f"{subject} {_signal(effect.name, estimate)}"
@@ -214,15 +210,12 @@ def _say_unnamed(effect: FoundEffect, base: Simulation, where: tuple[Whereabouts
     over = f", a function of {' and '.join(seen)}," if seen else ""
     stride = _stride(effect, where)
     acts = f" ({stride})" if stride else ""
-    missing = f"An effect is missing {at_place(effect.kind, effect.place)} that is not in the catalogue"
+    missing = f"An effect is missing {at_place(effect.kind, effect.place)}"
     if effect.reads_as_effect:
-        return (
-            f"An effect is missing {at_place(effect.kind, effect.place)}{acts}; the fitted shape is "
-            f"{effect.reads_as}, {spoken(effect.reads_as_effect)} of the catalogue"
-        )
-    if effect.reads_as:
-        return f"{missing}{acts}; a fitted shape{over} is approximately {effect.reads_as}"
-    return f"{missing}{acts}; a fitted shape{over} replaces it"
+        shape = f"{effect.reads_as}, {spoken(effect.reads_as_effect)} of the catalogue"
+        return f"{missing}{acts}; the fitted shape is {shape}"
+    shape = f"is approximately {effect.reads_as}" if effect.reads_as else "replaces it"
+    return f"{missing} that is not in the catalogue{acts}; a fitted shape{over} {shape}"
 
 
 def _say_tied(discovery: Discovery) -> str:

@@ -15,6 +15,9 @@ from scipy.spatial.transform import Rotation
 
 from gaitdisc.recording.arrays import Values
 
+ABOUT = tuple(("rad", f" about {axis}") for axis in "yxz")  # unit and name of each
+ALONG = tuple(("m", f" along {axis}") for axis in "xyz")
+WAYS = ((*ALONG, *ABOUT), ABOUT, (("m", ""),), (("rad", ""),))  # of a free joint, a ball, a slide and a hinge
 STEEPEST = 1.4  # [rad], of the angle in the middle: at a right angle the other two are one
 NUDGE = 1e-5  # [s]
 

@@ -122,10 +122,7 @@ class _Misfit:
         self.controls = measured.drive.inputs[trial, : samples[trial]]
 
     def with_factors(self, factors: Values) -> float:
-        """Share of the accelerations' squares that is missed, mean over coordinates.
-
-        factors (coordinate,): which each is multiplied with
-        """
+        """Share of the accelerations' squares that is missed, mean over coordinates times factors (coordinate,)."""
         q, v = self.q * factors, self.v * factors
         points = np.linspace(0, len(q) - 1, min(POINTS, len(q))).round().astype(np.intp)
         own = np.gradient(v, 1 / self.rate, axis=0)[points]

@@ -75,10 +75,7 @@ def expand(
 
 
 def compute_motion(engine: Engine, measured: Measured, states: Values) -> list[Motion]:
-    """Motion of each trial with what the engine computes along it.
-
-    states (trial, sample, state): smoothed
-    """
+    """Motion of each trial with what the engine computes along smoothed states (trial, sample, state)."""
     n, drive = len(engine.coordinates), measured.drive
     trials = zip(states, drive.inputs, drive.samples, strict=True)
     return [engine.along(x[:samples, :n], x[:samples, n:], u[:samples], drive.rate) for x, u, samples in trials]

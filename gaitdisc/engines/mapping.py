@@ -155,10 +155,13 @@ def with_strength(mapping: Simulation, engine: Engine, name: str, gain: float) -
     return with_input_changed(mapping, name, f"{gain!r}*{name}")
 
 
-def replace_inputs(mapping: Simulation, time: Values, u: Values, rate: float) -> Values:
-    """Controls of one trial (sample, control) with those that the mapping replaces by an expression of the recorded."""
+def replace_inputs(mapping: Simulation, time: Values, u: Values, rate: float, x: Values | None = None) -> Values:
+    """Controls of one trial (sample, control) with those that the mapping replaces by an expression of the recorded.
+
+    x (sample, state): states that may stand in it; 0 where absent
+    """
     plain = replace(mapping, model="", effects=(), definitions=())
-    points = Points(time, np.zeros((len(time), len(plain.states))), u, rate=rate)
+    points = Points(time, np.zeros((len(time), len(plain.states))) if x is None else x, u, rate=rate)
     changed, called = u.copy(), [one.name for one in mapping.inputs]
     for name, expression in mapping.definitions:
         changed[:, called.index(name.removeprefix(REPLACED))] = evaluate(plain, expression, points)

@@ -12,7 +12,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from gaitdisc.engines.ball_joints import to_accelerations, to_coordinates, to_forces, to_positions
+from gaitdisc.engines.ball_joints import WAYS, to_accelerations, to_coordinates, to_forces, to_positions
 from gaitdisc.engines.motion import ByHand, Coordinate, Motion, Pushes, Values, new_name, refuse_absent
 from gaitdisc.engines.mujoco_text import with_effect, with_range, with_value
 from gaitdisc.errors import ReadError, SchemaError
@@ -23,15 +23,6 @@ PASSIVE = {  # numbers of a joint or tendon: their units where it turns and wher
     "damping": ("N m s/rad", "N s/m", "-{speed}"),
     "frictionloss": ("N m", "N", "-sign({speed})"),
 }
-
-
-ABOUT = tuple(("rad", f" about {axis}") for axis in "yxz")
-WAYS = (
-    (*(("m", f" along {axis}") for axis in "xyz"), *ABOUT),
-    ABOUT,
-    (("m", ""),),
-    (("rad", ""),),
-)  # free, ball, slide, hinge
 
 
 class _Place(NamedTuple):
@@ -100,18 +91,15 @@ class MujocoModel:
             for name, called, kind, own in zip(names, words, kinds, ranges, strict=True)
             for unit, way in WAYS[kind]
         )
-        places = self._places_of_parts()
-        taken = {"gravity", *places} | {each for one in self.coordinates for each in (one.name, one.speed, one.port)}
+        parts = self._places_of_parts()
+        taken = {"gravity", *parts} | {each for one in self.coordinates for each in (one.name, one.speed, one.port)}
         self.controls = tuple(Input(name, "1", "actuator") for name in self._names("control", model.nu, taken))
-        self._places = places | self._places_of_controls()
+        self._places = parts | self._places_of_controls()
         self.parameters = tuple(Parameter(name, self._value(name), one.unit) for name, one in self._places.items())
-        at_zero = {("joint", k) for k in np.flatnonzero(kinds < 2)}
-        self.offered = tuple(
-            one.name
-            for one, (*_, part) in zip(self.parameters, self._places.values(), strict=True)
-            if (one.value and "gear" not in one.name)
-            or ("loss" not in one.name and (part[0] == "tendon" or part in at_zero))
-        )
+        at_zero = {("joint", k) for k in np.flatnonzero(kinds < 2)} | {("tendon", k) for k in range(model.ntendon)}
+        numbers = zip(self.parameters, self._places.values(), strict=True)
+        said = ((one.name, one.value and "gear" not in one.name, place.part in at_zero) for one, place in numbers)
+        self.offered = tuple(name for name, there, free in said if there or (free and "loss" not in name))
         limited = model.actuator_ctrllimited[:, None]
         self.control_ranges = np.where(limited, model.actuator_ctrlrange, (-np.inf, np.inf))  # (control, low and high)
         self._stateful = self._model.actuator_actadr >= 0
@@ -121,16 +109,13 @@ class MujocoModel:
     def accelerations(self, at: Motion, values: Mapping[str, float], forces: Values | None = None) -> Values:
         """Accelerations (point, coordinate), with other values of some parameters and forces besides."""
         model, data, forward = self.with_values(values)._model, self._data, self._mujoco.mj_forward
-        found = np.empty_like(at.q)
-        own = self._stateful
+        found, own = np.empty_like(at.q), self._stateful
         acts = model.actuator_actadr[own]
         qpos, qvel = to_positions(self.balls, at.q, at.v)
         forces = None if forces is None else to_forces(self.balls, at.q, forces)
         for point in range(len(at.q)):
-            data.qpos[:] = qpos[point]
-            data.qvel[:] = qvel[point]
-            data.ctrl[~own] = at.u[point, ~own]
-            data.act[acts] = at.u[point, own]
+            data.qpos[:], data.qvel[:] = qpos[point], qvel[point]
+            data.ctrl[~own], data.act[acts] = at.u[point, ~own], at.u[point, own]
             data.qfrc_applied[:] = 0.0 if forces is None else forces[point]
             data.qacc_warmstart[:] = 0.0
             forward(model, data)
@@ -227,17 +212,30 @@ class MujocoModel:
         """Text of the model with another value of a parameter."""
         kind, number = self._places[name].part
         model, share = self._model, value / (self._value(name) or 1.0)
-        inertial = ""
-        if kind == "body" and name != "gravity":  # as MuJoCo has computed it from the body's shapes
-            numbers = {"pos": model.body_ipos, "quat": model.body_iquat, "diaginertia": share * model.body_inertia}
-            own = (f'{word}="{" ".join(map(repr, each[number].tolist()))}"' for word, each in numbers.items())
-            inertial = f'<inertial mass="{value!r}" {" ".join(own)}/>'
-        return with_value(text, name, value, kind, self._called(kind, number), inertial)
+        numbers = {"pos": model.body_ipos, "quat": model.body_iquat, "diaginertia": share * model.body_inertia}
+        inertia = {word: each[number] for word, each in numbers.items()} if name.endswith("_mass") else {}
+        return with_value(text, name, value, kind, self._called(kind, number), inertia)
 
-    def text_with_range(self, text: str, control: int, low: float, high: float) -> str | None:
-        """Text of the model with a narrower range of a control."""
-        low, high = np.clip((low, high), *self.control_ranges[control]).tolist()
-        return with_range(text, self._called("actuator", control), low, high)
+    @property
+    def servos(self) -> dict[str, tuple[float, float, str]]:
+        """Of each control that is no force itself: its gain, and its force at 0 and that by its joint's motion."""
+        model, enums, found = self._model, self._mujoco, dict[str, tuple[float, float, str]]()
+        for number, one in enumerate(self.controls):
+            joint, gear = model.actuator_trnid[number, 0], model.actuator_gear[number, 0]
+            on_joint = model.actuator_trntype[number] == enums.mjtTrn.mjTRN_JOINT and model.jnt_type[joint] > 1
+            gains = model.actuator_gaintype[number], model.actuator_biastype[number]
+            if on_joint and gains == (enums.mjtGain.mjGAIN_FIXED, enums.mjtBias.mjBIAS_AFFINE):
+                at = self.coordinates[model.jnt_dofadr[joint]]
+                constant, position, speed = model.actuator_biasprm[number, :3].tolist()
+                moved = f"{float(gear * position)!r}*{at.name} + {float(gear * speed)!r}*{at.speed}"
+                found[one.name] = float(model.actuator_gainprm[number, 0]), constant, moved
+        return found
+
+    def text_with_range(self, text: str, control: int, low: float, high: float, of: str = "ctrl") -> str | None:
+        """Text of the model with a narrower range of a control, or of its force."""
+        if of == "ctrl":
+            low, high = np.clip((low, high), *self.control_ranges[control]).tolist()
+        return with_range(text, self._called("actuator", control), low, high, of)
 
     def text_with_effect(self, text: str, effect: ByHand) -> str | None:
         """Text of the model with an effect on a joint."""

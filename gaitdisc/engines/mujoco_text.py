@@ -15,9 +15,9 @@ AS_FREE = '<joint type="free" armature="0" stiffness="0" damping="0" frictionlos
 MORE_OF = {"viscous_damping": "damping", "coulomb_friction": "frictionloss"}  # effect: attribute of a joint
 
 
-def with_range(text: str, called: str, low: float, high: float) -> str | None:
-    """Text with the range of an actuator's control; None where the file does not name it."""
-    for name, value in (("ctrllimited", "true"), ("ctrlrange", f"{low!r} {high!r}")):
+def with_range(text: str, called: str, low: float, high: float, of: str) -> str | None:
+    """Text with the range of an actuator's control, or of its force; None where the file does not name it."""
+    for name, value in ((f"{of}limited", "true"), (f"{of}range", f"{low!r} {high!r}")):
         tags = [one for one in _tags(text) if _is(text, one, "actuator", called)]
         if len(tags) != 1:
             return None
@@ -25,12 +25,12 @@ def with_range(text: str, called: str, low: float, high: float) -> str | None:
     return text
 
 
-def with_value(text: str, name: str, value: float, kind: str, called: str, inertial: str = "") -> str | None:
+def with_value(text: str, name: str, value: float, kind: str, called: str, shape: Mapping | None = None) -> str | None:
     """Text with a number of a joint, body or option changed; None where the file does not say it.
 
     name: `<part>_mass`, `_stiffness`, `_damping`, `_frictionloss` (of a joint or tendon), `_gear`, `_force`, or gravity
     kind, called: tag and name of the element in the file
-    inertial: element of a body whose shapes have no mass of their own
+    shape: attributes of a body's inertia, as MuJoCo has computed it from shapes that have no mass of their own
     """
     if name == "gravity":
         tags = [one for one in _tags(text) if one[0] == "option"]
@@ -44,6 +44,8 @@ def with_value(text: str, name: str, value: float, kind: str, called: str, inert
     if len(tags) != 1:
         return None
     if word == "mass":
+        words = (f'{word}="{" ".join(map(repr, each.tolist()))}"' for word, each in (shape or {}).items())
+        inertial = f'<inertial mass="{value!r}" {" ".join(words)}/>' if shape else ""
         return _with_mass(text, tags[0], value, inertial)
     if tags[0][0] == "freejoint" and text[tags[0][2] - 2] == "/":
         text = text[: tags[0][1]] + AS_FREE + text[tags[0][1] + len("<freejoint") :]

@@ -133,9 +133,6 @@ class OpensimModel:
         """Text of the model with another value of a parameter."""
         return with_value(text, self._called[name], value)
 
-    def text_with_range(self, *_: object) -> str | None:
-        """None: there is no such range."""
-
     def text_with_effect(self, text: str, effect: ByHand) -> str | None:
         """Text of the model with an effect on a coordinate."""
         return with_effect(text, effect, self.coordinates[effect.coordinate])

@@ -5,7 +5,7 @@ from __future__ import annotations
 import os
 import pickle
 import sys
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from functools import partial
 from typing import Any, BinaryIO
 
@@ -27,17 +27,16 @@ class Ready:
         self, osim: Any, model: Any, values: dict[str, float], profiles: Any = None, motion: Any = None
     ) -> None:
         self.osim, self.model = osim, model
-        controllers = model.getControllerSet()
-        for k in range(controllers.getSize()):  # the controls of the question, and no others, drive it
-            controllers.get(k).setEnabled(False)
+        for controller in model.getControllerSet():  # the controls of the question, and no others, drive it
+            controller.setEnabled(False)
         self.actuators = [one.getName() for one in self.model.getActuators()]
         self.numbers = _list_numbers(model, osim)
         for name, value in values.items():
             self.numbers[name][2](float(value))
-        every = self.model.getCoordinateSet()
+        every = model.getCoordinateSet()
         names = [every.get(k).getName() for k in range(every.getSize())]
         self.locked = [name for name in names if every.get(name).getDefaultLocked()]
-        self.couplers = couplers(self.model, osim)
+        self.couplers = couplers(model, osim)
         self.names = free = [name for name in names if name not in self.locked and name not in self.couplers]
         for name in free:
             force = osim.CoordinateActuator(name)
@@ -46,23 +45,17 @@ class Ready:
             model.addForce(force)
         if profiles is not None:  # controls along time, linear between samples
             controller = osim.PrescribedController()
-            for name, along in zip(self.actuators, profiles[1].T, strict=True):
-                line = osim.PiecewiseLinearFunction()
-                for t, value in zip(profiles[0], along, strict=True):
-                    line.addPoint(float(t), float(value))
+            lines = _follow(osim.PiecewiseLinearFunction, *profiles)
+            for name, line in zip(self.actuators, lines, strict=True):
                 controller.addActuator(model.getActuators().get(name))
                 controller.prescribeControlForActuator(name, line)
             model.addController(controller)
         if motion is not None:  # coordinates along time, smooth between samples
-            for name, along in zip(free, motion[1].T, strict=True):
-                line = osim.SimmSpline()
-                for t, value in zip(motion[0], along, strict=True):
-                    line.addPoint(float(t), float(value))
-                self.model.getCoordinateSet().get(name).setPrescribedFunction(line)
-                self.model.getCoordinateSet().get(name).setDefaultIsPrescribed(True)
-        self.state = state = self.model.initSystem()
-        every = self.model.getCoordinateSet()
-        self.free = [every.get(name) for name in free]
+            for name, line in zip(free, _follow(osim.SimmSpline, *motion), strict=True):
+                every.get(name).setPrescribedFunction(line)
+                every.get(name).setDefaultIsPrescribed(True)
+        self.state = state = model.initSystem()
+        self.free = [model.getCoordinateSet().get(name) for name in free]
         self.dependent = [one.getName() for one in self.free if one.isDependent(state)]
         self.activations, self.fibres, self.others = self._states_of_muscles()
 
@@ -94,9 +87,7 @@ class Ready:
             one.setSpeedValue(self.state, float(speed))
         for name, (others, function, scale) in self.couplers.items():
             leading = [every.get(other) for other in others]
-            where = self.osim.Vector(len(others), 0.0)
-            for k, one in enumerate(leading):
-                where.set(k, one.getValue(self.state))
+            where = self.osim.Vector.createFromMat(np.array([one.getValue(self.state) for one in leading]))
             own = [scale * function.calcDerivative(self.osim.StdVectorInt([k]), where) for k in range(len(others))]
             every.get(name).setValue(self.state, scale * function.calcValue(where), False)
             speeds = [one.getSpeedValue(self.state) for one in leading]
@@ -104,8 +95,9 @@ class Ready:
             slopes[name] = dict(zip(others, own, strict=True))
         return slopes
 
-    def tense(self, u: Any, z: Any = None) -> None:
-        """Put activations in, and lengths of fibres: without them those of the equilibrium."""
+    def tense(self, q: Any, v: Any, u: Any, z: Any = None) -> None:
+        """Put a posture in, activations, and lengths of fibres: without them those of the equilibrium."""
+        self.placed(q, v)
         states = self.state.updZ()
         for number, place in self.activations.items():
             states.set(place, max(float(u[number]), REST))
@@ -116,43 +108,42 @@ class Ready:
 
     def rates(self, controls: Any) -> list[float]:
         """Accelerations and fibres' speeds under the controls of the model's own actuators, then of the ports."""
-        given = self.osim.Vector(len(controls), 0.0)
-        for k, value in enumerate(controls):
-            given.set(k, float(value))
         self.model.realizeVelocity(self.state)
-        self.model.setControls(self.state, given)
+        self.model.setControls(self.state, self.osim.Vector.createFromMat(np.array(controls, float)))
         self.model.realizeAcceleration(self.state)
         found = [one.getAccelerationValue(self.state) for one in self.free]
         return [*found, *self.state.getZDot().to_numpy()[self.fibres]] if self.fibres else found
 
 
+def _follow(kind: Callable[[], Any], time: Any, values: Any) -> Iterator[Any]:
+    """A function of time through the values of each column (sample, column)."""
+    for along in values.T:
+        line = kind()
+        for t, value in zip(time, along, strict=True):
+            line.addPoint(float(t), float(value))
+        yield line
+
+
 def couplers(model: Any, osim: Any) -> dict[str, tuple[list[str], Any, float]]:
     """Coordinates that follow others by a function: these others, the function, and its scale."""
     found = {}
-    constraints = model.getConstraintSet()
-    for k in range(constraints.getSize()):
-        one = osim.CoordinateCouplerConstraint.safeDownCast(constraints.get(k))
+    for constraint in model.getConstraintSet():
+        one = osim.CoordinateCouplerConstraint.safeDownCast(constraint)
         if one is not None and one.get_isEnforced():
             names = one.getIndependentCoordinateNames()
             leading = [names.get(number) for number in range(names.getSize())]
-            found[one.getDependentCoordinateName()] = (
-                leading,
-                one.getFunction(),
-                float(one.getPropertyByName("scale_factor").toString()),
-            )
+            scale = float(one.getPropertyByName("scale_factor").toString())
+            found[one.getDependentCoordinateName()] = leading, one.getFunction(), scale
     return found
 
 
 def _list_numbers(model: Any, osim: Any) -> dict[str, tuple[float, str, Callable[[float], None]]]:
     """Every number of a model that may be changed by name: its value, its unit, and what puts another in."""
-    vector = model.getGravity()
-    gravity = np.array([vector.get(k) for k in range(3)])
+    found = dict[str, tuple[float, str, Callable[[float], None]]]()
+    gravity = model.getGravity().to_numpy().copy()
     size = float(np.linalg.norm(gravity))
-    found = (
-        {"gravity": (size, "m/s^2", lambda value: model.setGravity(osim.Vec3(*(gravity * value / size))))}
-        if size
-        else {}
-    )
+    if size:
+        found["gravity"] = size, "m/s^2", lambda value: model.setGravity(osim.Vec3(*(gravity * value / size)))
     for body in model.getBodySet():
         if body.getMass():
             found[f"{body.getName()}_mass"] = body.getMass(), "kg", partial(_set_mass, osim, body)
@@ -200,29 +191,26 @@ class _Answers:
             (each.getName(), each.getMotionType() == ROTATIONAL, *(own if each.getDefaultClamped() else UNBOUND))
             for each, own in free
         ]
-        described = {"coordinates": coordinates, "controls": controls, "muscles": bool(one.activations or one.fibres)}
-        described["parameters"] = [
-            (name, value, unit, self._moves(name, value)) for name, (value, unit, _) in one.numbers.items()
-        ]
-        return described | {"others": one.others, "dependent": one.dependent, "locked": one.locked}
+        numbers = [(name, value, unit, self._moves(name, value)) for name, (value, unit, _) in one.numbers.items()]
+        described = {"coordinates": coordinates, "controls": controls, "parameters": numbers, "locked": one.locked}
+        muscles = bool(one.activations or one.fibres)
+        return described | {"muscles": muscles, "others": one.others, "dependent": one.dependent}
 
     def _moves(self, name: str, value: float) -> bool:
         """Whether another value changes an acceleration in one posture."""
         found = []
         for values in ({}, {name: 1.1 * value}):
             one = self.with_values(values)
-            one.placed([each.getDefaultValue() + 0.1 for each in one.free], [0.5] * len(one.free))
-            controls = [0.1] * len(one.actuators)
-            one.tense(controls)
-            found.append(one.rates([*controls, *[0.0] * len(one.free)])[: len(one.free)])
+            n, controls = len(one.free), [0.1] * len(one.actuators)
+            one.tense([each.getDefaultValue() + 0.1 for each in one.free], [0.5] * n, controls)
+            found.append(one.rates([*controls, *[0.0] * n])[:n])
         return not np.allclose(*found, rtol=1e-9, atol=0.0)
 
     def rates(self, q: Any, v: Any, u: Any, z: Any, values: dict[str, float], forces: Any) -> Any:
         one = self.with_values(values)
         found = np.empty((len(q), q.shape[1] + len(one.fibres)))
         for point in range(len(q)):
-            one.placed(q[point], v[point])
-            one.tense(u[point], None if z is None else z[point])
+            one.tense(q[point], v[point], u[point], None if z is None else z[point])
             found[point] = one.rates([*u[point], *forces[point]])
         return found
 
@@ -231,8 +219,7 @@ class _Answers:
         one = self.with_values({})
         found = np.empty((len(q), len(one.fibres)))
         for point in range(len(q)):
-            one.placed(q[point], np.zeros_like(q[point]))
-            one.tense(u[point])
+            one.tense(q[point], 0.0 * q[point], u[point])
             found[point] = one.state.getZ().to_numpy()[one.fibres]
         return found
 
@@ -244,8 +231,7 @@ class _Answers:
         motion = np.concatenate([early[:, 0], time]), whole
         one = self.fresh({}, (time, controls), motion)
         one.state.setTime(-BEFORE)
-        one.placed(whole[0], np.zeros_like(whole[0]))
-        one.tense(controls[0])
+        one.tense(whole[0], 0.0 * whole[0], controls[0])
         manager = self.osim.Manager(one.model)
         manager.setIntegratorAccuracy(ACCURACY_ALONG)
         manager.initialize(one.state)
@@ -263,8 +249,7 @@ class _Answers:
             one = ready.get(driven.tobytes()) or self.fresh({}, (time, driven))
             ready[driven.tobytes()] = one
             one.state.setTime(0.0)
-            one.placed(q[run], v[run])
-            one.tense(u[run], None if z is None else z[run])
+            one.tense(q[run], v[run], u[run], None if z is None else z[run])
             manager = self.osim.Manager(one.model)
             manager.setIntegratorAccuracy(ACCURACY[bool(one.activations)])
             manager.initialize(one.state)

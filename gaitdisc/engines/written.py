@@ -15,6 +15,7 @@ import numpy as np
 from gaitdisc.engines.engine import Engine, read_model
 from gaitdisc.engines.mapping import REPLACED, read_mapping, replace_inputs
 from gaitdisc.engines.motion import FAR, ByHand, Motion, Pushes, Values
+from gaitdisc.engines.mujoco_model import MujocoModel
 from gaitdisc.errors import GaitdiscError, SchemaError
 from gaitdisc.simulation.evaluating import Points, evaluate
 from gaitdisc.simulation.expression import names, parse
@@ -61,7 +62,7 @@ def write_model(engine: Engine, augmented: Simulation, native: bool = True) -> W
         changes.append((f"{term.name} at {term.place}", partial(_adding, engine, augmented, term), (term,), {}))
     for what, change, more_forces, more_values in changes:
         tried = change(text) if native or not more_forces else None
-        wanted = (augmented, (*forces, *more_forces), values | more_values)
+        wanted = (replace(augmented, definitions=()), (*forces, *more_forces), values | more_values)
         deviation, read = _deviation(engine, tried, *wanted)
         if tried is None or read is None or deviation > SAME:
             said = "has no form in the model's own file"
@@ -85,12 +86,14 @@ def write_model(engine: Engine, augmented: Simulation, native: bool = True) -> W
     definitions = augmented.definitions
     for name, expression in definitions:
         said = "has no form in the model's file: only augmented.toml contains it"
-        read = _ranged(current, augmented, text, name) if native else None
+        read = _ranged(current, augmented, text, name) if native and isinstance(current, MujocoModel) else None
         if read is not None:
             definitions = tuple(one for one in definitions if one[0] != name)
             text, current = read.path.read_text(encoding="utf-8"), read
-            said = "is written into the model as the range of that control"
+            said = f"is written into the model as the range of that control{_of_force(augmented, expression)}"
         notes.append(f"{name.removeprefix(REPLACED)}, as {expression}, {said}")
+    # the controls of a run are as recorded: none follows from the motion
+    absent += [name.removeprefix(REPLACED) for name, one in definitions if _of_force(augmented, one)]
     if text == engine.path.read_text(encoding="utf-8"):
         notes.append(f"the written model is the same as {engine.path.name}")
     current = getattr(current, "with_values", lambda _: current)(held)
@@ -134,20 +137,32 @@ def _adding(engine: Engine, augmented: Simulation, term: Term, text: str) -> str
     return None if number < 0 else engine.text_with_effect(text, ByHand(term, number, at))
 
 
-def _ranged(engine: Engine, augmented: Simulation, text: str, name: str) -> Engine | None:
+def _ranged(engine: MujocoModel, augmented: Simulation, text: str, name: str) -> Engine | None:
     """Model of a text with a control's definition as its range; None where it is not the same."""
     control, controls = name.removeprefix(REPLACED), [one.name for one in engine.controls]
     number, probes = controls.index(control), FAR * np.linspace(-1, 1, PROBED) ** 3  # densest where limits are
     u, still = np.tile(probes[:, None], len(controls)), np.zeros((PROBED, len(engine.coordinates)))
     clipped = replace_inputs(augmented, probes, u, PROBED_HZ)
     low, high = clipped[[0, -1], number].tolist()
-    alone = low < high and set(names(parse(dict(augmented.definitions)[name]))) == {control}
+    expression = dict(augmented.definitions)[name]
+    if control in engine.servos and _of_force(augmented, expression):
+        gain, constant, _ = engine.servos[control]
+        low, high = sorted((gain * low + constant, gain * high + constant))
+        tried = engine.text_with_range(text, number, low, high, "force")
+        deviation, read = _deviation(engine, tried, replace(augmented, definitions=((name, expression),)), (), {})
+        return read if deviation < SAME else None
+    alone = low < high and set(names(parse(expression))) == {control}
     tried = engine.text_with_range(text, number, low, high) if alone else None
     if tried is None:
         return None
     read = load_beside(engine.path, tried)
     acting, wanted = (one.along(still, still, each, PROBED_HZ).u for one, each in ((read, u), (engine, clipped)))
     return read if np.array_equal(acting[:, number], wanted[:, number]) else None
+
+
+def _of_force(augmented: Simulation, expression: str) -> str:
+    """What is limited of a control beside itself, by whether its expression has states."""
+    return "" if {one.name for one in augmented.states}.isdisjoint(names(parse(expression))) else "'s force"
 
 
 def _by_hand(augmented: Simulation, term: Term, x: Values) -> Values:
@@ -181,7 +196,8 @@ def _deviation(
         read = load_beside(engine.path, text, getattr(engine, "other", read_model))
     except GaitdiscError:
         return np.inf, None
-    wanted = engine.accelerations(at, values, push)
+    driven = replace_inputs(augmented, np.arange(STATES) / PROBED_HZ, at.u, PROBED_HZ, x)
+    wanted = engine.accelerations(replace(at, u=driven), values, push)
     found = read.accelerations(at, {})
     return float(np.abs(found - wanted).max() / np.abs(wanted).max()), read
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 import keyword
 import math
 import re
-from collections.abc import Iterable, Iterator
+from collections.abc import Collection, Iterable, Iterator
 from functools import lru_cache
 
 from gaitdisc.channel import nearest_word
@@ -134,8 +134,8 @@ def _check_equations(simulation: Parts) -> None:
 
 def _check_expressions(simulation: Parts) -> None:
     ports = tuple(port.name for port in simulation.ports)
-    plain = (*simulation.signals, *(parameter.name for parameter in simulation.parameters), "t")
-    known = (*plain, *ports)
+    plain = dict.fromkeys((*simulation.signals, *(parameter.name for parameter in simulation.parameters), "t"))
+    known = plain | dict.fromkeys(ports)
     for place, text in simulation.expressions():
         section, name = place
         term = simulation.effects[int(name)] if section == "effects" else None
@@ -146,10 +146,10 @@ def _check_expressions(simulation: Parts) -> None:
         except SimulationError as error:
             raise error.at(*place) from None
         if section == "definitions":
-            known = (*known, name)
+            known[name] = None
 
 
-def check_expression(text: str, known: tuple[str, ...], simulation: Parts) -> Tree:
+def check_expression(text: str, known: Collection[str], simulation: Parts) -> Tree:
     """Tree of an expression whose names all have values.
 
     simulation: whose states and inputs may be delayed, by its parameters
@@ -157,7 +157,7 @@ def check_expression(text: str, known: tuple[str, ...], simulation: Parts) -> Tr
     tree, named, late = _parse_parts(text)
     unknown = next((name for name in named if name not in known), None)
     if unknown is not None:
-        raise unknown_name(text, unknown, known)
+        raise unknown_name(text, unknown, tuple(known))
     if not late:
         return tree
     fixed = set(known) - set(simulation.signals) - {"t"} - {port.name for port in simulation.ports}

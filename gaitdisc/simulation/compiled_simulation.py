@@ -106,7 +106,7 @@ class Compiled:
         lanes, integrate = self._integrator(values)
         program = right.placed(lanes), right.setup, right.constants, self._delays(right), right.registers
         driven, before = self._driven(drive), self._before(past)
-        plan = (steps, substeps, lanes)
+        plan = (steps, substeps, lanes, np.flatnonzero(right.used()[1 + len(self.states) :][: len(self.inputs)]))
         with np.errstate(all="ignore"):  # a row that leaves every bound is reported, not warned of
             integrate(program, driven, (place, starts, values, seconds), plan, before, (found, ok))
         return found, ok

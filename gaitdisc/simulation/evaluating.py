@@ -80,7 +80,8 @@ def _program_of(simulation: Simulation, expressions: tuple[str, ...], extras: tu
     compiled = compile_simulation(simulation)
     names = ("t", *compiled.states, *compiled.inputs, *compiled.parameters, *extras)
     scope = simulation_scope(simulation)
-    trees = [check_expression(text, (*names, *scope), simulation) for text in expressions]
+    known = dict.fromkeys((*names, *scope))
+    trees = [check_expression(text, known, simulation) for text in expressions]
     needed = {name for tree in trees for name in names_in(tree)}
     for name in reversed([*scope]):  # definitions that stand in these, one in another: no other's delays matter
         if name in needed:

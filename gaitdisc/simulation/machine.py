@@ -68,14 +68,14 @@ def integrate_block(program, drive, rows, plan, past, into):
     program: code, operations of its setup, constants, delays (delay, 2) as input or state and column, registers
     drive: rate [Hz], first times (trial,), inputs (trial, sample, input), samples (trial,), which inputs wrap (input,)
     rows: place (row, 2) as trial and first sample, starts (row, state), values (row, parameter), seconds (row, delay)
-    plan: samples, steps for each, rows that a block has room for
+    plan: samples, steps for each, rows that a block has room for, inputs that the program reads (input,)
     past (trial, sample, state): measured states before the rows begin; of no trials where there are none
     into: states (row, sample, state), whether each row stayed finite (row,)
     """
     code, setup, _, delays, _ = program
     rate, _, inputs, samples, wraps = drive
     place, starts, _, _ = rows
-    steps, substeps, lanes = plan
+    steps, substeps, lanes, read = plan
     found, ok = into
     width, n = starts.shape
     registers, rates = _fill(program, rows, n + wraps.size, lanes), np.zeros((n, lanes))
@@ -92,14 +92,14 @@ def integrate_block(program, drive, rows, plan, past, into):
     now = np.zeros(3)  # samples since the start, steps done, steps for each sample
     now[2] = substeps
     for sample in range(steps):
-        _gather(ends, inputs, place, last, sample, wraps)
+        _gather(ends, inputs, place, last, sample, wraps, read)
         for sub in range(substeps):
             now[1] = sample * substeps + sub
             for part in range(4):
                 half = (part + 1) // 2  # 0, 1, 1, 2 half steps
                 if part != 2:
                     now[0] = sample + (2 * sub + half) / (2 * substeps)
-                    _set_inputs(registers, 1 + n, ends, wraps, now[0] - sample, width)
+                    _set_inputs(registers, 1 + n, ends, wraps, now[0] - sample, width, read)
                     if timed:
                         _set_times(registers, drive, place, now[0])
                     if delays.shape[0]:
@@ -128,11 +128,11 @@ def _fill(program, rows, signals, lanes):
 
 
 @compiled
-def _gather(ends, inputs, place, last, sample, wraps):
-    """Inputs at a sample of each row, and their slope to the next, (2, input, row)."""
+def _gather(ends, inputs, place, last, sample, wraps, read):
+    """Inputs that are read, at a sample of each row, and their slope to the next, (2, input, row)."""
     for r in range(last.size):
         trial, k = place[r, 0], min(place[r, 1] + sample, last[r])
-        for j in range(wraps.size):
+        for j in read:
             value = inputs[trial, k, j]
             slope = inputs[trial, min(k + 1, last[r]), j] - value
             ends[0, j, r] = value
@@ -140,8 +140,8 @@ def _gather(ends, inputs, place, last, sample, wraps):
 
 
 @compiled
-def _set_inputs(registers, first, ends, wraps, share, width):
-    for j in range(wraps.size):
+def _set_inputs(registers, first, ends, wraps, share, width, read):
+    for j in read:
         for r in range(width):
             registers[first + j, r] = ends[0, j, r] + share * ends[1, j, r]
         if wraps[j]:

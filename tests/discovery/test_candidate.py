@@ -94,7 +94,7 @@ def test_a_limit_of_an_input_is_to_either_side_above_below_or_both():
     numbers, u = {"limit": "0.5", "upper_limit": "0.3", "lower_limit": "-0.2"}, np.linspace(-1, 1, 9)[:, None]
     t, x, machine = np.zeros(9), np.zeros((9, 2)), compile_simulation(mass())
     limits = np.array([[-9.0, 0.3], [-0.2, 9.0], [-0.5, 0.5], [-0.2, 0.3]])
-    for one, (low, high) in zip(saturations(mass()), limits, strict=True):
+    for one, (low, high) in zip(saturations(mass(), {}), limits, strict=True):
         clipped = compile_simulation(one.written(mass(), numbers))
         assert np.array_equal(clipped.rates(t, x, u), machine.rates(t, x, np.clip(u, low, high)))
 
@@ -196,7 +196,8 @@ def test_a_friction_that_drives_costs_more(case):
 
 
 def test_every_price_is_of_an_explanation_that_there_is(case):
-    names = {shape.name for shape in read_shapes()} | {one.name for one in case.search.candidates}
+    limits = saturations(mass(), {"push": (1.0, 0.0, "x")})
+    names = {shape.name for shape in read_shapes()} | {one.name for one in (*case.search.candidates, *limits)}
     assert {*BENT, *FLEXIBLE} <= names | {"unnamed"}
 
 

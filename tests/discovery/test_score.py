@@ -55,7 +55,7 @@ def test_the_best_delay_of_the_grid_is_near_the_true_one():
 
 def test_the_best_limit_of_the_grid_is_near_the_true_one():
     case, now = _inquiry(mass().with_input("push", "min(push, 4)"))
-    scores = case.search.scorer(now).scores(saturations(mass()))
+    scores = case.search.scorer(now).scores(saturations(mass(), {}))
     assert [one.candidate.slots for one in scores[:2]] == [("upper_limit",), ("lower_limit", "upper_limit")]
     assert scores[0].values["upper_limit"] == pytest.approx(4, abs=1)
 

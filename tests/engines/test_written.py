@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 from texts import says
 
+from gaitdisc.discovery.candidate import saturations
 from gaitdisc.engines.engine import read_model
 from gaitdisc.engines.mapping import draft, with_input_changed, with_strength
 from gaitdisc.engines.motion import Motion
@@ -74,6 +75,19 @@ def test_a_servo_whose_control_is_no_force_keeps_its_numbers(pendulum):
     pendulum.write_text(PENDULUM.replace('<motor name="drive"', '<position kp="3" name="drive"'))
     mapping = with_strength(draft(read_model(pendulum)), read_model(pendulum), "drive", 0.8)
     assert mapping.definitions == (("replaced_drive", "0.8*drive"),)
+
+
+def test_a_servo_whose_force_is_limited_gets_the_range_of_its_force(pendulum):
+    text = PENDULUM.replace('<motor name="drive"', '<position kp="3" kv="0.2" name="drive"')
+    pendulum.write_text(text)
+    model = read_model(pendulum)
+    mapping, ((gain, constant, moved),) = draft(model), model.servos.values()
+    (one,) = (each for each in saturations(mapping, model.servos) if each.name == "force_saturation")
+    mapping = with_input_changed(mapping, "drive", one.form.format(s="drive", limit="0.4"))
+    found, beside = write_model(model, mapping), write_model(model, mapping, native=False)
+    assert 'forcelimited="true" forcerange="-0.4 0.4"' in found.text and not found.absent and not found.definitions
+    assert says(found.notes[0], "written", "range", "force") and beside.absent == ("drive",)
+    assert (gain, constant) == (3.0, 0.0) and "pivot_speed" in moved
 
 
 def test_files_that_lie_beside_the_model_are_found(pendulum):
