@@ -206,7 +206,6 @@ def find_dimension(unit: str | Powers) -> Dimension | None:
     >>> find_dimension("N m s/rad") == find_dimension({"kg": 1, "m": 2, "s": -1})
     True
     """
-    found = _measure(unit)
-    if found is None:
+    if (measured := _measure(unit)) is None:
         return None
-    return tuple(power for base, power in zip(_BASES, found[1], strict=True) if base != "rad")
+    return tuple(power for base, power in zip(_BASES, measured[1], strict=True) if base != "rad")

@@ -131,7 +131,8 @@ def find_power_for(effect: str, case: Case, as_read: ScoredModel, model: Simulat
         if min(found[-2:]) >= POWER * request.twins and len(found) > 1:
             break
     instead = "" if most == effect else most
-    return Power(effect, number, estimate.unit, (*sizes[: len(found)],), (*found,), request.twins, instead)
+    sized = tuple(sizes[: len(found)])
+    return Power(effect, number, estimate.unit, sized, (*found,), records=request.twins, instead=instead)
 
 
 def tabulate_power(found: Sequence[Power]) -> pd.DataFrame:

@@ -57,8 +57,7 @@ def point_names(parameters: C3DParameters, count: int) -> list[str]:
 def length_unit(parameters: C3DParameters, places: Values) -> tuple[str, list[Finding]]:
     """Unit of markers as stated, or by places (frame, coordinate) of some thousand frames where nothing is stated."""
     far, file = distance_from_origin(places), parameters.file
-    text = parameters.text("POINT", "UNITS")
-    if text:
+    if text := parameters.text("POINT", "UNITS"):
         unit = parse_unit(text)
         if unit is None or inner_unit(unit) != "m":
             raise UnitError("POINT:UNITS must be a unit of length", f"{file} says {text!r}", "Write mm or m.")

@@ -37,7 +37,7 @@ class Made(NamedTuple):
 def find_lack(part: Part, data: Path | None) -> SchemaError | None:
     """The refusal of a part that cannot be computed on this machine; None where it can."""
     needs = f"{part.name} of chapter {part.chapter} needs"
-    libraries = [name for name in part.libraries if find_spec(name) is None]
+    libraries = [name for name in part.needs if find_spec(name) is None]
     if libraries:
         words = " and ".join(libraries)
         return SchemaError(f"{needs} {words}", "not installed here", "Run: pip install 'gaitdisc[chapter3]'.")
@@ -52,8 +52,7 @@ def run_part(
     part: Part, out: Path, quick: bool, data: Path | None, ticked: Callable[[float], None] = lambda _: None
 ) -> Made:
     """Compute a part in `out/<part>`, or keep it where the same code has computed it there; a stopped one goes on."""
-    lack = find_lack(part, data)
-    if lack is not None:
+    if lack := find_lack(part, data):
         raise lack
     folder = out / part.name
     digest = hashlib.sha256(code_sha256().encode())

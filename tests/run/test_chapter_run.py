@@ -97,7 +97,7 @@ def test_a_folder_of_something_else_is_left_alone(studies, tmp_path):
 
 
 def test_what_a_machine_lacks_is_said_with_what_to_do(studies, tmp_path):
-    lack = find_lack(ONE._replace(libraries=("json", "nosuchlibrary")), None)
+    lack = find_lack(ONE._replace(needs=("json", "nosuchlibrary")), None)
     assert says(str(lack), "chapter 3", "nosuchlibrary", "pip install 'gaitdisc[chapter3]'")
     sea = ONE._replace(data="fields/sea")
     with pytest.raises(SchemaError, match=r"fields/sea.*--data"):
