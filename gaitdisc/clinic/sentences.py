@@ -29,7 +29,7 @@ MOST_SPANS = 6
 def write_noted(noted: Sequence[Noted], tier: int, say: Callable[[str], str] = str) -> list[str]:
     """One sentence for all that says one thing, both legs in one, at its highest tier; at most six, farthest first."""
     together: dict[str, list[Noted]] = {}
-    for one in noted:
+    for one in sorted(noted, key=lambda one: (-one.tier, bool(one.other))):  # a leg's own value before a difference
         together.setdefault(one.group or one.rule, []).append(one)
     return [_write_note(own, say) for own in together.values() if own[0].tier == tier][:MOST]
 
