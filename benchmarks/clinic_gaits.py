@@ -205,7 +205,7 @@ def run(
     """A row a kind: percent of pages."""
     reference = made_reference(controls, cycles, controls_seed)
     many = made_reference(100, cycles).of(CONDITION)
-    samples = {(rule.name, sides): take(rule, many) for rule in rules() for sides, take in enumerate(TAKEN)}
+    samples = {(rule.name, bool(sides)): take(rule, many) for rule in rules() for sides, take in enumerate(TAKEN)}
     truth = {of: sample.limits() for of, sample in samples.items() if sample}
     for word in kinds:
         kind, rows = KINDS[word], []

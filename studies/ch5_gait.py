@@ -77,7 +77,8 @@ def leaks(walks: Mapping[str, gait.Study], wanted: Wanted) -> gait.Table:
 
 def population(wanted: Wanted) -> Result:
     """Reconstruct everybody by models of the others, before and after ten strides, and write the page."""
-    study = gait.cohort(wanted.folder / "recordings", *((4, 30.0) if wanted.quick else ()))
+    people, walk_s = (4, 30.0) if wanted.quick else (gait.PEOPLE, gait.WALK_S)
+    study = gait.cohort(wanted.folder / "recordings", people, walk_s)
     sets = [words for words in gait.SENSORS if words not in gait.PELVIS]
     cells = [wanted.cell(study, words, "population/cohort", split=SUBJECT, condition="nominal") for words in sets]
     table = pd.concat([found["summary"].assign(data="cohort") for found in cells], ignore_index=True)
