@@ -11,15 +11,13 @@ import numpy as np
 import scipy.linalg.blas  # noqa: F401 numba multiplies with scipy's BLAS: what is to be limited must be loaded
 import torch
 from numpy.typing import NDArray
-from threadpoolctl import ThreadpoolController
+from threadpoolctl import threadpool_limits
 from torch import nn
 
 from gaitdisc.recording import Scale
 from gaitdisc.recording.arrays import Values
 
 WEIGHT = "weight:"  # before the name of each weight among the arrays of a network
-
-BLAS = ThreadpoolController().select(user_api="blas")  # all that are loaded, found once: it takes 20 ms
 
 
 @dataclass(frozen=True, eq=False)
@@ -100,9 +98,10 @@ def pin_threads(count: int) -> Iterator[None]:
 
     Matrices of 64 columns are slower on two threads than on one, and two trainings beside each other slower still.
 
+    >>> from threadpoolctl import threadpool_info
     >>> with pin_threads(1):
-    ...     {pool["num_threads"] for pool in BLAS.info()}
+    ...     {pool["num_threads"] for pool in threadpool_info() if pool["user_api"] == "blas"}
     {1}
     """
-    with torch_threads(count), BLAS.limit(limits=count):
+    with torch_threads(count), threadpool_limits(count, user_api="blas"):
         yield

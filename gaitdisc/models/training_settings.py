@@ -121,4 +121,5 @@ def count_epochs(samples: int, settings: TrainingSettings) -> int:
 
 
 def _cosine(first: float, epochs: int, steps: int) -> Values:
-    return (first * (1 + np.cos(np.pi * np.arange(epochs * steps) / (epochs * steps))) / 2).reshape(epochs, steps)
+    angle = np.pi * np.arange(epochs * steps) / (epochs * steps)
+    return (first * (1 + np.cos(angle)) / 2).reshape(epochs, steps)
