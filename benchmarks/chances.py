@@ -23,21 +23,31 @@ GIVEN = command_line(
     argument("--cases", "cases, of which some are answered with a name", 900),
     argument("--seed", "of the cases", 35),
     argument("--twins", "of each named record, with the effect", 0),
+    argument("--fit", "print how often a logistic function of the answers is right", False),
+    argument(
+        "--rigs", "answers to rigs: case (set/name), name (full where right) and found, a line of JSON each", type=Path
+    ),
 )  # before the slow imports
 
 import importlib.util
 import json
+import math
 import shutil
 import signal
 import time
 from dataclasses import replace
-from functools import cache
+from functools import cache, partial
+from itertools import pairwise
 from types import ModuleType
 from typing import Any
 
 import guard_cases
 import guards
 import numpy as np
+from kept_answers import keep_answers
+from sklearn.linear_model import LogisticRegression
+from sklearn.pipeline import make_pipeline
+from sklearn.preprocessing import StandardScaler
 
 from gaitdisc.discovery.answer import answer
 from gaitdisc.discovery.catalogue import ALL
@@ -53,6 +63,14 @@ SIZES = ((0.005, 0.02), (0.02, 0.06), (0.06, 0.2))  # of a rate, which a hidden 
 NOISE = (0.01, 0.03, 0.1, 0.2)  # of each channel's standard deviation
 LENGTHS = (0.25, 0.5, 1.0)  # of the benchmark's own records
 LIMIT_S = 60
+MOST = 1e4  # of a margin, where there is no rival
+SAID = (0.85, 0.95)  # probabilities between which answers are counted
+OPEN = ("open", "second", "third", "real")  # sets of rigs that are fitted to
+FITTED = {
+    "margin over the best rival": ("margin",),
+    "margin, gain, error left over the noise": ("margin", "gain", "left"),
+    "whether anything is tied": ("tied",),
+}
 
 
 @cache
@@ -131,24 +149,63 @@ def ask(number: int, bench: Path, seed: int, out: Path, twins: int) -> dict[str,
     return line
 
 
-def ask_in_time(number: int, *rest: Any, limit: int = LIMIT_S) -> dict[str, Any]:
+def ask_in_time(number: int, limit: int = LIMIT_S, **given: Any) -> dict[str, Any]:
     """Answer a case, or say what it failed of."""
     signal.signal(signal.SIGALRM, guards.stop)
     signal.alarm(limit)
     try:
-        return ask(number, *rest)
+        return ask(number, **given)
     except Exception as error:
         return {"number": number, "failed": f"{type(error).__name__}: {error}"[:200]}
     finally:
         signal.alarm(0)
 
 
+def describe(found: dict[str, Any]) -> dict[str, float]:
+    """What an answer says of itself: logarithms of its margin, gain and error left, and whether it is tied."""
+    gain, held_out = found["effects"][0]["evidence"]["bic"] or 0.0, found["gap"]["held_out"]
+    rivals = [one for one in found["rivals"] if not one["small"] and one["evidence"]["bic"] is not None]
+    margin = min((gain - one["evidence"]["bic"] for one in rivals), default=MOST)
+    return {
+        "margin": math.log1p(min(max(margin, 0.0), MOST)),
+        "gain": math.log1p(max(gain, 0.0)),
+        "left": math.log(max(held_out["after"], 1e-9) / max(held_out["noise_floor"], 1e-9)),
+        "tied": float(any(one["tied"] for one in found["rivals"])),
+    }
+
+
+def print_fits(made: list[dict[str, Any]], rigs: list[dict[str, Any]]) -> None:
+    """Fit to half of the made answers and the open rigs, and print how often the others are right as it says."""
+    odd = np.array([one["number"] % 2 == 1 for one in made])
+    opened = np.array([one["case"].split("/")[0] in OPEN for one in rigs], bool)
+    y, y_rigs = (np.array([one["right"] for one in answers], bool) for answers in (made, rigs))
+    for words, names in FITTED.items():
+        x, x_rigs = (
+            np.array([[describe(one["found"])[name] for name in names] for one in answers]).reshape(-1, len(names))
+            for answers in (made, rigs)
+        )
+        for fitted in (~odd, odd):
+            model = make_pipeline(StandardScaler(), LogisticRegression())
+            model.fit(np.vstack([x[fitted], x_rigs[opened]]), np.concatenate([y[fitted], y_rigs[opened]]))
+            kept = {"made": (x[~fitted], y[~fitted]), "rigs": (x_rigs[~opened], y_rigs[~opened])}
+            for which, (those, right) in kept.items():
+                if len(right):
+                    print(f"{words} | {which}: {say_fit(model.predict_proba(those)[:, 1], right)}")
+
+
+def say_fit(said: np.ndarray, right: np.ndarray) -> str:
+    """Right of those that a probability is said of, by its size, and the Brier score beside that of the mean alone."""
+    sizes = ((low, right[(low <= said) & (said < high)]) for low, high in pairwise((0.0, *SAID, 1.01)))
+    parts = [f"from {low:g}: {some.sum()} of {len(some)}" for low, some in sizes if len(some)]
+    return f"{'; '.join(parts)}; Brier {np.mean((said - right) ** 2):.3f} ({right.mean() * (1 - right.mean()):.3f})"
+
+
 if __name__ == "__main__":
-    GIVEN.out.mkdir(parents=True, exist_ok=True)
-    answers = GIVEN.out / "answers.jsonl"
-    answers.touch()
-    there = {json.loads(line)["number"] for line in answers.read_text(encoding="utf-8").splitlines()}
-    for number in (one for one in range(GIVEN.cases) if one not in there):
-        line = ask_in_time(number, GIVEN.bench, GIVEN.seed, GIVEN.out, GIVEN.twins)
-        with answers.open("a", encoding="utf-8") as file:
-            file.write(json.dumps(line) + "\n")
+    cases = ((number,) for number in range(GIVEN.cases))
+    answering = partial(ask_in_time, bench=GIVEN.bench, seed=GIVEN.seed, out=GIVEN.out, twins=GIVEN.twins)
+    answers = keep_answers(GIVEN.out, cases, answering, ("number",))
+    if GIVEN.fit:
+        rigs = [json.loads(line) for line in GIVEN.rigs.read_text(encoding="utf-8").splitlines()] if GIVEN.rigs else []
+        rigs = [one for one in rigs if "found" in one and one["found"]["verdict"] in NAMED and one["found"]["effects"]]
+        made = [one for one in answers if one.get("named")]
+        print_fits(made, [one | {"right": one["name"] == "full"} for one in rigs])

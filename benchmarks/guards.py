@@ -27,7 +27,6 @@ GIVEN = command_line(
     argument("--limit", "seconds for one case", 120),
 )  # before the slow imports
 
-import json
 import signal
 import time
 from collections import Counter
@@ -35,6 +34,7 @@ from typing import Any
 
 import numpy as np
 from guard_cases import CASES, make_case
+from kept_answers import keep_answers
 
 import gaitdisc as gd
 
@@ -95,17 +95,6 @@ def print_table(lines: list[dict[str, Any]]) -> None:
 
 if __name__ == "__main__":
     signal.signal(signal.SIGALRM, stop)
-    GIVEN.out.mkdir(parents=True, exist_ok=True)
-    kinds, answers = (
-        [one for one in CASES["kinds"] if one != "term"] if GIVEN.kinds == "all" else GIVEN.kinds.split(","),
-        GIVEN.out / "answers.jsonl",
-    )
-    answers.touch()
-    lines = [json.loads(line) for line in answers.read_text(encoding="utf-8").splitlines()]
-    there = {(one["kind"], one["number"]) for one in lines}
-    for number, kind in ((number, kind) for number in range(GIVEN.cases) for kind in kinds):
-        if (kind, number) not in there:
-            lines.append(ask(kind, number))
-            with answers.open("a", encoding="utf-8") as file:
-                file.write(json.dumps(lines[-1]) + "\n")
-    print_table(lines)
+    kinds = [one for one in CASES["kinds"] if one != "term"] if GIVEN.kinds == "all" else GIVEN.kinds.split(",")
+    cases = ((kind, number) for number in range(GIVEN.cases) for kind in kinds)
+    print_table(keep_answers(GIVEN.out, cases, ask, ("kind", "number")))

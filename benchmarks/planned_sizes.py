@@ -25,14 +25,15 @@ GIVEN = command_line(
     argument("--seed", "of the cases", 35),
 )  # before the slow imports
 
-import json
 import time
 from dataclasses import replace
+from functools import partial
 from typing import Any
 
 import numpy as np
 import pandas as pd
 from guard_cases import CASES, NOISE, SETTLING, Model, draw_share, draw_trials, write_record
+from kept_answers import keep_answers
 
 from gaitdisc.discovery.catalogue import ALL
 from gaitdisc.discovery.discover import discover
@@ -51,12 +52,13 @@ EFFECTS = (  # system, effect, place, law of size 1; without a law it is added t
 AROUND = (0.45, 0.6, 0.77, 1.0, 1.3, 1.7)  # times the planned size
 
 
-def compare_sizes(number: int, seed: int, folder: Path, records: int) -> dict[str, Any]:
+def compare_sizes(number: int, seed: int, out: Path, records: int) -> dict[str, Any]:
     """Plan from a record without the effect, and find from which size on records of the truth show it."""
     rng, began = np.random.default_rng([seed, number]), time.process_time()
     name, effect, place, law = EFFECTS[number % len(EFFECTS)]
     system, model = CASES["systems"][name], Model(name)
     trials = draw_trials(system, model, int(rng.integers(2, 4)), rng)
+    folder = out / "cases" / f"{number:02d}"
     folder.mkdir(parents=True, exist_ok=True)
     (folder / "simulation.toml").write_text(model.text, encoding="utf-8")
     read, level = read_simulation(folder / "simulation.toml"), draw_share(NOISE, rng)
@@ -97,14 +99,9 @@ def compare_sizes(number: int, seed: int, folder: Path, records: int) -> dict[st
 
 
 if __name__ == "__main__":
-    answers = GIVEN.out / "answers.jsonl"
-    GIVEN.out.mkdir(parents=True, exist_ok=True)
-    answers.touch()
-    lines = [json.loads(line) for line in answers.read_text(encoding="utf-8").splitlines()]
-    for number in range(len(lines), GIVEN.cases):
-        lines.append(compare_sizes(number, GIVEN.seed, GIVEN.out / "cases" / f"{number:02d}", GIVEN.records))
-        with answers.open("a", encoding="utf-8") as file:
-            file.write(json.dumps(lines[-1]) + "\n")
+    cases = ((number,) for number in range(GIVEN.cases))
+    compare = partial(compare_sizes, seed=GIVEN.seed, out=GIVEN.out, records=GIVEN.records)
+    lines = keep_answers(GIVEN.out, cases, compare, ("number",))
     ratios = [one["true"] / one["planned"] for one in lines if np.isfinite(one.get("true", np.nan))]
     within = sum(1 / 1.3 <= one <= 1.3 for one in ratios)
     print(f"{len(lines)} cases, {len(ratios)} with both sizes, within a factor 1.3: {within}; found over planned:")

@@ -27,13 +27,14 @@ GIVEN = command_line(
     argument("--sizes", "of the effect, least and largest share of a rate", [0.01, 0.1]),
 )  # before the slow imports
 
-import json
 import time
 from argparse import Namespace
+from functools import partial
 from typing import Any
 
 import guard_cases
 from guard_cases import make_case
+from kept_answers import keep_answers
 from scipy.stats import fisher_exact
 
 import gaitdisc as gd
@@ -65,14 +66,8 @@ def compare_rates(number: int, given: Namespace) -> dict[str, Any]:
 
 
 if __name__ == "__main__":
-    answers = GIVEN.out / "answers.jsonl"
-    GIVEN.out.mkdir(parents=True, exist_ok=True)
-    answers.touch()
-    lines = [json.loads(line) for line in answers.read_text(encoding="utf-8").splitlines()]
-    for number in range(len(lines), GIVEN.cases):
-        lines.append(compare_rates(number, GIVEN))
-        with answers.open("a", encoding="utf-8") as file:
-            file.write(json.dumps(lines[-1]) + "\n")
+    cases = ((number,) for number in range(GIVEN.cases))
+    lines = keep_answers(GIVEN.out, cases, partial(compare_rates, given=GIVEN), ("case",))
     compared = [one for one in lines if "fresh" in one]
     for one in compared:
         _, p = fisher_exact([[one[key], GIVEN.records - one[key]] for key in ("twins", "fresh")])
