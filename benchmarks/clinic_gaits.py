@@ -53,7 +53,7 @@ from gaitdisc.clinic.clinical_reference import ClinicalReading, ClinicalReferenc
 from gaitdisc.clinic.demonstration import CONDITION, Visit, describe_participant, draw_person, make_habit, with_pelvis
 from gaitdisc.clinic.reading import read_beside
 from gaitdisc.clinic.reference import make_reference
-from gaitdisc.clinic.rules import _differences, _sample, rules
+from gaitdisc.clinic.rules import known_numbers, rules, sample_differences, sample_legs
 from gaitdisc.cohort.measurement import measure
 from gaitdisc.cohort.person import CADENCE, CADENCE_SPEED, Bump, Person
 from gaitdisc.cohort.walk import QUICK_HZ, SLOW_HZ
@@ -64,7 +64,7 @@ from gaitdisc.recording.trial import LEG_OF_STATURE
 from gaitdisc.saved.provenance import provenance_now
 
 CONTROLS_SEED, PEOPLE_SEED = 50_000, 90_000
-TAKEN = (_sample, _differences)  # of a leg, and of it less the other
+TAKEN = (sample_legs, sample_differences)  # of a leg, and of it less the other
 ALWAYS = 10.0  # half width of what lasts the whole stride
 Bumps = tuple[tuple[str, float, float, float], ...]  # channel (of the leg, or `pelvis_list`), centre, half width, share
 
@@ -205,8 +205,11 @@ def run(
     """A row a kind: percent of pages."""
     reference = made_reference(controls, cycles, controls_seed)
     many = made_reference(100, cycles).of(CONDITION)
-    samples = {(rule.name, bool(sides)): take(rule, many) for rule in rules() for sides, take in enumerate(TAKEN)}
-    truth = {of: sample.limits() for of, sample in samples.items() if sample}
+    truth = {}
+    for rule in rules():
+        known = known_numbers(rule, many)
+        samples = ((bool(sides), take(known)) for sides, take in enumerate(TAKEN))
+        truth |= {(rule.name, sides): sample.limits() for sides, sample in samples if sample}
     for word in kinds:
         kind, rows = KINDS[word], []
         for k in range(people):

@@ -95,6 +95,6 @@ def read_csv(path: Path, words: Sequence[str] = (), skiprows: int = 0) -> pd.Dat
         if table.dtypes.iloc[place].kind not in _NUMBERS:
             plain = table.iloc[:, place].map(lambda cell: unquote(cell) if isinstance(cell, str) else cell)
             table.isetitem(place, plain.to_numpy())
-        elif table.dtypes.iloc[place].kind == "f":
+        elif texts is not table and table.dtypes.iloc[place].kind == "f":
             table.isetitem(place, texts.iloc[:, place].to_numpy(object).astype(float))
     return table.rename(columns=unquote)

@@ -102,8 +102,7 @@ def rules() -> tuple[Rule, ...]:
     >>> rules()[0].name
     'pelvic tilt'
     """
-    path = Path(__file__).with_name("rules.toml")
-    return rules_in(tomllib.loads(path.read_text(encoding="utf-8")))
+    return rules_in(tomllib.loads(Path(__file__).with_name("rules.toml").read_text(encoding="utf-8")))
 
 
 def rule_words() -> list[str]:
@@ -156,8 +155,8 @@ def outstanding(
         return (), f"limits need a reference of {FEWEST} people or more; it has {count} in this condition"
     wide = of_values or reference  # a speed that the group for curves lacks is on the line of everybody
     near = wide if speed_words(legs, reference) else reference
-    sets = [(rule, wide if rule.value else near) for rule in table or rules()]
-    samples = [(rule, sample) for rule, own in sets if (sample := _sample(rule, own)) is not None]
+    known = [(rule, known_numbers(rule, wide if rule.value else near)) for rule in table or rules()]
+    samples = [(rule, sample) for rule, of_legs in known if (sample := sample_legs(of_legs)) is not None]
     numbers = []
     for rule, sample in samples:
         for leg in legs.values():
@@ -165,8 +164,8 @@ def outstanding(
             own = {name: float(each.mean()) for name, each in leg.values.items() if name == rule.value}
             if (number := rule.number(curves, own, leg.stance_percent)) is not None:
                 numbers.append((rule, sample, leg, number))
-    two = [rule for rule, *_ in numbers]
-    sides = [(rule, sample) for rule, own in sets if two.count(rule) == 2 and (sample := _differences(rule, own))]
+    two = [rule for rule, *_ in numbers if rule.value != SPEED]
+    sides = [(rule, sample) for rule, own in known if two.count(rule) == 2 and (sample := sample_differences(own))]
     score = profile.both if profile is not None and profile.both and np.isfinite(profile.both.reference_sd) else None
     tests, found = len(numbers) + len(sides) + (score is not None), []
     for rule, sample, leg, number in numbers:
@@ -220,22 +219,23 @@ def _note_sides(rule: Rule, both: Sequence[Noted], limits: Limits) -> Noted:
     return replace(found, words=words, tier=tier, other=near.side)
 
 
-def _differences(rule: Rule, reference: Sequence[ReferenceLeg]) -> Sample | None:
+def known_numbers(rule: Rule, reference: Sequence[ReferenceLeg]) -> list[tuple[ReferenceLeg, float]]:
+    """Legs of the reference that have the rule's number, each with it."""
+    found = ((leg, rule.number(leg.curves, leg.values, leg.stance_percent)) for leg in reference)
+    return [(leg, number) for leg, number in found if number is not None]
+
+
+def sample_differences(known: Sequence[tuple[ReferenceLeg, float]]) -> Sample | None:
     """Differences of the sides of each control, both ways round; None below the fewest people."""
-    if rule.value == SPEED:
-        return None
     people: dict[int, list[float]] = {}
-    for leg in reference:
-        if (number := rule.number(leg.curves, leg.values, leg.stance_percent)) is not None:
-            people.setdefault(leg.person, []).append(number)
+    for leg, number in known:
+        people.setdefault(leg.person, []).append(number)
     found = np.array([own[0] - own[1] for own in people.values() if len(own) == 2])
     return Sample(np.concatenate([found, -found]), len(found)) if len(found) >= FEWEST else None
 
 
-def _sample(rule: Rule, reference: Sequence[ReferenceLeg]) -> Sample | None:
+def sample_legs(known: Sequence[tuple[ReferenceLeg, float]]) -> Sample | None:
     """Numbers of the reference's legs, and their speeds where all are known; None below the fewest people."""
-    found = [(leg, rule.number(leg.curves, leg.values, leg.stance_percent)) for leg in reference]
-    known = [(leg, number) for leg, number in found if number is not None]
     people = len({leg.person for leg, _ in known})
     if people < FEWEST:
         return None
