@@ -19,9 +19,7 @@ FILE, TABLE = "clinic.toml", "clinical_axes.csv"
 LARGEST_LOGO = 2**19  # [bytes] a page stays one file that can be mailed
 LONGEST = 1000  # letters of a comment
 PICTURES = {b"\x89PNG": "image/png", b"\xff\xd8\xff": "image/jpeg"}  # by their first bytes
-FORM = (
-    f"{FILE} may contain only laboratory, logo, pdf, a table [axes] and tables [people.P07] with affected and comment"
-)
+FORM = f"{FILE} may have only laboratory, logo, pdf, [axes], and tables such as [people.P07] with affected and comment"
 KINDS: dict[str, type] = {"laboratory": str, "logo": str, "pdf": bool, "axes": dict, "people": dict}
 AFFECTED = ("left", "right", "both")
 Axes = Mapping[str, tuple[float, float]]

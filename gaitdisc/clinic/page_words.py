@@ -21,8 +21,8 @@ if TYPE_CHECKING:
     from gaitdisc.clinic.panels import Panel
 
 TIERS = {
-    2: "Outside the limits for one more healthy person (95 % for this page)",
-    1: "Outside 2 standard deviations of the controls, within those limits",
+    2: "Outside the prediction limits for a healthy person (95 % over all values on this page)",
+    1: "Outside 2 standard deviations of the controls, but within the prediction limits",
 }
 TEMPLATES = Path(__file__).parents[1] / "report" / "templates"
 WITH_WORDS = ("person.html.j2", "people.html.j2", "person.typ")

@@ -152,7 +152,7 @@ def outstanding(
     people = len({leg.person for leg in reference})
     if people < FEWEST:
         count = f"{people} people" if people != 1 else "1 person"
-        return (), f"limits need a reference of {FEWEST} people or more; it has {count} in this condition"
+        return (), f"limits need a reference of at least {FEWEST} people; the reference has {count} in this condition"
     wide = of_values or reference  # a speed that the group for curves lacks is on the line of everybody
     near = wide if speed_words(legs, reference) else reference
     known = [(rule, known_numbers(rule, wide if rule.value else near)) for rule in table or rules()]
@@ -188,10 +188,10 @@ def speed_words(legs: Mapping[str, LegCurves], reference: Sequence[ReferenceLeg]
     if not own or not len(speeds) or speeds.min() <= np.mean(own) <= speeds.max():
         return ()
     speed, sample = float(np.mean(own)), Sample(speeds, len({leg.person for leg in reference}), speeds)
-    range_words = f"{speed:.2f} m/s is outside the controls' {speeds.min():.2f} to {speeds.max():.2f} m/s"
+    range_words = f"{speed:.2f} m/s is outside the controls' range, {speeds.min():.2f} to {speeds.max():.2f} m/s"
     if sample.leverage(speed) <= FARTHEST:
-        return (f"{range_words}: limits are those at this speed, on a line through the controls.",)
-    return (f"{range_words}, too far for a correction: deviations may be due to the speed.",)
+        return (f"{range_words}. The limits are extrapolated to this speed by a line through the controls.",)
+    return (f"{range_words}. This is too far for a correction: deviations may be due to the speed.",)
 
 
 def _note(rule: Rule, side: str, number: float, limits: Limits, count: int) -> Noted:

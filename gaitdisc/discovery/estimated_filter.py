@@ -56,7 +56,7 @@ def find_record_filter(
     passed = RecordFilter(tuple(cutoffs.get(number, cutoff) for number, cutoff in enumerate(stated)), measured.rate)
     findings = []
     for number, hz in cutoffs.items():
-        what = f"assumed to be low-passed at {hz:.3g} Hz without lag (order 2, both directions), as its spectrum falls"
+        what = f"assumed to be low-passed at {hz:.3g} Hz without lag (order 2, both ways), because of its spectrum"
         spoils = "everything that depends on this filter; state lowpass in the simulation file if you know it"
         findings.append(Finding("note", "low-pass", measured.source, what, spoils, measured.channels[number]))
     return passed, tuple(findings)

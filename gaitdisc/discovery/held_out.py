@@ -20,7 +20,7 @@ from gaitdisc.recording.arrays import Values
 from gaitdisc.recording.finding import Finding
 
 TURNS = 30
-ALIKE = "runs alike with and without the identified effect"
+ALIKE = "has the same simulated motion with and without the identified effect"
 DRAWN = 20  # times, inputs with their stated errors: the mean square to some 10 % where their effects are independent
 
 
@@ -141,9 +141,9 @@ def holding_out_others(case: Case, as_read: ScoredModel, now: ScoredModel) -> Ca
 def noting_alike(case: Case) -> Case:
     """Return a case with a finding that says that the held-out data do not show what the others speak for."""
     blind = ", ".join(case.measured.trials[trial] for trial in case.held_out)
-    what = f"trial {blind} {ALIKE}; only the other trials show it"
+    what = f"trial {blind} {ALIKE}; only the other trials show the effect"
     return case.noting(
-        Finding("note", "held out", case.measured.source, what, "the test, in which the effect does not act")
+        Finding("note", "held out", case.measured.source, what, "the test on these data, where the effect does not act")
     )
 
 

@@ -177,10 +177,10 @@ class Twins:
     def sentence(self) -> str:
         """How often the answer returns, and how often something is named where nothing is missing."""
         invented = sum(count for answer, count in self.without.items() if "@" in answer)
-        said = [f"names an effect in {invented} of {self.records} in which nothing is missing"]
+        said = [f"names an effect in {invented} of {self.records} records in which nothing is missing"]
         if self.with_effects:
             same = self.with_effects.get(self.named, 0)
-            said.insert(0, f"gives the same answer in {same} of {self.records} with the effect")
+            said.insert(0, f"gives the same answer in {same} of {self.records} records with the effect")
         return f"In simulated records like these, the search {', and '.join(said)}."
 
 

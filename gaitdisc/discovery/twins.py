@@ -140,7 +140,7 @@ def search_twins(
     models = [verdict.found, as_read] if acts else [as_read]
     sources = [TwinSource(case, now, verdict.found.noise) for now in models]
     if any(source.draw(0) is None for source in sources):
-        what = "a free run of the simulation leaves the record, so that records like these cannot be simulated"
+        what = "a free run of the simulation departs from the record, so that records like these cannot be simulated"
         finding = Finding("note", "twins", case.measured.source, what, "how often this answer is right")
         return replace(found, findings=(*found.findings, finding))
     note_found("")
@@ -161,7 +161,7 @@ def search_records(records: Sequence[tuple[TwinSource, int]], model: Simulation,
             pending = pending or _search_side_by_side(records[done - 1 :], model, rule)
             answer = next(pending)
             left = (time.perf_counter() - begun) / done * (len(records) - done)
-            request.progress(f"{done} of {len(records)} simulated records searched, about {left:.0f} s left")
+            request.progress(f"{done} of {len(records)} simulated records are searched; about {left:.0f} s remain")
             keep(answer)
         yield answer
 

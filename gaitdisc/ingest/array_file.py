@@ -39,7 +39,7 @@ _COLUMN = re.compile(r"\(\s*((?::|\d{1,9})(?:\s*,\s*(?::|\d{1,9}))+)\s*\)$")
 _SHOWN = 12  # variables that a message names
 _UNPACKED = (64 * MEBIBYTE, 100)  # bytes, and times the file: values deflate up to 12 times, a bomb 1,000 times
 _REMEDY = "See docs/sessions.md, recordings in .mat and .npz, for the form of a path."
-_COMPLEX = "complex numbers, which a recording cannot contain"
+_COMPLEX = "an array of complex numbers, which a recording cannot contain"
 ENDINGS = (".mat", ".npz")
 
 
@@ -114,7 +114,7 @@ class ArrayFile:
             return self._element(node, int(part), path)
         if len(node.held) == 1:
             return node.held[0]
-        remedy = f'Write part = "1" to "{len(node.held)}" next to the trial\'s files, or path{{1}}.'
+        remedy = f'Write part = "1" (up to "{len(node.held)}") next to the trial\'s files, or path{{1}}.'
         raise self._refuse(path, f"it holds {len(node.held)} elements", remedy)
 
     def _column(self, node: Any, columns: re.Match[str] | None, path: str) -> Values:
@@ -130,7 +130,7 @@ class ArrayFile:
         fits = len(wanted) == values.ndim and wanted.count(":") == 1
         fits = fits and all(w == ":" or 1 <= int(w) <= n for w, n in zip(wanted, values.shape, strict=True))
         if not fits:
-            remedy = "Columns are counted from 1, and one ':' stands for time: (:,2)."
+            remedy = "Columns are counted from 1, and one ':' stands for the time, as in (:,2)."
             raise self._refuse(path, f"it is {_shape(values)}", remedy)
         return values[tuple(slice(None) if one == ":" else int(one) - 1 for one in wanted)]
 

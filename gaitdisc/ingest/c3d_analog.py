@@ -155,12 +155,12 @@ def _doubts(emg: list[AnalogLabel], others: list[AnalogLabel], file: str) -> lis
         what = (
             f"{len(unknown)} analog channels have no known unit ({_list_labels(unknown)}); their numbers are unchanged"
         )
-        findings.append(Finding("note", "unit", file, what, "amplitudes of these channels; correct ANALOG:UNITS"))
+        findings.append(Finding("note", "unit", file, what, "these channels' amplitudes; correct ANALOG:UNITS"))
     muscles = [signal.muscle.name for signal in emg if signal.muscle is not None]
     doubled = sorted({name for name in muscles if muscles.count(name) > 1})
     if doubled:
         what = f"several channels are called {', '.join(doubled)}; they are numbered"
-        findings.append(Finding("warning", "equal muscles", file, what, "this muscle; name it in [channels]"))
+        findings.append(Finding("warning", "equal muscles", file, what, "these muscles; name them in [channels]"))
     nameless = [signal for signal in emg if signal.muscle is None]
     if nameless:
         what = f"{len(nameless)} EMG channels do not name a known muscle ({_list_labels(nameless)})"

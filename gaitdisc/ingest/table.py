@@ -231,9 +231,9 @@ def _of_frame(frame: pd.DataFrame, name: str, channels: Mapping[str, str] | None
     _check_labels(labels, name)
     values = frame.to_numpy(float, na_value=np.nan)
     if not len(values) or np.isinf(values).any():
-        where = "it has no row"
+        where = "no rows"
         if len(values):
-            where = f"column {labels[int(np.argmax(np.isinf(values).any(axis=0)))]!r} contains infinite values"
+            where = f"infinite values in column {labels[int(np.argmax(np.isinf(values).any(axis=0)))]!r}"
         raise ReadError(f"{name} must have rows of finite numbers", f"found {where}", "Write it again.")
     return labels, values
 

@@ -212,8 +212,8 @@ def _pool(
     findings = [finding for trial in seen for finding in trial.findings]
     findings += [finding for _, unknown in stated for finding in unknown]
     if late:
-        by = "the one step" if steps == 1 else f"the median of {steps} steps"
-        by, spoils = (f"{by} that a plate or the file's events recorded", "phase, and stance, by 3 to 5 % of the cycle")
+        by = "the difference at one step" if steps == 1 else f"the median difference at {steps} steps"
+        by, spoils = (f"{by} that a plate or an event also shows", "phase and stance, by 3 to 5 % of the cycle")
         findings.append(offset_finding(where, late, offset_s, by, spoils))
     refusals = [*lost, *([Refusal(participant.id, where, too_few)] if too_few and (seen or not lost) else [])]
     return PooledCycles(

@@ -295,5 +295,5 @@ class StudyWalks:
         if "kinematics" not in ready.streams and "markers" in ready.streams:
             why = next((one.what for one in ready.findings if one.kind == "no angles"), standing.unread)
             if self.study.kinematics and self.study.kinematics.angles == "file":
-                why = 'the study selects those of the file, angles = "file" in [kinematics]'
+                why = 'the study selects the angles of the file (angles = "file" in [kinematics])'
         return ReadWalk(ready, standing.body_weight_n(planned), why)

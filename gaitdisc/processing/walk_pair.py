@@ -66,7 +66,7 @@ def walk_pair(
     if len(contacts[0]) == 1:
         foot = {"r": "right", "l": "left"}[next(iter(contacts[0]))]
         spoils = "percent stride of the other leg"
-        note = replace(note, severity="warning", what=f"{what}; of the {foot} foot, for both legs", spoils=spoils)
+        note = replace(note, severity="warning", what=f"{what}; the {foot} foot is used for both legs", spoils=spoils)
     return one, replace(other, findings=(*other.findings, note))
 
 
@@ -206,8 +206,8 @@ def repeat_stride(trial: Trial) -> Trial:
     left = sorted(set(trial.streams) - set(kept))
     what = f"one stride of {count / kinematics.rate_hz:.3f} s that ends as it began, repeated {TIMES} times"
     if left:
-        what += f"; {', '.join(left)} excluded: on another time base"
-    spread = "the spread, of which a single stride has none"
+        what += f"; {', '.join(left)} excluded, because the time base differs"
+    spread = "the spread, which a single stride does not have"
     note = Finding("note", "one stride", kinematics.source.file or trial.name, what, spread)
     return replace(trial, streams=kept, events=(), findings=(*trial.findings, note))
 

@@ -19,9 +19,9 @@ PERSON_OUT = "leave one person out"
 SEAM_S = 0.3  # zero-lag filters look ahead and back over a border
 RANDOM = "random (leaks)"
 RULES = {
-    "temporal": "each trial: first 70 % training, next 10 % validation, last 20 % test; no window crosses a border",
-    "blocked": "each trial in ten blocks: seven training, one validation, two test; no window crosses a border",
-    RANDOM: "windows drawn at random: neighbours of test windows are in the training part; the error is far too small",
+    "temporal": "first 70 % of each trial training, next 10 % validation, last 20 % test; no window crosses a border",
+    "blocked": "ten blocks of each trial: seven training, one validation, two test; no window crosses a border",
+    RANDOM: "windows drawn at random, with neighbours of test windows in the training part: the error is far too small",
 }
 
 

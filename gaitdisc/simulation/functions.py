@@ -132,7 +132,7 @@ class _Taken:
     numbers: dict[str, float]
     ports: tuple[str, ...]
     arguments: Callable[[Callable[[str], Any]], tuple[tuple, dict]]  # from what gives the value of a name
-    remedy: str = "Call it yourself with numbers, and correct it."  # where it raises whatever it is given
+    remedy: str = "Call the function yourself with numbers, and correct it."  # where it raises whatever it is given
 
     @property
     def title(self) -> str:
@@ -270,7 +270,7 @@ def _refuse_other_numbers(simulation: Simulation, taken: _Taken) -> Simulation:
         for names in ((TIME,), machine.states, machine.inputs, machine.parameters)
     )
     if not taken.gives(machine.rates(t[:, 0], x, u, values)):
-        raise NotTraced("they give numbers that differ from the function")
+        raise NotTraced("the derived equations give numbers that differ from those of the function")
     return simulation
 
 

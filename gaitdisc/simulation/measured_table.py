@@ -82,7 +82,7 @@ def gather_recordings(recordings: Sequence[Recording], simulation: Simulation) -
             if doubtful:
                 what = f"{doubtful} of {len(values)} samples are marked as unreliable"
                 findings[f"{name} {wanted}"] = Finding(
-                    "warning", "suspect", name, what, "everything that depends on them", wanted
+                    "warning", "suspect", name, what, "everything that depends on these samples", wanted
                 )
             numbers[wanted] = values
         parts.append(_columns(name, np.array(recording.time), numbers, inputs, channels))
@@ -237,7 +237,7 @@ def _report_left_out(
         )
     if absent:
         what = f"not measured: {', '.join(absent)}"
-        found.append(Finding("note", "not measured", file, what, "nothing; it follows from the other states"))
+        found.append(Finding("note", "not measured", file, what, "nothing; these states follow from the others"))
     if unused:
         listed = ", ".join(unused[:10]) + (", ..." if len(unused) > 10 else "")
         found.append(Finding("note", "unused columns", file, listed, ""))

@@ -145,7 +145,7 @@ def refuse_divergence(compiled: Compiled, drive: Drive, rows: Rows, states: Valu
     first, *others = divergences(compiled, drive, rows, states, ok)
     more = f"; so do {len(others)} more of {len(ok)} runs" if others else ""
     driven = f"{first.parameter!r}, which affects its rate most, and " if first.parameter else ""
-    late = " (time is in seconds, not in milliseconds)" if drive.rate < SLOW_HZ else ""
+    late = " (the time must be in seconds, not in milliseconds)" if drive.rate < SLOW_HZ else ""
     raise SimulationError(
         "every state of a simulation must stay within 1e6",
         f"{compiled.simulation.title!r} diverges in trial {first.trial + 1} after t = {first.time:.4g} s, first in "

@@ -23,7 +23,7 @@ def check_same(one: pd.Index, other: pd.Index, words: str) -> None:
     if len(unlike) or one.has_duplicates or other.has_duplicates:
         double = next((index for index in (one, other) if index.has_duplicates), one)
         found = (
-            f"{unlike[0]!r} is in only one of them"
+            f"{unlike[0]!r} is in only one of the two"
             if len(unlike)
             else f"{double[double.duplicated()][0]!r} occurs twice"
         )

@@ -103,7 +103,7 @@ def test_what_is_beyond_the_limits_by_less_than_matters_is_not_spoken_of():
 def test_too_few_controls_say_nothing_in_words():
     numbers, why = outstanding(make_legs(made_person()), made_controls(4).of("walk"))
     assert numbers == ()
-    assert says(why, "5 people", "more", "4 people")
+    assert says(why, "5 people", "4 people")
 
 
 def _of_leg(side, numbers):

@@ -74,7 +74,7 @@ def test_slips_are_named(tmp_path, old, new, message):
 def test_what_else_is_wrong_is_counted(tmp_path):
     path = tmp_path / "study.toml"
     path.write_text(TEXT.replace("6.0", "-6.0").replace("auto", "x").replace('"t"', "1"))
-    with pytest.raises(SchemaError, match=r"line 1.*\(2.*correct after this"):
+    with pytest.raises(SchemaError, match=r"line 1.*\(Further settings to correct: 2"):
         load_study(path)
 
 

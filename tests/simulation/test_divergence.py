@@ -55,7 +55,7 @@ def test_with_a_delay():
 @pytest.mark.parametrize(
     ("rate", "words"),
     [
-        (0.1, r"10 s apart.*\(time is in seconds, not in milliseconds\)"),
+        (0.1, r"10 s apart.*\(the time must be in seconds, not in milliseconds\)"),
         (100.0, r"Samples 0.01 s apart may also be too coarse for this motion\.$"),
     ],
 )
