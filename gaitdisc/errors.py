@@ -22,7 +22,7 @@ class GaitdiscError(ValueError):
     found : str
         What was found instead: file, channel, frame, number, unit.
     remedy : str
-        What to do, one sentence.
+        What the user can do, in one sentence.
 
     Examples
     --------

@@ -98,4 +98,4 @@ def _picture(path: Path) -> str:
 
 
 def _refusal(found: str) -> SchemaError:
-    return SchemaError(FORM, f"found {found}", f"Correct it; affected is one of {', '.join(AFFECTED)}.")
+    return SchemaError(FORM, f"found {found}", f"Correct the line. Words for affected: {', '.join(AFFECTED)}.")

@@ -120,15 +120,14 @@ def rules_in(data: Mapping[str, list[dict[str, object]]]) -> tuple[Rule, ...]:
         said = words["name"] and (words["less"] or words["more"]) and known != (words["value"] in SPATIOTEMPORAL)
         if not said or not isinstance(least, float) or least <= 0:
             raise SchemaError(
-                "a rule needs name, least > 0, less or more, and either variable, part and take or a spatiotemporal "
-                "value",
+                "a rule must have name, least > 0, and less or more; also either variable, part and take, or value",
                 f"found {dict(entry)}",
                 "Correct rules.toml.",
             )
         found.append(Rule(least=least, **words))
     names = [rule.name for rule in found]
     if len(set(names)) < len(names):
-        raise SchemaError("each rule needs a name of its own", f"found {names}", "Rename one of them.")
+        raise SchemaError("each rule must have its own name", f"the names are {names}", "Rename one rule.")
     return tuple(found)
 
 

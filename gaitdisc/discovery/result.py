@@ -161,7 +161,7 @@ class ConditionAnswer:
 
 @dataclass(frozen=True)
 class Twins:
-    """Answers of the same search to simulated records like the user's.
+    """Answers of the same search to simulated records that resemble the user's.
 
     >>> Twins(20, "coulomb_friction@air", {"coulomb_friction@air": 19, "no_gap": 1}, {"no_gap": 20}).sentence[44:77]
     'gives the same answer in 19 of 20'
@@ -225,12 +225,13 @@ class Discovery(Saved, file="discovery.json"):
     Parameters
     ----------
     verdict : str
-        One of nine words.
+        Kind of the answer, one of the nine words of `VERDICTS`.
     sentence : str
-        The answer in words.
+        The answer in one sentence.
     where : tuple of Whereabouts
         Where the gap arises, the largest share first.
-    effects : tuple of FoundEffect        Identified effects.
+    effects : tuple of FoundEffect
+        Identified effects.
     rivals : tuple of FoundEffect
         Other tested explanations, best first.
     train, held_out : GapSize
@@ -253,8 +254,9 @@ class Discovery(Saved, file="discovery.json"):
     conditions : tuple of ConditionAnswer
         Answers for all conditions, if a study has several in addition to Nominal.
     given : str
-        ``proven`` or ``refuted`` by held-out data for effects that the user specified; empty after a search.
-    twins : Twins, optional        Answers of the same search to simulated records like the user's.
+        For effects that the user specified: ``proven`` or ``refuted`` by held-out data. Empty after a search.
+    twins : Twins, optional
+        Answers of the same search to simulated records that resemble the user's.
     hide : callable, optional
         Returns the discovery as it is written: without words that may name a person.
     """

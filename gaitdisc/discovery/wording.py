@@ -9,6 +9,9 @@ from dataclasses import replace
 from gaitdisc.discovery.candidate import SIGNAL_ERRORS
 from gaitdisc.discovery.criteria import CRITERIA
 from gaitdisc.discovery.effect_words import (
+    LOSSES,
+    MINUS,
+    SPRINGS,
     amount,
     at_place,
     brief_text,
@@ -24,7 +27,9 @@ from gaitdisc.discovery.effect_words import (
 from gaitdisc.discovery.result import Discovery, Estimate, FoundEffect, GapSize, Whereabouts
 from gaitdisc.discovery.scored_model import Part
 from gaitdisc.simulation.simulation import Simulation
+from gaitdisc.units import find_dimension
 
+MECHANICAL = {find_dimension(unit) for unit in ("N", "N m", "N/kg", "N m/kg", "rad/s^2", "1", "unknown")}
 FEW = 12  # independent samples of held-out data
 SMALL = 0.05  # of the squared error
 UNIT_SLACK = 0.05
@@ -171,6 +176,10 @@ def _missing(effect: FoundEffect, part: Part, base: Simulation, where: tuple[Whe
     noun, _, how = (part.candidate.means or spoken(effect.name)).partition(", ")
     if effect.name.endswith("_coupling"):
         noun = f"{noun} ({part.candidate.pieces[0]})"
+    elif effect.name in SPRINGS | LOSSES and not _is_force(effect, base):
+        opposes = effect.term.startswith("-") == (next(iter(effect.estimates.values())).value > 0)
+        form = re.sub(r"^\((\w+)\)$", r"\1", re.sub(r"\b_", "", part.candidate.pieces[0]))
+        noun = f"a term proportional to {MINUS * opposes}{form}"
     names, left = part.candidate.names or {}, dict(effect.estimates)
     for slot in part.candidate.constants or {}:
         if f"{{{slot}}}" in how:
@@ -188,6 +197,13 @@ def _missing(effect: FoundEffect, part: Part, base: Simulation, where: tuple[Whe
     )
     said = [f"{noun}{of} {at_place(effect.kind, effect.place)}: {', '.join(numbers)}", how, _stride(effect, where)]
     return ", ".join(one for one in said if one)
+
+
+def _is_force(effect: FoundEffect, base: Simulation) -> bool:
+    """Whether an effect adds to a force, a moment or their acceleration, as far as the units of its place say."""
+    units = {port.name: port.unit for port in base.ports} if effect.kind == "port" else {}
+    units |= {state.name: "1" if state.unit == "1" else f"{state.unit}/s" for state in base.states}
+    return find_dimension(units.get(effect.place, "unknown")) in MECHANICAL
 
 
 def _constant(estimate: Estimate, part: Part, base: Simulation) -> str:

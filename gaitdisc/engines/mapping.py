@@ -111,7 +111,7 @@ def check_mapping(mapping: Simulation, engine: Engine) -> None:
                 hint = f"Did you mean {near!r}? " if near else ""
                 raise SchemaError(
                     f"each {kind} of a mapping must exist in the model",
-                    f"{file} has none called {name!r}",
+                    f"{file} has no {name!r}",
                     f"{hint}Known: {', '.join(has) or 'none'}.",
                 )
         whole = kind not in ("parameter", "port")

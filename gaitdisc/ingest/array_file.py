@@ -337,9 +337,9 @@ def _time(file: ArrayFile, label: str, clock: str, samples: int, part: str) -> V
         if found.ndim == 1 and found.size > 1:
             if found.size != samples:
                 raise SamplingError(
-                    f"{file.raw.name}: {label!r} must have a time for each of its samples",
-                    f"it has {samples} samples, {text!r} has {found.size} times",
-                    "Name other times, or another column.",
+                    f"{file.raw.name}: {label!r} must have one time for each sample",
+                    f"{label!r} has {samples} samples, but {text!r} has {found.size} times",
+                    f"Name a variable of {samples} times, or another column.",
                 ) from None
             return even_time(found * (1e-3 if unit == "ms" else 1.0), 0.0, file.raw.name)
         rate_hz = float(found.ravel()[0])

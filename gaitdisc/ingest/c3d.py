@@ -83,7 +83,7 @@ class C3DReader:
         Returns
         -------
         Trial
-            With findings for everything that the file leaves open or contradicts.
+            The trial, with findings for everything that the file does not state or contradicts.
         """
         path = Path(path)
         try:
@@ -167,7 +167,7 @@ def glance_at_c3d(path: Path) -> Trial:
     check_common_scales(header, parameters)
     layout, findings = find_layout(header, parameters)
     if not counts_agree(header, parameters, layout):  # reading all of it may refuse it
-        raise ReadError("a glance needs one statement of each count", f"{header.file} has two", "Read all of it.")
+        raise ReadError("header and parameters must agree", f"{header.file} has two counts", "Read the whole file.")
     rate_hz, _ = _rate(header, parameters, layout)
     step = max(layout.frames // GLANCES, 1)
     points, _ = read_frames(path, header, parameters, layout, step)

@@ -134,7 +134,7 @@ def _map_channel(text: str, signal: AnalogLabel, file: str) -> tuple[Channel, st
     if unit is None:
         raise UnitError(
             f"analog channel #{signal.number} is mapped to {name!r} and must have a unit",
-            f"{file} says {(stated if stated is not None else signal.unit)!r}",
+            f"{file} states {(stated if stated is not None else signal.unit)!r}",
             f"Write the unit in the study's [channels]: '{name} [{channel.unit}]'.",
         )
     if channel.quantity == "signal" or (channel.quantity == "emg" and unit == "1"):
@@ -142,7 +142,7 @@ def _map_channel(text: str, signal: AnalogLabel, file: str) -> tuple[Channel, st
     if inner_unit(unit) != channel.unit:
         raise UnitError(
             f"analog channel #{signal.number} is mapped to {channel.name!r}, whose unit is {channel.unit}",
-            f"{file} gives it in {unit}",
+            f"{file} states {unit}",
             "Map another channel, or write the true unit in the study's [channels]: 'name [unit]'.",
         )
     return channel, unit

@@ -87,9 +87,9 @@ class LabelMap:
                     self._used[key] += 1
                     if self._used[key] > 1:
                         raise ChannelError(
-                            f"{key!r} of the study's [channels] must mean one channel",
+                            f"{key!r} of the study's [channels] must be the label of one channel",
                             f"{self._used[key]} channels of the file have this label",
-                            "Use '#<number>' instead, the number of the analog channel counted from 1.",
+                            "Use '#<number>' instead: the analog channel's number, counted from 1.",
                         )
                     return name
         return None

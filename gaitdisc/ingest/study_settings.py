@@ -159,7 +159,7 @@ def check_channels(channels: Mapping[str, str]) -> None:
         if unit is None:
             _check_spelling(place, name)
         if name in owners:
-            found = f"{owners[name]!r} and {label!r} both mean {name!r}"
+            found = f"{owners[name]!r} and {label!r} both name {name!r}"
             refuse(place, "name a channel that no other label names", found, "Use two names, or remove one label.")
         owners[name] = label
 

@@ -169,8 +169,8 @@ def _require(trial: Trial, key: str, names: Sequence[str]) -> Recording:
         said = "".join(f"; excluded: {one.what}" for one in trial.findings if one.kind == CONTRADICTED)
         raise ChannelError(
             f"the models need {', '.join(missing)}",
-            f"{recording.source.file or trial.name} has {len(recording.names)} channels without "
-            f"{'it' if len(missing) == 1 else 'them'}" + (said or (f"; the nearest is {nearest!r}" if nearest else "")),
+            f"none of the {len(recording.names)} channels of {recording.source.file or trial.name} is called so"
+            + (said or (f"; the nearest is {nearest!r}" if nearest else "")),
             ("Correct the file" if said else "Map the file's own label in [channels]")
             + ", or remove the name from [models].",
         )

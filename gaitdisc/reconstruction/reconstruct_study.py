@@ -169,7 +169,7 @@ def search_study(study: Study, most: int, settings: ReconstructionSettings | Non
     settings = settings or ReconstructionSettings()
     if settings.targets != STATES or settings.ahead_s:
         raise SchemaError(
-            "the sensor search is available for the states at their last sample",
+            "a sensor search is possible only for the present states",
             f"{settings.targets} are to be reconstructed {settings.ahead_s:g} s ahead",
             "Search without --targets and --ahead. Then name the sensors with --sensors.",
         )

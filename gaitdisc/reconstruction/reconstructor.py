@@ -101,7 +101,7 @@ class Reconstructor(Saved, file="model.json"):
         Returns
         -------
         Reconstructor
-            Itself.
+            The fitted model itself.
 
         Raises
         ------
@@ -119,7 +119,7 @@ class Reconstructor(Saved, file="model.json"):
         readings, states = ([_timeless(one, self.rate_hz) for one in trials] for trials in (readings, states))
         if len(readings) != len(states):
             raise ShapeError(
-                "a model needs as many trials of states as of readings",
+                "the numbers of trials of readings and of states must be equal",
                 f"there are {len(readings)} of readings and {len(states)} of states",
                 "Give one array of states for each array of readings.",
             )
@@ -128,7 +128,7 @@ class Reconstructor(Saved, file="model.json"):
         if both:
             raise ShapeError(
                 "a state must not be one of the sensors",
-                f"{both[0]!r} is in both",
+                f"{both[0]!r} is a sensor and a state",
                 "Remove it from the states, because it is measured.",
             )
         lags = Lags(
@@ -220,7 +220,7 @@ class Reconstructor(Saved, file="model.json"):
         Parameters
         ----------
         **settings
-            Those of the constructor.
+            Settings of the constructor.
         """
         if unknown := sorted(set(settings) - set(SETTINGS)):
             raise TrainingError(

@@ -202,7 +202,7 @@ def refuse_unknown_targets(targets: str) -> None:
     """Refuse what cannot be reconstructed."""
     if targets not in (STATES, *TARGETS):
         known = ", ".join((STATES, *TARGETS))
-        raise SchemaError("the kind of quantity is unknown", f"{targets!r} does not exist", f"Use: {known}.")
+        raise SchemaError(f"the targets must be one of {known}", f"found {targets!r}", "Use one of these.")
 
 
 def _find_targets(trial: Trial, study: Study, targets: str) -> tuple[Recording, list[Finding]]:

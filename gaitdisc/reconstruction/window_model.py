@@ -188,7 +188,7 @@ def fit_reconstructor(
     """
     if kind not in (*KINDS, *ON_REQUEST):
         known = ", ".join((*KINDS, *ON_REQUEST))
-        raise SchemaError("the kind of model is unknown", f"{kind!r} does not exist", f"Use: {known}.")
+        raise SchemaError(f"the kind of model must be one of {known}", f"found {kind!r}", "Use one of these.")
     device = fitting_device((kind,), device)
     fit = _find_fit(kind, len(what.sensors), seed, device)
     training, check = thin_windows(training, MOST_FITTED), thin_windows(check, MOST_FITTED)

@@ -33,7 +33,7 @@ class Source:
 
 @dataclass(frozen=True, eq=False)
 class Recording:
-    """Channels on one even time base; arrays are read-only, time is the first axis.
+    """Channels with evenly spaced times in common. The arrays are read-only, and time is their first axis.
 
     Parameters
     ----------

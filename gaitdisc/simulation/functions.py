@@ -35,7 +35,7 @@ def simulation_from_function(
     inputs: Sequence[str] | str = (),
     parameters: Mapping[str, float] | None = None,
 ) -> Simulation | PythonSimulation:
-    """Simulation of a Python function that gives the time derivative of each state.
+    """Make a simulation of a Python function that returns the time derivative of each state.
 
     The first arguments are the states, one for each derivative that the function returns. Arguments after them without
     a default are inputs, columns of the data; those with a default are parameters, and the default is their value (or a

@@ -105,9 +105,9 @@ def _table(path: Path) -> pd.DataFrame:
     import pandas as pd
 
     if path.suffix.lower() not in ENDINGS:
-        raise ReadError(
-            "measured data must be a CSV or Parquet table", f"{path.name} ends in {path.suffix!r}", "Export it as CSV."
-        )
+        found = f"{path.name} is a folder" if path.is_dir() else f"{path.name} ends in {path.suffix!r}"
+        remedy = "Export it as CSV, with all trials in one table and a column 'trial'."
+        raise ReadError("measured data must be one CSV or Parquet table", found, remedy)
     try:
         check_regular(path, LARGEST_TEXT_BYTES)
         if path.suffix.lower() == ".parquet":

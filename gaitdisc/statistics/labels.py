@@ -30,7 +30,7 @@ def check_same(one: pd.Index, other: pd.Index, words: str) -> None:
         raise ShapeError(
             f"both tables must have the same {words}, each once",
             found,
-            "Remove participants who were measured only once from both tables (a missing number is NaN), and make "
+            "Remove participants who are in one table only (write NaN for a missing number), and make "
             'the participant the index: table.set_index("participant").',
         )
 

@@ -55,9 +55,9 @@ def test_a_rule_takes_its_number_and_none_where_it_cannot():
     [{"least": 0.0}, {"least": 5}, {"variable": "elbow"}, {"part": "start"}, {"less": ""}, {"value": "speed_m_per_s"}],
 )
 def test_a_rule_that_cannot_be_applied_is_refused(wrong):
-    with pytest.raises(SchemaError, match=r"rule needs name, least.*0"):
+    with pytest.raises(SchemaError, match=r"rule must have name, least.*0"):
         rules_in({"rules": [{**GOOD, **wrong}]})
-    with pytest.raises(SchemaError, match="a name of its own"):
+    with pytest.raises(SchemaError, match="each rule must have its own name"):
         rules_in({"rules": [GOOD, GOOD]})
 
 

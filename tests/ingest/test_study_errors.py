@@ -162,7 +162,7 @@ def test_words_and_numbers_of_visits_are_no_dates():
         ({"x": "emg_sol_r [mVs]"}, "be in the list of units; found 'mVs', the nearest is 'mV'"),
         ({"x": "emg_solr"}, r"found 'emg_solr'\. Did you mean 'emg_sol_r'\?"),
         ({"x": " [V]"}, r"the name of a channel; found ' \[V\]'"),
-        ({"x": "emg_sol_r", "y": "emg_sol_r [V]"}, "'x' and 'y' both mean 'emg_sol_r'"),
+        ({"x": "emg_sol_r", "y": "emg_sol_r [V]"}, "'x' and 'y' both name 'emg_sol_r'"),
     ],
 )
 def test_channel_maps(channels, message):
