@@ -119,7 +119,7 @@ def refuse_blow_up(simulation: Simulation, measured: Measured) -> bool:
     """
     case, machine = set_up_case(simulation, without_spikes(measured)), compile_simulation(simulation)
     segments = case.segments((*case.learned, *case.held_out), 0.0)
-    rows = Rows(segments.trial, segments.begin, case.guess.starts(segments))
+    rows = Rows(segments.trial, segments.begin, segments.starts(case.guess))
     drive = case.measured.drive
     states, ok = machine.run(drive, rows, FEWEST_SAMPLES - 1)
     if np.mean(~ok) > MOST_LOST:

@@ -68,7 +68,7 @@ def discover_engine(
     refuse_unmeasured(mapping, engine, data)
     clean, rate_of = without_spikes(data), {coordinate.name: coordinate.speed for coordinate in engine.coordinates}
     window = (SMOOTH if engine.fibres else NARROW) * find_rhythm(clean.observed, clean.rate).period
-    states = guess_states(replace(mapping, model=""), clean, window, rate_of).states  # coordinates, then speeds
+    states = guess_states(replace(mapping, model=""), clean, window, rate_of)  # coordinates, then speeds
     refuse_other_units(mapping, engine, data, states)
     refuse_other_conventions(mapping, engine, data, states)
     met, read = tuple(_report_limits(engine, states, data)), {engine.path: "model", **(files or {})}

@@ -8,7 +8,7 @@ import numpy as np
 
 from gaitdisc.discovery.case import LENGTHENED, Case
 from gaitdisc.discovery.criteria import CRITERIA
-from gaitdisc.discovery.first_states import StateGuess, with_own_states
+from gaitdisc.discovery.first_states import with_own_states
 from gaitdisc.discovery.input_errors import wandering, with_drawn_errors
 from gaitdisc.discovery.noise import white_noise
 from gaitdisc.discovery.paired_test import PairedTest, compare_errors
@@ -31,9 +31,9 @@ def run_trials(case: Case, model: ScoredModel, trials: tuple[int, ...], like: Sc
     """
     guess, run = case.guess, model
     for length in _lengths(like.shooting.segments.span / case.rhythm.samples):
-        shooting = replace(case.shooting(case.segments(trials, length)).with_noise(like.noise), past=guess.states)
+        shooting = replace(case.shooting(case.segments(trials, length)).with_noise(like.noise), past=guess)
         run = _start_runs(shooting, model, guess)
-        guess = guess.with_run(shooting.segments, run.fit.states)
+        guess = shooting.segments.put(guess, run.fit.states)
     return run
 
 
@@ -166,10 +166,13 @@ def _apart(case: Case, as_read: ScoredModel, now: ScoredModel, trials: tuple[int
     return float(((before.fit.white - after.fit.white) ** 2).sum())
 
 
-def _start_runs(shooting: Shooting, model: ScoredModel, guess: StateGuess) -> ScoredModel:
-    """Return a model run over segments from the start states that suit it best, its constants as they are."""
+def _start_runs(shooting: Shooting, model: ScoredModel, guess: Values) -> ScoredModel:
+    """Return a model run over segments from the start states that suit it best, its constants as they are.
+
+    guess (trial, sample, state): of every trial, near which these are found
+    """
     machine, values = model.machine, model.fit.values
-    starts = with_own_states(shooting, machine, values, guess.starts(shooting.segments))
+    starts = with_own_states(shooting, machine, values, shooting.segments.starts(guess))
     return replace(model, shooting=shooting, fit=shooting.fitted(machine, (), values, starts, TURNS))
 
 

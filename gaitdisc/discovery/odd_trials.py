@@ -123,8 +123,8 @@ def fit_trials(case: Case, measured: Measured, samples: int) -> ScoredModel:
     guess = guess_states(simulation, measured, case.rhythm.period, rate_of)
     segments = cut_segments(measured.samples, tuple(range(len(measured.trials))), samples).spread(MOST_SEARCHED)
     spread = white_noise(np.nanstd(case.measured.observed, axis=(0, 1)))
-    shooting = Shooting(measured, segments, spread, case.substeps, guess.states)
-    return fit_model(shooting, simulation, (), guess.starts(segments))
+    shooting = Shooting(measured, segments, spread, case.substeps, guess)
+    return fit_model(shooting, simulation, (), segments.starts(guess))
 
 
 def trial_errors(model: ScoredModel) -> Values:

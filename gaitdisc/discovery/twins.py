@@ -22,7 +22,6 @@ from gaitdisc.discovery.case import Case
 from gaitdisc.discovery.catalogue import Request
 from gaitdisc.discovery.decision import Verdict
 from gaitdisc.discovery.discover import discover
-from gaitdisc.discovery.first_states import StateGuess
 from gaitdisc.discovery.held_out import begin_by_first_samples
 from gaitdisc.discovery.input_errors import with_drawn_errors
 from gaitdisc.discovery.kept_work import keep, note_found, outside_work, recall
@@ -63,11 +62,11 @@ class TwinSource:
         order = np.argsort(drive.time0)
         inputs, observed, states = (
             np.concatenate([one[part, : drive.samples[part]] for part in order])[None]
-            for one in (drive.inputs, measured.observed, case.guess.states)
+            for one in (drive.inputs, measured.observed, case.guess)
         )
         whole = Drive.of([*inputs], drive.rate, [float(drive.time0.min())])
         measured = replace(measured, drive=whole, observed=observed, trials=(first,))
-        return replace(case, measured=measured, guess=StateGuess(states))
+        return replace(case, measured=measured, guess=states)
 
     @cached_property
     def starts(self) -> list[Values]:

@@ -2,16 +2,17 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+import base64
+from collections.abc import Mapping, Sequence
 from dataclasses import asdict, replace
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 import pandas as pd
 
 from gaitdisc.processing.curves_figure import label_curve, range_words, sides_together
-from gaitdisc.processing.kept_parts import figure_again, hash_content, keep_part, read_part
+from gaitdisc.processing.kept_parts import hash_content, keep_part, read_part
 from gaitdisc.processing.leg_curves import FEET
 from gaitdisc.processing.pooled_cycles import CYCLES, PooledCycles
 from gaitdisc.processing.tables import (
@@ -164,6 +165,14 @@ def _save(sets: Sequence[PooledCycles], name: str, folder: Path, count: int) -> 
         files = [here / f"{one.name}.{ending}" for one in figures for ending in ("svg", "png", "csv")]
         keep_part(folder, part, key, [asdict(replace(one, data="")) for one in figures], files)
     return Block(block.anchor, block.heading, block.sentences, tuple(figures), block.tables)
+
+
+def figure_again(shown: Mapping[str, Any], folder: Path, inline_bytes: int) -> SavedFigure:
+    """Figure that stands in a folder, as data in a page that may have grown; chosen as `save_figure` does."""
+    svg, png = ((folder / f"{shown['name']}.{ending}").read_bytes() for ending in ("svg", "png"))
+    kind, content = ("svg+xml", svg) if len(svg) <= max(inline_bytes, len(png)) else ("png", png)
+    data = f"data:image/{kind};base64,{base64.b64encode(content).decode('ascii')}"
+    return SavedFigure(**{**shown, "data": data})
 
 
 @in_style
