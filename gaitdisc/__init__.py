@@ -41,7 +41,7 @@ if TYPE_CHECKING:
     from gaitdisc.reconstruction.reconstructor import Reconstructor as Reconstructor
     from gaitdisc.recording.field import Axis as Axis
     from gaitdisc.recording.field import Field as Field
-    from gaitdisc.recording.finding import Finding as Finding
+    from gaitdisc.recording.recording import Finding as Finding
     from gaitdisc.recording.recording import Recording as Recording
     from gaitdisc.recording.samples import Samples as Samples
     from gaitdisc.recording.strides import Strides as Strides
@@ -75,7 +75,7 @@ _HOME = {
     "Samples": ("recording.samples", "Samples"),
     "Field": ("recording.field", "Field"),
     "Axis": ("recording.field", "Axis"),
-    "Finding": ("recording.finding", "Finding"),
+    "Finding": ("recording.recording", "Finding"),
     "Inspection": ("processing.inspection", "Inspection"),
     "GaitdiscError": ("errors", "GaitdiscError"),
     "lowpass": ("library.filters", "lowpass"),

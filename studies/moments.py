@@ -22,7 +22,7 @@ from moments_tables import NAMES, SETS, Curves, Walk, against_plug_in_gait, bala
 from plug_in_gait_bones import TRUNK, WALKERS, bones, feet, static_file
 
 import gaitdisc as gd
-from gaitdisc.ingest.body_measures import read_body_measures
+from gaitdisc.ingest.c3d_parameters import read_body_measures
 from gaitdisc.kinematics.calibration import calibrate_body
 from gaitdisc.kinematics.marker_set import marker_set
 from gaitdisc.kinematics.motion import motion

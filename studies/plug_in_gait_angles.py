@@ -9,7 +9,7 @@ import numpy as np
 from plug_in_gait_bones import static_file
 
 import gaitdisc as gd
-from gaitdisc.ingest.body_measures import read_body_measures
+from gaitdisc.ingest.c3d_parameters import read_body_measures
 from gaitdisc.kinematics.calibration import calibrate_body
 from gaitdisc.kinematics.marker_set import marker_set
 from gaitdisc.kinematics.motion import motion

@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
-from dataclasses import asdict, replace
+import itertools
+from collections.abc import Callable, Sequence
+from dataclasses import replace
 from pathlib import Path
 
 from gaitdisc.clinic.clinical_reference import (
@@ -14,25 +15,21 @@ from gaitdisc.clinic.clinical_reference import (
     load_reference,
     save_reference,
 )
-from gaitdisc.clinic.laboratory import Laboratory, load_laboratory
+from gaitdisc.clinic.laboratory import load_laboratory
 from gaitdisc.clinic.page_words import ENGLISH, PageWords, english_words, read_words, write_words
 from gaitdisc.clinic.person_page import index_rows, write_index, write_person_page
 from gaitdisc.clinic.person_pdf import NO_PDF, can_write_pdf
-from gaitdisc.clinic.read_people import before_and_after, cycles_of_people, read_session
+from gaitdisc.clinic.reading import contrast, read_beside
 from gaitdisc.clinic.rules import rule_words
 from gaitdisc.errors import LOG, GaitdiscError, SchemaError, WriteError
 from gaitdisc.own_files import file_sha256
 from gaitdisc.processing.kept_parts import hash_content, keep_part, read_part
-from gaitdisc.processing.pooled_cycles import CYCLES
+from gaitdisc.processing.pooled_cycles import CYCLES, PooledCycles
 from gaitdisc.report.figure import file_names
-from gaitdisc.report.saved_page import find_page
-from gaitdisc.saved.kind import find_kind
 from gaitdisc.saved.provenance import Refusal
 from gaitdisc.saved.study_run import StudyRun
-from gaitdisc.saved.unit_folder import seal_text
 from gaitdisc.whole_file import remove_file, write_whole
 
-LABORATORY = "laboratory"  # folder of a run: what the pages were drawn with
 REFERENCE = "reference"  # folder of a run, beside its cycles
 WORDS = "words.csv"  # of another language, beside them
 
@@ -85,22 +82,6 @@ def load_kept_words(run_folder: Path) -> PageWords:
     """Words of the pages of a run, English where no others were kept; and what `clinic.toml` says."""
     words = read_words(run_folder / WORDS, _english()) if (run_folder / WORDS).is_file() else ENGLISH
     return replace(words, laboratory=load_laboratory(run_folder))
-
-
-def page_of_run(run: StudyRun, run_folder: Path) -> Path:
-    """Page of a run with pages of its people and their index, drawn where they are not those of this very run."""
-    own, place = load_laboratory(run_folder), run_folder / LABORATORY / "laboratory.json"
-    if own == Laboratory():
-        remove_file(place)
-    else:  # so that pages of another laboratory do not stand
-        write_whole(place, seal_text(asdict(own)))
-
-    def drawn() -> Path:
-        page = find_kind(run_folder).draw(run, run_folder)
-        write_people(run, run_folder)
-        return page
-
-    return find_page(run_folder, drawn)
 
 
 def write_people(
@@ -167,6 +148,53 @@ def write_person(
     for title, cycles in own.items():
         found += pages.write(read_session(title, cycles, run.nominal, pages.reference), names[title])
     return found
+
+
+def cycles_of_people(run: StudyRun) -> dict[str, list[PooledCycles]]:
+    """Cycles of every person and session by its title, in the order of the study."""
+    found: dict[str, list[PooledCycles]] = {}
+    for pooled in run.of(CYCLES):
+        found.setdefault(f"{pooled.subject} {pooled.session}".strip(), []).append(pooled)
+    return found
+
+
+def read_session(
+    title: str, cycles: Sequence[PooledCycles], nominal: str, reference: ClinicalReference | None
+) -> PersonSession:
+    """A session read: kept before refused, then the study's first condition, which each other one is compared with."""
+    ordered = sorted(cycles, key=lambda one: (not len(one.kept), one.condition != nominal))
+    main, *others = readings = tuple(read_beside(one, reference) for one in ordered)
+    contrasts = tuple(contrast(main, other) for other in others if main.legs and other.legs)
+    return PersonSession(title, readings, contrasts)
+
+
+def before_and_after(
+    run: StudyRun, reference: ClinicalReference | None, person: str, words: Sequence[str]
+) -> PersonSession:
+    """A person after and before, by the words of two sessions or conditions, of one condition or of one session."""
+    cycles = [one for one in run.of(CYCLES) if one.subject == person]
+    ordered = sorted(cycles, key=lambda one: one.condition != run.nominal)
+    own = [one for one in (read_beside(each, reference) for each in ordered) if one.legs]
+    if not own:
+        people = ", ".join(dict.fromkeys(pooled.subject for pooled in run.of(CYCLES)))
+        raise SchemaError(
+            f"the person must be one with kept cycles ({people})", f"found {person!r}", "Name one of them."
+        )
+    first, second = ([one for one in own if word in (one.pooled.session, one.pooled.condition)] for word in words)
+    pairs = [
+        (a, b)
+        for a, b in itertools.product(first, second)
+        if (a.pooled.condition == b.pooled.condition) != (a.pooled.session == b.pooled.session)
+    ]
+    if not pairs:
+        there = ", ".join(one.pooled.where for one in own)
+        raise SchemaError(
+            f"{person} needs kept cycles of {words[0]!r} and of {words[1]!r}, of one condition or of one session",
+            f"found {there}",
+            "Name two sessions, or two conditions, of these.",
+        )
+    before, after = pairs[0]
+    return PersonSession(" ".join((person, *words)), (after, before), (contrast(before, after),))
 
 
 class _Pages:

@@ -30,7 +30,7 @@ def angles(
     """Joint angles from markers or segments, with the package's signs; widths come from the static C3D, if any."""
     from dataclasses import replace
 
-    from gaitdisc.ingest.body_measures import read_body_measures
+    from gaitdisc.ingest.c3d_parameters import read_body_measures
     from gaitdisc.ingest.reading import read_trial, write_recording
     from gaitdisc.kinematics.motion import move_body, segment_angles
     from gaitdisc.own_files import claim_file

@@ -22,7 +22,7 @@ def moments(
     ] = 20.0,
 ) -> None:
     """Joint moments [N m/kg] and powers [W/kg], internal; frames without a known load of the foot are empty."""
-    from gaitdisc.ingest.body_measures import read_body_measures
+    from gaitdisc.ingest.c3d_parameters import read_body_measures
     from gaitdisc.ingest.reading import read_trial, write_recording
     from gaitdisc.kinematics.motion import move_body
     from gaitdisc.kinetics.body_inertia import Person

@@ -17,7 +17,7 @@ from gaitdisc.discovery.scored_model import ScoredModel
 from gaitdisc.discovery.segments import Segments
 from gaitdisc.discovery.shooting import Shooting
 from gaitdisc.recording.arrays import Values
-from gaitdisc.recording.finding import Finding
+from gaitdisc.recording.recording import Finding
 
 TURNS = 30
 ALIKE = "has the same simulated motion with and without the identified effect"

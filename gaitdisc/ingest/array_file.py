@@ -40,7 +40,6 @@ _SHOWN = 12  # variables that a message names
 _UNPACKED = (64 * MEBIBYTE, 100)  # bytes, and times the file: values deflate up to 12 times, a bomb 1,000 times
 _REMEDY = "See docs/sessions.md, recordings in .mat and .npz, for the form of a path."
 _COMPLEX = "an array of complex numbers, which a recording cannot contain"
-ENDINGS = (".mat", ".npz")
 
 
 @dataclass(frozen=True, eq=False)

@@ -11,7 +11,6 @@ import numpy as np
 
 from gaitdisc._version import __version__
 from gaitdisc.errors import ReadError, SamplingError
-from gaitdisc.ingest.body_measures import body_mass
 from gaitdisc.ingest.c3d_analog import analog_labels, analog_streams
 from gaitdisc.ingest.c3d_kinetics import house_kinetics
 from gaitdisc.ingest.c3d_labels import LabelMap, file_events
@@ -23,7 +22,7 @@ from gaitdisc.ingest.c3d_layout import (
     list_unscaled,
     read_frames,
 )
-from gaitdisc.ingest.c3d_parameters import C3DHeader, C3DParameters, read_c3d_header, read_c3d_parameters
+from gaitdisc.ingest.c3d_parameters import C3DHeader, C3DParameters, body_mass, read_c3d_header, read_c3d_parameters
 from gaitdisc.ingest.c3d_points import Streams, add_part, file_segments, point_names, point_streams
 from gaitdisc.ingest.columns import is_ignored
 from gaitdisc.ingest.force_plates import force_plates, plate_loads, plate_streams

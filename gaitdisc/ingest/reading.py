@@ -11,8 +11,6 @@ import numpy as np
 
 from gaitdisc.channel import hint_nearest
 from gaitdisc.errors import ChannelError, ReadError, SamplingError, StrideError, WriteError
-from gaitdisc.ingest.array_file import ENDINGS as ARRAYS
-from gaitdisc.ingest.array_file import read_arrays
 from gaitdisc.ingest.columns import IGNORE, split_unit
 from gaitdisc.ingest.plausible import with_flexion_positive, without_frozen, without_impossible
 from gaitdisc.ingest.stated_units import per_kg_findings, plausible_unit
@@ -37,6 +35,7 @@ READERS = {
     ".tsv": read_table,
     ".parquet": read_table,
 }
+ARRAYS = (".mat", ".npz")
 ENDINGS = (".c3d", *READERS, *ARRAYS)
 
 
@@ -151,6 +150,8 @@ def _read(given: object, channels: Mapping[str, str] | None, reader: C3DReader |
     path = Path(given)
     ending = path.suffix.lower()
     if ending in ARRAYS:
+        from gaitdisc.ingest.array_file import read_arrays
+
         return read_arrays(path, channels, part, reader.process if reader else None)
     if ending == ".c3d":
         from gaitdisc.ingest.c3d import read_c3d

@@ -22,7 +22,7 @@ from gaitdisc.recording.strides import PERCENT
 from gaitdisc.response.over_participants import compare_columns
 from gaitdisc.statistics.cluster_test import PermutationPlan, one_sample_test, two_sample_test
 from gaitdisc.statistics.holm_sidak import check_level
-from gaitdisc.statistics.labels import check_numbers, check_same, in_one_order
+from gaitdisc.statistics.signed_rank import check_numbers, check_same, in_one_order
 
 if TYPE_CHECKING:
     from gaitdisc.comparison.mismatch import Mismatch

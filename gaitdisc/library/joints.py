@@ -6,7 +6,7 @@ from collections.abc import Sequence
 from dataclasses import replace
 from pathlib import Path
 
-from gaitdisc.ingest.body_measures import read_body_measures
+from gaitdisc.ingest.c3d_parameters import read_body_measures
 from gaitdisc.ingest.reading import read_trial
 from gaitdisc.kinematics.motion import move_body
 from gaitdisc.kinetics.body_inertia import Person

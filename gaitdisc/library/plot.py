@@ -16,6 +16,7 @@ from gaitdisc.library.walks import make_recording
 from gaitdisc.recording import Recording, Strides
 from gaitdisc.recording.arrays import finite_rows
 from gaitdisc.report.panels import axes_or_new
+from gaitdisc.words import label, unit_text
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -382,8 +383,6 @@ def _refuse_other(given: object, kind: str, made_by: str) -> None:
 
 
 def _stride_axis(axes: Axes, channel: str, unit: str) -> None:
-    from gaitdisc.words import label, unit_text
-
     axes.set_xlim(0, 100)
     axes.set_xlabel(STRIDE)
     axes.set_ylabel(f"[{unit_text(unit)}]")

@@ -9,7 +9,7 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 
 from gaitdisc.errors import GaitdiscError, ShapeError
-from gaitdisc.ingest.body_measures import read_body_measures
+from gaitdisc.ingest.c3d_parameters import read_body_measures
 from gaitdisc.ingest.study import Participant, PlannedTrial, Study
 from gaitdisc.ingest.trial_sets import functional_trial, static_trial
 from gaitdisc.kinematics.calibration import Calibration, calibrate_body

@@ -6,7 +6,7 @@ import re
 import sys
 from collections.abc import Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, TypeAlias, Union
+from typing import TYPE_CHECKING, Any, NamedTuple, TypeAlias, Union
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -113,17 +113,20 @@ class Reconstructor(Saved, file="model.json"):
             If too few windows remain, or a state does not vary.
         """
         many = isinstance(x, list | tuple) and (isinstance(x[0], Recording) or np.ndim(x[0]) > 1)
-        readings, states = (list(x), list(y)) if many else ([x], [y])  # type: ignore[arg-type]
-        for one, other in zip(readings, states, strict=False):
-            _check_same_times(one, other, self.rate_hz)
-        readings, states = ([_timeless(one, self.rate_hz) for one in trials] for trials in (readings, states))
+        trials_of_x, trials_of_y = (list(x), list(y)) if many else ([x], [y])  # type: ignore[arg-type]
+        readings, states = (
+            [_read(trial, self.rate_hz, words) for trial in trials]
+            for trials, words in ((trials_of_x, "readings"), (trials_of_y, "states"))
+        )
+        for trial_of_x, trial_of_y in zip(readings, states, strict=False):
+            _check_same_times(trial_of_x, trial_of_y, self.rate_hz)
         if len(readings) != len(states):
             raise ShapeError(
                 "the numbers of trials of readings and of states must be equal",
                 f"there are {len(readings)} of readings and {len(states)} of states",
                 "Give one array of states for each array of readings.",
             )
-        sensors, targets = _names(readings[0], "sensor"), _names(states[0], "state")
+        sensors, targets = readings[0].names_or("sensor"), states[0].names_or("state")
         both = [name for name in targets if name in sensors]
         if both:
             raise ShapeError(
@@ -137,7 +140,7 @@ class Reconstructor(Saved, file="model.json"):
             round(self.ahead_s * self.rate_hz),
         )
         what = Sensing(sensors, targets, lags, float(self.rate_hz))
-        windows = [self._windows(one, other, what) for one, other in zip(readings, states, strict=True)]
+        windows = [self._windows(*pair, what) for pair in zip(readings, states, strict=True)]
         parts = [each.last_block(CHECKED, what.reach_s + SEAM_S) for each in windows]
         training, check = (stacked([part[k] for part in parts]) for k in (0, 1))
         done = fit_reconstructor(self.kind, what, training, check, self.seed)
@@ -166,8 +169,8 @@ class Reconstructor(Saved, file="model.json"):
             If there are more or fewer sensors than at `fit`.
         """
         model = self.model
-        x = _timeless(x, self.rate_hz)
-        return np.array(model(self._recording(x, model.reconstructor.sensing.sensors)).values)
+        readings = _read(x, self.rate_hz, "readings")
+        return np.array(model(self._recording(readings, model.reconstructor.sensing.sensors)).values)
 
     def score(self, x: Readings, y: Readings) -> float:
         """R2 of the estimates, averaged over states.
@@ -179,9 +182,10 @@ class Reconstructor(Saved, file="model.json"):
         y : array_like (time, state), DataFrame or Recording
             Measured states at the same times.
         """
-        _check_same_times(x, y, self.rate_hz)
+        states = _read(y, self.rate_hz, "states")
+        _check_same_times(_read(x, self.rate_hz, "readings"), states, self.rate_hz)
         estimated = self.predict(x)
-        measured = _array(_in_order(_timeless(y, self.rate_hz), self.model.reconstructor.sensing.states), "states")
+        measured = states.in_order(self.model.reconstructor.sensing.states)
         known = np.isfinite(estimated).all(axis=1) & np.isfinite(measured).all(axis=1)
         return float(np.mean(r2(measured[known], estimated[known])))
 
@@ -201,7 +205,7 @@ class Reconstructor(Saved, file="model.json"):
             Windows without states; percent stride of the last reading of each window.
         """
         what = self.model.reconstructor.sensing
-        read = self._recording(x, what.sensors)
+        read = self._recording(_read(x, self.rate_hz, "readings"), what.sensors)
         return cut_windows(read, what.sensors, (), what.lags, np.asarray(percent, float))
 
     def get_params(self, deep: bool = True) -> dict[str, Any]:  # noqa: ARG002
@@ -259,10 +263,8 @@ class Reconstructor(Saved, file="model.json"):
             fitted = f"{len(what.sensors)} sensors to {len(what.states)} states, fitted to {windows} windows"
         return f"Reconstructor({self.kind!r}, {self.rate_hz:g} Hz, {self.history_s:g} s of history: {fitted})"
 
-    def _recording(self, x: Any, sensors: tuple[str, ...]) -> Recording:
-        if isinstance(x, Recording):
-            _check_rate(self.rate_hz, x.rate_hz, "recording")
-        values = _array(_in_order(x, sensors), "readings")
+    def _recording(self, readings: Given, sensors: tuple[str, ...]) -> Recording:
+        values = readings.in_order(sensors)
         if values.shape[1] != len(sensors):
             raise ShapeError(
                 f"the model needs {len(sensors)} sensors",
@@ -271,15 +273,15 @@ class Reconstructor(Saved, file="model.json"):
             )
         return Recording(np.arange(len(values)) / self.rate_hz, values, _signals(sensors))
 
-    def _windows(self, x: Any, y: Any, what: Sensing) -> Samples:
-        read, states = self._recording(x, what.sensors), _array(y, "states")
-        if states.shape != (len(read.time), len(what.states)):
+    def _windows(self, readings: Given, states: Given, what: Sensing) -> Samples:
+        read = self._recording(readings, what.sensors)
+        if states.values.shape != (len(read.time), len(what.states)):
             raise ShapeError(
                 f"every reading must have a row of {len(what.states)} states",
-                f"the readings have shape {read.values.shape}, the states {states.shape}",
+                f"the readings have shape {read.values.shape}, the states {states.values.shape}",
                 "Give one row per time in both.",
             )
-        both = Recording(read.time, np.hstack([read.values, states]), _signals((*what.sensors, *what.states)))
+        both = Recording(read.time, np.hstack([read.values, states.values]), _signals((*what.sensors, *what.states)))
         return what.windows(both, np.zeros(len(read.time)))
 
 
@@ -302,43 +304,61 @@ def _signals(names: tuple[str, ...]) -> tuple[Channel, ...]:
     return tuple(Channel(name, "signal", "1") for name in names)
 
 
-def _array(given: Any, words: str) -> Values:
-    values = real_array(given.values if isinstance(given, Recording) else given)
+class Given(NamedTuple):
+    """Readings or states of one trial, as they were given."""
+
+    values: Values  # (time, column)
+    names: tuple[str, ...]  # of the columns; none of an array
+    time: Values | None  # [s]; None where no times were given
+
+    def names_or(self, word: str) -> tuple[str, ...]:
+        """Names of the columns; a word and their number where they have none."""
+        return self.names or tuple(f"{word}_{number}" for number in range(1, self.values.shape[1] + 1))
+
+    def in_order(self, wanted: tuple[str, ...]) -> Values:
+        """Columns of the sensors or states by name, where both have names; else as given."""
+        if not self.names or all(re.fullmatch(r"(sensor|state)_\d+", name) for name in wanted):
+            return self.values
+        absent = [name for name in wanted if name not in self.names]
+        if absent:
+            raise ShapeError(
+                f"the model needs the columns {', '.join(wanted)}",
+                f"{absent[0]!r} is not among {', '.join(self.names[:8])}",
+                "Use the column names of fit, or an array in the order of fit.",
+            )
+        return self.values[:, [self.names.index(name) for name in wanted]]
+
+
+def _read(given: Any, rate_hz: float, words: str) -> Given:
+    """Read a trial from a recording, a table, a column or an array; its times, if any, must have the model's rate."""
+    if isinstance(given, Recording):
+        _check_rate(rate_hz, given.rate_hz, "recording")
+        return Given(given.values, given.names, given.time)
+    names, time = (), None
     if hasattr(given, "to_frame"):  # one column of a DataFrame
-        values = values[:, None]
+        names = () if given.name is None else (str(given.name),)
+        given = given.to_frame(given.name if names else words)
+    elif hasattr(given, "columns"):
+        names = tuple(map(str, given.columns))
+    if hasattr(given, "columns") and has_times(given):
+        time, labels, given = frame_columns(given)
+        _check_rate(rate_hz, mean_rate(time), "table")
+        names = names and tuple(labels)
+    elif hasattr(given, "columns") and given.index.dtype.kind == "f":
+        time = np.asarray(given.index, float)
+    values = real_array(given)
     if values.ndim != 2:
         raise ShapeError(
             f"{words} must be an array (time, column)",
             f"found {values.shape}",
             "Put time first, with one column per sensor or state: x[:, None] for a single one.",
         )
-    return values
+    return Given(values, names, time)
 
 
-def _timeless(given: Any, rate_hz: float) -> Any:
-    """A table without its times, after a look whether they have the rate of the model; all else as it is."""
-    if not hasattr(given, "columns") or not has_times(given):
-        return given
-    timed = frame_columns(given)
-    _check_rate(rate_hz, mean_rate(timed.time), "table")
-    return given[[name for name in given.columns if str(name) in timed.labels]]
-
-
-def _times(given: Any) -> Values | None:
-    """Times of a recording, of a table, or of an index of fractions [s]; an array has none."""
-    if isinstance(given, Recording):
-        return given.time
-    if not hasattr(given, "iloc"):
-        return None
-    table = given.to_frame("value") if hasattr(given, "to_frame") else given
-    if has_times(table):
-        return frame_columns(table).time
-    return np.asarray(table.index, float) if table.index.dtype.kind == "f" else None
-
-
-def _check_same_times(x: Any, y: Any, rate_hz: float) -> None:
+def _check_same_times(readings: Given, states: Given, rate_hz: float) -> None:
     """Refuse readings and states that were measured more than half a sample apart: they are paired row by row."""
-    first, second = _times(x), _times(y)
+    first, second = readings.time, states.time
     if first is None or second is None or len(first) != len(second):
         return
     row = int(np.argmax(np.abs(first - second)))
@@ -357,30 +377,3 @@ def _check_rate(rate_hz: float, found_hz: float, what: str) -> None:
             f"the {what} has {found_hz:g}",
             "Resample it, or state its rate: Reconstructor(rate_hz=...).",
         )
-
-
-def _list_names(given: Any) -> tuple[str, ...]:
-    """Names of the columns of a table or a recording; none of an array."""
-    if isinstance(given, Recording):
-        return given.names
-    names = (given.name,) if hasattr(given, "to_frame") else getattr(given, "columns", ())
-    return tuple(str(name) for name in names if name is not None)
-
-
-def _names(given: Any, word: str) -> tuple[str, ...]:
-    return _list_names(given) or tuple(f"{word}_{n}" for n in range(1, _array(given, f"{word}s").shape[1] + 1))
-
-
-def _in_order(given: Any, sensors: tuple[str, ...]) -> Any:
-    """Columns of the sensors or states by name, where both have names; else as given."""
-    names = _list_names(given)
-    if not names or all(re.fullmatch(r"(sensor|state)_\d+", name) for name in sensors):
-        return given
-    absent = [name for name in sensors if name not in names]
-    if absent:
-        raise ShapeError(
-            f"the model needs the columns {', '.join(sensors)}",
-            f"{absent[0]!r} is not among {', '.join(names[:8])}",
-            "Use the column names of fit, or an array in the order of fit.",
-        )
-    return _array(given, "readings")[:, [names.index(name) for name in sensors]]

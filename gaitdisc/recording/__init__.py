@@ -3,8 +3,7 @@
 This room imports the ground (errors, units, channel names, files) alone.
 """
 
-from gaitdisc.recording.finding import Finding
-from gaitdisc.recording.recording import Recording, Source
+from gaitdisc.recording.recording import Finding, Recording, Source
 from gaitdisc.recording.samples import Samples, Scale, Trajectory, fit_scale
 from gaitdisc.recording.strides import PERCENT, Cycle, DroppedStride, Strides
 from gaitdisc.recording.trial import Event, Surface, Trial

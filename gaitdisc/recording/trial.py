@@ -10,8 +10,7 @@ import numpy as np
 
 from gaitdisc.errors import ChannelError, SamplingError, ShapeError, UnitError
 from gaitdisc.recording.arrays import Values, freeze, frozen
-from gaitdisc.recording.finding import Finding
-from gaitdisc.recording.recording import Recording
+from gaitdisc.recording.recording import Finding, Recording
 from gaitdisc.recording.strides import interpolate
 from gaitdisc.recording.wrapping import unwrap, wrap_recording
 from gaitdisc.words import as_html

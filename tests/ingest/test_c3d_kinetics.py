@@ -5,9 +5,8 @@ import pytest
 from texts import says
 
 from gaitdisc.channel import Channel
-from gaitdisc.ingest.body_measures import body_mass, find_body_measures, read_body_measures
 from gaitdisc.ingest.c3d_kinetics import house_kinetics
-from gaitdisc.ingest.c3d_parameters import C3DParameters
+from gaitdisc.ingest.c3d_parameters import C3DParameters, body_mass, find_body_measures, read_body_measures
 from gaitdisc.ingest.reading import read_trial
 
 KINDS = ("per body mass", "body mass", "moment sign")

@@ -25,8 +25,8 @@ from texts import says
 
 from gaitdisc.channel import Channel, vocabulary
 from gaitdisc.errors import ChannelError, ShapeError
-from gaitdisc.ingest.body_measures import read_body_measures
 from gaitdisc.ingest.c3d import C3DReader
+from gaitdisc.ingest.c3d_parameters import read_body_measures
 from gaitdisc.ingest.reading import read_trial
 from gaitdisc.kinematics.calibration import calibrate_body
 from gaitdisc.kinematics.marker_set import marker_set

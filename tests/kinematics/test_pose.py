@@ -9,7 +9,7 @@ from hypothesis import strategies as st
 from scipy.spatial.transform import Rotation
 
 from gaitdisc.errors import ShapeError
-from gaitdisc.ingest.body_measures import read_body_measures
+from gaitdisc.ingest.c3d_parameters import read_body_measures
 from gaitdisc.ingest.reading import read_trial
 from gaitdisc.kinematics.pose import (
     Pose,

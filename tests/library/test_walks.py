@@ -137,7 +137,7 @@ def files(gait_data):
 
 
 def test_angles_are_those_of_the_room_below(files):
-    from gaitdisc.ingest.body_measures import read_body_measures
+    from gaitdisc.ingest.c3d_parameters import read_body_measures
 
     walk, static = files
     trial, standing = gd.read(walk), gd.read(static)

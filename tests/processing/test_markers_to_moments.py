@@ -8,8 +8,8 @@ from changed_trials import with_column, with_stream
 from texts import says
 
 from gaitdisc.channel import Channel
-from gaitdisc.ingest.body_measures import read_body_measures
 from gaitdisc.ingest.c3d import read_c3d
+from gaitdisc.ingest.c3d_parameters import read_body_measures
 from gaitdisc.kinematics.calibration import calibrate_body
 from gaitdisc.kinematics.marker_set import marker_set
 from gaitdisc.kinetics.body_inertia import Person

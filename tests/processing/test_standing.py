@@ -8,8 +8,8 @@ import pytest
 from changed_trials import gained, markers_at, with_labels_exchanged, with_stream
 from texts import says
 
-from gaitdisc.ingest.body_measures import read_body_measures
 from gaitdisc.ingest.c3d import C3DReader, read_c3d
+from gaitdisc.ingest.c3d_parameters import read_body_measures
 from gaitdisc.ingest.reading import read_trial
 from gaitdisc.ingest.study import Conditions, Kinematics, Participant, PlannedTrial, Study
 from gaitdisc.kinematics.calibration import calibrate_body

@@ -6,7 +6,7 @@ from changed_trials import markers_at
 from texts import says
 
 from gaitdisc.channel import Channel, vocabulary
-from gaitdisc.ingest.body_measures import read_body_measures
+from gaitdisc.ingest.c3d_parameters import read_body_measures
 from gaitdisc.ingest.reading import read_trial
 from gaitdisc.ingest.study import Filters
 from gaitdisc.kinematics.motion import move_body

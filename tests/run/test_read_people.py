@@ -2,7 +2,7 @@ import pytest
 from made_clinic import made_controls, made_person, made_run
 
 from gaitdisc.clinic.clinical_reference import PersonSession
-from gaitdisc.clinic.read_people import before_and_after, cycles_of_people, read_session
+from gaitdisc.clinic.run_pages import before_and_after, cycles_of_people, read_session
 from gaitdisc.errors import SchemaError
 
 

@@ -12,8 +12,8 @@ from texts import says
 
 from gaitdisc.errors import ComparisonError, ShapeError
 from gaitdisc.statistics.groups import adjusted_rand, best_cut, find_groups, mean_silhouette
-from gaitdisc.statistics.labels import check_numbers, in_one_order
 from gaitdisc.statistics.r2 import r2, why_no_r2
+from gaitdisc.statistics.signed_rank import check_numbers, in_one_order
 
 
 def groups_of(sizes, apart, features=5, seed=0):
