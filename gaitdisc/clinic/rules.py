@@ -17,7 +17,7 @@ from gaitdisc.errors import SchemaError
 from gaitdisc.processing.leg_curves import BY_NAME, LegCurves
 from gaitdisc.processing.pooled_cycles import SPATIOTEMPORAL
 
-PARTS = ("contact", "loading", "single support", "stance", "late stance", "push-off", "swing", "mid swing", "cycle")
+PARTS = ("contact", "loading", "mid stance", "stance", "late stance", "push-off", "swing", "mid swing", "cycle")
 RULE_WORDS = ("name", "variable", "value", "part", "take", "less", "more", "group")
 TAKES = {"min": np.min, "max": np.max, "mean": np.mean, "range": np.ptp}
 LOADING, LATE, PUSH_OFF = (0, 20), 30, (50, 75)  # % of the cycle
@@ -86,7 +86,8 @@ def find_part(part: str, stance_percent: float) -> slice | None:
     else:
         off, swing = stance_percent, 100 - stance_percent
         first, last = {
-            "single support": (round(off) - 50, 50),  # of legs that walk alike: the other's off and contact
+            # middle third of single support, of legs that walk alike: from the other's off to its contact
+            "mid stance": (round(off - 50 + swing / 3), round(off - 50 + 2 * swing / 3)),
             "stance": (0, round(off)),
             "late stance": (LATE, round(off)),
             "swing": (round(off), 100),
