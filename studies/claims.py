@@ -68,13 +68,13 @@ def write_table(subject: str) -> str:
     columns = [name for name in claims[0] if name != "at"]
     for claim in claims:
         text = "\n".join(read_section(place) for place in claim["at"])
-        files = ", ".join(dict.fromkeys(place.partition(": ")[0] for place in claim["at"]))
+        files = ", ".join(dict.fromkeys(place.partition(".md: ")[0] for place in claim["at"]))
         kept = {"item": claim.get("item"), "command": f"`{claim.get('command')}`"}
         words = [kept[name] if name in kept else fill(claim[name], text, name == columns[0]) for name in columns]
         rows.append([*words, files])
     if len({row[-1] for row in rows}) > 1:
-        return markdown_table(" | ".join([*columns, "file"]), rows)
-    return markdown_table(" | ".join(columns), [row[:-1] for row in rows]) + f"\n\nTables: `{rows[0][-1]}`."
+        return markdown_table(" | ".join([*columns, "page"]), rows)
+    return markdown_table(" | ".join(columns), [row[:-1] for row in rows]) + f"\n\nTables: `{rows[0][-1]}.md`."
 
 
 if __name__ == "__main__":
