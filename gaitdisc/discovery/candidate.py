@@ -14,7 +14,6 @@ from gaitdisc.discovery.criteria import CRITERIA
 from gaitdisc.discovery.places import Place, kinematic_rates
 from gaitdisc.simulation.expression import Tree, parse, substitute, written
 from gaitdisc.simulation.parts import Parameter, State, Term
-from gaitdisc.simulation.running import compile_simulation
 from gaitdisc.simulation.simulation import Simulation
 from gaitdisc.simulation.unit_check import unit_of_state
 
@@ -67,7 +66,6 @@ FLEXIBLE = (
 PASSIVE = ("coulomb_friction", "quadratic_drag", "contact_damper", "hysteresis", "series_elasticity")
 
 UNNAMED = "unnamed"
-UNNAMED_MEANS = "an effect that is not in the catalogue"
 
 Identity = tuple[str, tuple[str, ...]]
 
@@ -224,16 +222,8 @@ def list_candidates(
 ) -> tuple[Candidate, ...]:
     """List everything that could explain a gap, missing physics beside wrong numbers, inputs and sensors."""
     numbers = [
-        Candidate(
-            "wrong_parameter",
-            "parameter",
-            parameter.name,
-            "wrong_parameter",
-            means="a wrong number",
-            value=parameter.value,
-            bounds=find_bounds(parameter),
-        )
-        for parameter in simulation.parameters
+        Candidate("wrong_parameter", "parameter", one.name, "wrong_parameter", value=one.value, bounds=find_bounds(one))
+        for one in simulation.parameters
     ]
     sensors = [
         Candidate("sensor_error", "observation", name, error)
@@ -365,27 +355,20 @@ def _castings(shape: Shape, place: Place, driving: tuple[str, ...]) -> list[tupl
 
 def no_shape(place: Place, pieces: tuple[str, ...], role: str) -> Candidate:
     """Return a term that no shape is; role: what stands for x in it."""
-    return Candidate("missing_physics", place.kind, place.name, UNNAMED, pieces, role=role, means=UNNAMED_MEANS)
+    return Candidate("missing_physics", place.kind, place.name, UNNAMED, pieces, role=role)
 
 
 def list_unnamed_terms(simulation: Simulation, places: tuple[Place, ...]) -> tuple[Candidate, ...]:
     """List plain terms that no shape is: an input, a state times an input, the acceleration of another body."""
-    rate_of = kinematic_rates(simulation, compile_simulation(simulation))
+    rate_of = kinematic_rates(simulation)
     inputs = [signal.name for signal in simulation.driving if signal.name != "phase"]
-    return tuple(
-        no_shape(place, (term,), place.motions[0][0])
-        for place in places
-        for term in _terms(simulation, place, inputs, rate_of)
-    )
-
-
-def _terms(simulation: Simulation, place: Place, inputs: list[str], rate_of: dict[str, str]) -> Iterator[str]:
-    own, rate = place.motions[0]
-    for name in inputs:
-        yield name
-        yield f"{own}*{name}"
-    if rate and isinstance(simulation, Simulation):
-        for other, speed in rate_of.items():
-            if other != own:
-                nothing = {port.name: parse("0") for port in simulation.ports}
-                yield written(_write_out(simulation, dict(simulation.equations)[speed], nothing))
+    equations, nothing = dict(simulation.equations), {port.name: parse("0") for port in simulation.ports}
+    found = []
+    for place in places:
+        own, rate = place.motions[0]
+        terms = [term for name in inputs for term in (name, f"{own}*{name}")]
+        if rate and isinstance(simulation, Simulation):
+            speeds = [speed for other, speed in rate_of.items() if other != own]
+            terms += [written(_write_out(simulation, equations[speed], nothing)) for speed in speeds]
+        found += [no_shape(place, (term,), own) for term in terms]
+    return tuple(found)
