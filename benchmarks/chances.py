@@ -143,7 +143,7 @@ def ask(number: int, bench: Path, seed: int, out: Path, twins: int) -> dict[str,
     if named and twins:
         source = TwinSource(case, verdict.found, verdict.found.noise)
         if source.draw(0) is not None:
-            answers = [*search_records([(source, one) for one in range(twins)], model, replace(ALL, twins=twins))]
+            answers = [*search_records([source], model, replace(ALL, twins=twins))]
             line |= {"twins": [one == _name(found) for one in answers], "with twins": time.process_time() - began}
     shutil.rmtree(folder)
     return line

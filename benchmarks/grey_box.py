@@ -158,9 +158,7 @@ def beginnings(simulation: Simulation, measured: Measured, guess: Values, rhythm
     count = measured.samples.astype(int)
     u = np.concatenate([measured.drive.inputs[k, :n] for k, n in enumerate(count)])
     x = np.nan_to_num(np.concatenate([guess[k, :n] for k, n in enumerate(count)]))
-    for candidate in list_candidates(
-        simulation, list_places(simulation, compile_simulation(simulation)), read_shapes()
-    ):
+    for candidate in list_candidates(simulation, list_places(simulation), read_shapes()):
         if candidate.bounds:
             continue  # that is fitted anyway
         along = evaluate(simulation, candidate.role, Points(np.zeros(len(x)), x, u)) if candidate.role else np.zeros(1)
@@ -185,8 +183,8 @@ def criterion(fit: OptimizeResult, terms: int, samples: float) -> float:
 
 def picked(simulation: Simulation, measured: Measured, seconds: float) -> tuple[GreyBox, OptimizeResult, Tried | None]:
     """The fit that the criterion picks, and its effect."""
-    rhythm, machine = find_rhythm(measured.observed, measured.rate), compile_simulation(simulation)
-    guess = guess_states(simulation, measured, rhythm.period, kinematic_rates(simulation, machine))
+    rhythm = find_rhythm(measured.observed, measured.rate)
+    guess = guess_states(simulation, measured, rhythm.period, kinematic_rates(simulation))
     samples = np.isfinite(measured.observed).sum() / (SHARE_OF_PERIOD * rhythm.samples)
     box = box_of(simulation, measured, guess)
     fit = box.fit(np.zeros(len(box.fitted)))

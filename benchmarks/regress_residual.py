@@ -104,10 +104,10 @@ class Record:
 
 def record_of(simulation: Simulation, measured: Measured) -> Record:
     """States as discover first guesses them; rates by PySINDy's smoothed differences over the same window."""
-    rhythm, machine = find_rhythm(measured.observed, measured.rate), compile_simulation(simulation)
+    rhythm = find_rhythm(measured.observed, measured.rate)
     window = max(int(SHARE_OF_PERIOD * rhythm.samples) // 2 * 2 + 1, 5)
     slope: Any = ps.SmoothedFiniteDifference(smoother_kws={"window_length": window, "polyorder": 3})
-    rate_of = kinematic_rates(simulation, machine)
+    rate_of = kinematic_rates(simulation)
     guess = np.nan_to_num(guess_states(simulation, measured, rhythm.period, rate_of))
     trials = []
     for number, count in enumerate(measured.samples.astype(int)):
@@ -116,7 +116,7 @@ def record_of(simulation: Simulation, measured: Measured) -> Record:
         known = np.asarray(np.isfinite(measured.observed[number, :count]).all(axis=1))
         trials.append(Trial(np.asarray(slope(states, time)), points, known))
     rows = [k for k, state in enumerate(simulation.states) if state.name not in rate_of]
-    return Record(simulation, list_places(simulation, machine), rows, rhythm, trials)
+    return Record(simulation, list_places(simulation), rows, rhythm, trials)
 
 
 def drawn(record: Record, every: int) -> Iterator[Column]:

@@ -6,6 +6,7 @@ import math
 import re
 from collections.abc import Collection, Iterator, Mapping
 from dataclasses import dataclass, field
+from itertools import product
 from typing import NamedTuple
 
 from gaitdisc.discovery.catalogue import Shape, name_factors, with_names
@@ -13,7 +14,6 @@ from gaitdisc.discovery.criteria import CRITERIA
 from gaitdisc.discovery.places import Place, kinematic_rates
 from gaitdisc.simulation.expression import Tree, parse, substitute, written
 from gaitdisc.simulation.parts import Parameter, State, Term
-from gaitdisc.simulation.running import compile_simulation
 from gaitdisc.simulation.simulation import Simulation
 from gaitdisc.simulation.unit_check import unit_of_state
 
@@ -66,7 +66,6 @@ FLEXIBLE = (
 PASSIVE = ("coulomb_friction", "quadratic_drag", "contact_damper", "hysteresis", "series_elasticity")
 
 UNNAMED = "unnamed"
-UNNAMED_MEANS = "an effect that is not in the catalogue"
 
 Identity = tuple[str, tuple[str, ...]]
 
@@ -222,61 +221,67 @@ def list_candidates(
     simulation: Simulation, places: tuple[Place, ...], shapes: tuple[Shape, ...]
 ) -> tuple[Candidate, ...]:
     """List everything that could explain a gap, missing physics beside wrong numbers, inputs and sensors."""
-    used = "\n".join(text for _, text in (*simulation.definitions, *simulation.equations))
-    found = [
-        Candidate(
-            "wrong_parameter",
-            "parameter",
-            parameter.name,
-            "wrong_parameter",
-            means="a wrong number",
-            value=parameter.value,
-            bounds=find_bounds(parameter),
-        )
-        for parameter in simulation.parameters
+    numbers = [
+        Candidate("wrong_parameter", "parameter", one.name, "wrong_parameter", value=one.value, bounds=find_bounds(one))
+        for one in simulation.parameters
     ]
-    for name in (signal.name for signal in simulation.driving):
-        if _occurs(name, used):
-            scaled = () if f"gain_of_{name}" in simulation.values() else ("input_gain",)  # a number of the file
-            found += [Candidate("input_error", "input", name, error) for error in ("input_delay", *scaled)]
-    for each in simulation.driving if isinstance(simulation, Simulation) else ():
-        if _occurs(each.name, used) and not each.wraps:  # it may act through a first-order lag
+    sensors = [
+        Candidate("sensor_error", "observation", name, error)
+        for name, _ in simulation.observations
+        for error in ("sensor_gain", "sensor_offset", "sensor_lag", "sensor_drift")
+    ]
+    inputs = _list_input_errors(simulation)
+    taken = {*simulation.signals, *(name for one in inputs for name in one.states)}
+    return (*numbers, *inputs, *sensors, *_list_missing_terms(simulation, places, shapes, taken))
+
+
+def _list_input_errors(simulation: Simulation) -> list[Candidate]:
+    """List what may be wrong with each input that stands in the simulation: it is late, scaled, or lags."""
+    used = "\n".join(text for _, text in (*simulation.definitions, *simulation.equations))
+    driving = [signal for signal in simulation.driving if re.search(rf"\b{re.escape(signal.name)}\b", used)]
+    found = []
+    for name in (signal.name for signal in driving):
+        scaled = () if f"gain_of_{name}" in simulation.values() else ("input_gain",)  # a number of the file
+        found += [Candidate("input_error", "input", name, error) for error in ("input_delay", *scaled)]
+    for each in driving if isinstance(simulation, Simulation) else ():
+        if not each.wraps:  # it may act through a first-order lag
             own = free_name(f"{each.name}_lagged", {*simulation.signals})
             states, names = {own: f"({each.name} - {own})/_seconds"}, {"seconds": "time_constant"}
             found.append(Candidate("input_error", "input", each.name, "input_lag", names=names, states=states))
-    for name, _ in simulation.observations:
-        found += [
-            Candidate("sensor_error", "observation", name, error)
-            for error in ("sensor_gain", "sensor_offset", "sensor_lag", "sensor_drift")
-        ]
+    return found
+
+
+def _list_missing_terms(
+    simulation: Simulation, places: tuple[Place, ...], shapes: tuple[Shape, ...], taken: set[str]
+) -> Iterator[Candidate]:
+    """Yield every shape at every place where it has a meaning.
+
+    taken: names that no state of an effect may have; those of these effects are added
+    """
     driving = tuple(signal.name for signal in simulation.driving if not signal.wraps)
     has_phase = any(signal.name == "phase" for signal in simulation.inputs)
-    for place in places:
-        for shape in shapes:
-            if (shape.needs == "angle" and not place.angle) or (shape.uses_phase and not has_phase):
-                continue
-            if shape.states and not isinstance(simulation, Simulation):
-                continue  # the states of a Python object are its own
-            for role, names in _castings(shape, place, driving):
-                taken = {*simulation.signals, *(name for one in found for name in one.states)}
-                written = names | {constant: f"_{constant}" for constant in shape.constants}
-                written |= {state: free_name(f"{shape.name}_{place.name}", taken) for state in shape.states}
-                found.append(
-                    Candidate(
-                        "missing_physics",
-                        place.kind,
-                        place.name,
-                        shape.name,
-                        shape.written(written),
-                        shape.constants,
-                        role=role,
-                        means=shape.means,
-                        names=shape.names,
-                        states={written[one]: with_names(rate, written) for one, rate in shape.states.items()},
-                        power=place.power * (role.partition(" - ")[0] == place.motions[0][0]),
-                    )
-                )
-    return tuple(found)
+    for place, shape in product(places, shapes):
+        if (shape.needs == "angle" and not place.angle) or (shape.uses_phase and not has_phase):
+            continue
+        if shape.states and not isinstance(simulation, Simulation):
+            continue  # the states of a Python object are its own
+        for role, names in _castings(shape, place, driving):
+            written = names | {constant: f"_{constant}" for constant in shape.constants}
+            written |= {state: free_name(f"{shape.name}_{place.name}", taken) for state in shape.states}
+            taken |= {written[state] for state in shape.states}
+            yield Candidate(
+                "missing_physics",
+                place.kind,
+                place.name,
+                shape.name,
+                shape.written(written),
+                shape.constants,
+                role=role,
+                means=shape.means,
+                names=shape.names,
+                states={written[one]: with_names(rate, written) for one, rate in shape.states.items()},
+                power=place.power * (role.partition(" - ")[0] == place.motions[0][0]),
+            )
 
 
 def saturations(simulation: Simulation, servos: Mapping[str, tuple[float, float, str]]) -> tuple[Candidate, ...]:
@@ -292,7 +297,7 @@ def saturations(simulation: Simulation, servos: Mapping[str, tuple[float, float,
         "min(max({s}, {lower_limit}), {upper_limit})": two_sizes,
     }
     found = [
-        Candidate("input_error", "input", signal.name, "input_saturation", (form,), limits, signal.name)
+        Candidate("input_error", "input", signal.name, "input_saturation", (form,), limits, role=signal.name)
         for signal in simulation.inputs
         for form, limits in forms.items()
     ]
@@ -300,7 +305,7 @@ def saturations(simulation: Simulation, servos: Mapping[str, tuple[float, float,
         rest, limits = f"{constant!r} + {moved}", {"limit": "half widths of x"}
         form = f"(min(max({gain!r}*{{s}} + {rest}, -{{limit}}), {{limit}}) - ({rest}))/{gain!r}"
         force = f"{gain!r}*{name} + {rest}"
-        found.append(Candidate("input_error", "input", name, "force_saturation", (form,), limits, force))
+        found.append(Candidate("input_error", "input", name, "force_saturation", (form,), limits, role=force))
     return tuple(found)
 
 
@@ -348,33 +353,22 @@ def _castings(shape: Shape, place: Place, driving: tuple[str, ...]) -> list[tupl
     return []
 
 
-def _occurs(name: str, text: str) -> bool:
-    return re.search(rf"\b{re.escape(name)}\b", text) is not None
-
-
 def no_shape(place: Place, pieces: tuple[str, ...], role: str) -> Candidate:
     """Return a term that no shape is; role: what stands for x in it."""
-    return Candidate("missing_physics", place.kind, place.name, UNNAMED, pieces, role=role, means=UNNAMED_MEANS)
+    return Candidate("missing_physics", place.kind, place.name, UNNAMED, pieces, role=role)
 
 
 def list_unnamed_terms(simulation: Simulation, places: tuple[Place, ...]) -> tuple[Candidate, ...]:
     """List plain terms that no shape is: an input, a state times an input, the acceleration of another body."""
-    rate_of = kinematic_rates(simulation, compile_simulation(simulation))
+    rate_of = kinematic_rates(simulation)
     inputs = [signal.name for signal in simulation.driving if signal.name != "phase"]
-    return tuple(
-        no_shape(place, (term,), place.motions[0][0])
-        for place in places
-        for term in _terms(simulation, place, inputs, rate_of)
-    )
-
-
-def _terms(simulation: Simulation, place: Place, inputs: list[str], rate_of: dict[str, str]) -> Iterator[str]:
-    own, rate = place.motions[0]
-    for name in inputs:
-        yield name
-        yield f"{own}*{name}"
-    if rate and isinstance(simulation, Simulation):
-        for other, speed in rate_of.items():
-            if other != own:
-                nothing = {port.name: parse("0") for port in simulation.ports}
-                yield written(_write_out(simulation, dict(simulation.equations)[speed], nothing))
+    equations, nothing = dict(simulation.equations), {port.name: parse("0") for port in simulation.ports}
+    found = []
+    for place in places:
+        own, rate = place.motions[0]
+        terms = [term for name in inputs for term in (name, f"{own}*{name}")]
+        if rate and isinstance(simulation, Simulation):
+            speeds = [speed for other, speed in rate_of.items() if other != own]
+            terms += [written(_write_out(simulation, equations[speed], nothing)) for speed in speeds]
+        found += [no_shape(place, (term,), own) for term in terms]
+    return tuple(found)

@@ -8,6 +8,7 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 
 import numpy as np
+from numpy.typing import NDArray
 
 from gaitdisc.discovery.candidate import saturations
 from gaitdisc.discovery.catalogue import ALL, Request
@@ -17,6 +18,7 @@ from gaitdisc.discovery.first_states import guess_states
 from gaitdisc.discovery.fit_by_engine import EngineFit, base_runs, errs_less, held_out, with_own_runs
 from gaitdisc.discovery.grids import find_rhythm
 from gaitdisc.discovery.result import ENGINE, Discovery, FoundEffect
+from gaitdisc.discovery.scored_model import Part
 from gaitdisc.discovery.spiked_samples import without_spikes
 from gaitdisc.engines.conventions import refuse_other_conventions, refuse_other_units
 from gaitdisc.engines.engine import Engine
@@ -99,21 +101,8 @@ def discover_engine(
 
 def search(fit: EngineFit, base: EngineAnswer, request: Request, read: dict[Path, str]) -> EngineAnswer:
     """Search the expansion along the record; of what it names, that stays which the engine's own runs bear out."""
-    mapping, engine, data, states = fit.mapping, fit.engine, fit.measured, fit.states
-    request.progress(f"computing the accelerations of {engine.path.name} along the record with {engine.called}")
-    linear, driven = expand(mapping, engine, data, states)
-    request = replace(request, added=saturations(mapping, getattr(engine, "servos", {})))
-    if not request.effects:  # a limit is the input's own, and of no force
-        request = replace(
-            request, possible=lambda candidate: (candidate.kind, candidate.name) != ("port", "input_saturation")
-        )
-    found, answer = find_missing(linear, driven, request, read)
-    now, own = answer.values(), {k: one for k, one in mapping.values().items() if engine.as_force(k) is None}
-    moved = {name: now[name] for name, value in own.items() if abs(now[name] - value) > MOVED * abs(value)}
-    if moved and (len(found.effects) > 1 or engine.fibres):  # one number alone rests on the engine's own runs
-        request.progress(f"expanding the model again about the new value of {' and '.join(moved)}")
-        linear, driven = expand(mapping, engine, data, states, moved)
-        found, answer = find_missing(linear, driven, request, read)
+    mapping, engine, data = fit.mapping, fit.engine, fit.measured
+    found, linear = search_expansion(fit, request, read)
     request.progress(f"running the augmented model with {engine.called}")
     runs = base_runs(base.written.engine, fit) if fit.low_pass.margin else base.runs  # filtered as the record was
     runs = runs.among(np.isin(runs.at.trial, [trial_called(data, name) for name in found.runs.names]))
@@ -130,13 +119,7 @@ def search(fit: EngineFit, base: EngineAnswer, request: Request, read: dict[Path
         if not engine.fibres:  # their runs take too long
             found = fit.fitted(found, linear, runs.among(~held))
         runs = replace(runs, after=fit.left(found, fit.parts, runs)).with_floor(hidden)
-        both = list(zip(found.effects, fit.parts, strict=True))
-        sure = tuple(part for one, part in both if request.effects or not one.small)
-        kept = sure if errs_less(runs, runs.before, held) else ()
-        for part in kept if len(kept) > 1 and not request.effects else ():
-            others = tuple(one for one in fit.parts if one is not part)
-            if not errs_less(runs, fit.left(found, others, runs), held):
-                kept = tuple(one for one in kept if one is not part)
+        kept = keep_borne_out(fit, found, runs, held)
         if not kept:
             runs = replace(runs, after=runs.before)
             if not runs.before_at_noise:
@@ -144,6 +127,7 @@ def search(fit: EngineFit, base: EngineAnswer, request: Request, read: dict[Path
                 return EngineAnswer(found, mapping, base.written, runs, engine)
             found, augmented, written = replace(found, effects=(), corrections=()), mapping, base.written
         elif len(kept) < len(fit.parts):
+            both = list(zip(found.effects, fit.parts, strict=True))
             idle = tuple(replace(one, small=True) for one, part in both if part not in kept)
             effects = tuple(one for one, part in both if part in kept)
             fit.parts, found = kept, without_beside(found, effects, idle)
@@ -154,6 +138,43 @@ def search(fit: EngineFit, base: EngineAnswer, request: Request, read: dict[Path
         found = replace(found, verdict="no_gap", rivals=(), explanations=())
     runs = runs.with_floor(hidden)
     return EngineAnswer(with_own_runs(found, runs, fit, linear), augmented, written, runs, engine)
+
+
+def search_expansion(fit: EngineFit, request: Request, read: dict[Path, str]) -> tuple[Discovery, Simulation]:
+    """Search the expansion of an engine along the record, once more about numbers that moved far.
+
+    returns: the answer, and the expansion that it is of
+    """
+    mapping, engine, data, states = fit.mapping, fit.engine, fit.measured, fit.states
+    request.progress(f"computing the accelerations of {engine.path.name} along the record with {engine.called}")
+    linear, driven = expand(mapping, engine, data, states)
+    request = replace(request, added=saturations(mapping, getattr(engine, "servos", {})))
+    if not request.effects:  # a limit is the input's own, and of no force
+        request = replace(request, possible=lambda one: (one.kind, one.name) != ("port", "input_saturation"))
+    found, answer = find_missing(linear, driven, request, read)
+    now, own = answer.values(), {k: one for k, one in mapping.values().items() if engine.as_force(k) is None}
+    moved = {name: now[name] for name, value in own.items() if abs(now[name] - value) > MOVED * abs(value)}
+    if moved and (len(found.effects) > 1 or engine.fibres):  # one number alone rests on the engine's own runs
+        request.progress(f"expanding the model again about the new value of {' and '.join(moved)}")
+        linear, driven = expand(mapping, engine, data, states, moved)
+        found, _ = find_missing(linear, driven, request, read)
+    return found, linear
+
+
+def keep_borne_out(fit: EngineFit, found: Discovery, runs: OwnRuns, held: NDArray[np.bool_]) -> tuple[Part, ...]:
+    """Return the explanations without which the engine's own runs err more; of those that a person gave, all or none.
+
+    held (run,): which runs the search held out
+    """
+    both = zip(found.effects, fit.parts, strict=True)
+    kept = tuple(part for one, part in both if found.given or not one.small)
+    if not errs_less(runs, runs.before, held):
+        return ()
+    for part in kept if len(kept) > 1 and not found.given else ():
+        others = tuple(one for one in fit.parts if one is not part)
+        if not errs_less(runs, fit.left(found, others, runs), held):
+            kept = tuple(one for one in kept if one is not part)
+    return kept
 
 
 def without_beside(found: Discovery, effects: tuple[FoundEffect, ...], idle: tuple[FoundEffect, ...]) -> Discovery:

@@ -68,7 +68,7 @@ def find_missing(
     found = seal(replace(found, findings=(*listed, *found.findings)), augmented, data, files)
     if request.twins:
         request.answered(found, augmented)
-        found = search_twins(found, explained, model, request)
+        found = search_twins(found, *explained, model, request)
     return found, augmented
 
 

@@ -26,7 +26,6 @@ from gaitdisc.recording import Finding
 from gaitdisc.recording.arrays import Values
 from gaitdisc.simulation.compiled_simulation import Drive
 from gaitdisc.simulation.measured import Measured
-from gaitdisc.simulation.running import compile_simulation
 
 KIND = "odd trial"
 SIGN = "the sign of "
@@ -119,8 +118,7 @@ def _either(found: list[Odd]) -> Odd:
 def fit_trials(case: Case, measured: Measured, samples: int) -> ScoredModel:
     """Fit the start states of the simulation as read to runs of so many samples, over all trials."""
     simulation = case.search.base
-    rate_of = kinematic_rates(simulation, compile_simulation(simulation))
-    guess = guess_states(simulation, measured, case.rhythm.period, rate_of)
+    guess = guess_states(simulation, measured, case.rhythm.period, kinematic_rates(simulation))
     segments = cut_segments(measured.samples, tuple(range(len(measured.trials))), samples).spread(MOST_SEARCHED)
     spread = white_noise(np.nanstd(case.measured.observed, axis=(0, 1)))
     shooting = Shooting(measured, segments, spread, case.substeps, guess)

@@ -36,7 +36,7 @@ class Place:
     power: float = 1.0  # of a positive push: 1 where it drives its own state, -1 where it holds it back
 
 
-def kinematic_rates(simulation: Simulation, machine: Compiled) -> dict[str, str]:
+def kinematic_rates(simulation: Simulation) -> dict[str, str]:
     """Find the states whose equation only says that their derivative is another state.
 
     returns: Position-like state -> the state that is its rate
@@ -44,7 +44,7 @@ def kinematic_rates(simulation: Simulation, machine: Compiled) -> dict[str, str]
     states = [state.name for state in simulation.states]
     rng = np.random.default_rng(0)
     x, u = rng.uniform(0.1, 1.0, (16, len(states))), rng.uniform(0.1, 0.9, (16, len(simulation.inputs)))
-    rates = _rates(machine, x, u)
+    rates = _rates(compile_simulation(simulation), x, u)
     return {
         name: other
         for (position, name), (rate, other) in permutations(enumerate(states), 2)
@@ -52,17 +52,17 @@ def kinematic_rates(simulation: Simulation, machine: Compiled) -> dict[str, str]
     }
 
 
-def list_places(simulation: Simulation, machine: Compiled) -> tuple[Place, ...]:
+def list_places(simulation: Simulation) -> tuple[Place, ...]:
     """List where a missing effect may enter: the ports, or else every equation that is not mere kinematics."""
-    rate_of = kinematic_rates(simulation, machine)
+    rate_of, states = kinematic_rates(simulation), tuple(state.name for state in simulation.states)
     if not simulation.ports:
-        named = [state.name for state in simulation.states if state.name not in rate_of]
+        named = (name for name in states if name not in rate_of)
         return tuple(_place(simulation, "equation", name, name, rate_of) for name in named)
     found = []
     for port in (one.name for one in simulation.ports):
-        moved = moved_by(simulation, machine, port)
-        own = find_driven_state(machine.states, port, moved)
-        power = float(np.sign(moved[:, machine.states.index(rate_of.get(own, own))].sum()))
+        moved = moved_by(simulation, port)
+        own = find_driven_state(states, port, moved)
+        power = float(np.sign(moved[:, states.index(rate_of.get(own, own))].sum()))
         found.append(replace(_place(simulation, "port", port, own, rate_of), power=power))
     return tuple(found)
 
@@ -79,13 +79,13 @@ def find_driven_state(states: tuple[str, ...], port: str, moved: Values) -> str:
     return states[int(np.argmax(np.abs(moved).mean(axis=0)))]
 
 
-def moved_by(simulation: Simulation, machine: Compiled, port: str) -> Values:
+def moved_by(simulation: Simulation, port: str) -> Values:
     """Return by how much a push of 1 at a port raises each state's derivative (point, state)."""
-    pushed = compile_simulation(simulation.with_effect(Term(port, "port", "push", "1")))
     rng = np.random.default_rng(0)
     x = rng.uniform(-0.3, 0.3, (16, len(simulation.states)))
     u = rng.uniform(0.1, 0.9, (16, len(simulation.inputs)))
-    return _rates(pushed, x, u) - _rates(machine, x, u)
+    pushed = simulation.with_effect(Term(port, "port", "push", "1"))
+    return _rates(compile_simulation(pushed), x, u) - _rates(compile_simulation(simulation), x, u)
 
 
 def _rates(machine: Compiled, x: Values, u: Values) -> Values:

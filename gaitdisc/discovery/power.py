@@ -125,7 +125,7 @@ def find_power_for(effect: str, case: Case, as_read: ScoredModel, model: Simulat
         values[place] = none + (size if estimate.value >= 0 else -size)
         grown = replace(now, fit=replace(fit, values=values))
         source = TwinSource(case, grown, as_read.noise, None if part.candidate.states else as_read)
-        answers = Counter(search_records([(source, one) for one in range(request.twins)], model, request))
+        answers = Counter(search_records([source], model, request))
         found.append(answers[effect])
         most = answers.most_common(1)[0][0]
         if min(found[-2:]) >= POWER * request.twins and len(found) > 1:

@@ -12,7 +12,7 @@ from collections import Counter
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
-from itertools import product, starmap
+from itertools import product
 from typing import Any, NoReturn
 
 import numpy as np
@@ -127,14 +127,13 @@ def refuse_twins(model: str) -> NoReturn:
 
 
 def search_twins(
-    found: Discovery, explained: tuple[Case, ScoredModel, Verdict], model: Simulation, request: Request
+    found: Discovery, case: Case, as_read: ScoredModel, verdict: Verdict, model: Simulation, request: Request
 ) -> Discovery:
     """Return an answer with what the same search says of its twins: with what was found in them, and without.
 
-    explained: the case that was decided, the simulation as read in it, and the verdict
+    case, as_read: that was decided, and the simulation as read in it
     model: the simulation that was searched
     """
-    case, as_read, verdict = explained
     acts = verdict.found.parts and found.verdict not in RANDOM
     models = [verdict.found, as_read] if acts else [as_read]
     sources = [TwinSource(case, now, verdict.found.noise) for now in models]
@@ -143,21 +142,21 @@ def search_twins(
         finding = Finding("note", "twins", case.measured.source, what, "how often this answer is right")
         return replace(found, findings=(*found.findings, finding))
     note_found("")
-    answers = [*search_records([*product(sources, range(request.twins))], model, request)]
+    answers = [*search_records(sources, model, request)]
     acting, without = (dict(Counter(some)) for some in (answers[: -request.twins], answers[-request.twins :]))
     return replace(found, twins=Twins(request.twins, _name(found), acting, without))
 
 
-def search_records(records: Sequence[tuple[TwinSource, int]], model: Simulation, request: Request) -> Iterator[str]:
-    """Search simulated records side by side by the rule of a request, and give the answers in their order.
-
-    records: for each what it is drawn from, and its number
-    """
-    rule, pending, begun = replace(request, effects=(), twins=0, progress=lambda _: None), None, time.perf_counter()
+def search_records(sources: Sequence[TwinSource], model: Simulation, request: Request) -> Iterator[str]:
+    """Search as many records of each source as a request has twins, side by side by its rule; the answers in order."""
+    rule, begun = replace(request, effects=(), twins=0, progress=lambda _: None), time.perf_counter()
+    records, pending = [*product(sources, range(request.twins))], None
     for done, (source, number) in enumerate(records, 1):
         answer = recall(f"record {number}", source.now.fit.values.tobytes())
         if answer is None:
-            pending = pending or _search_side_by_side(records[done - 1 :], model, rule)
+            if pending is None:  # those before were kept by an earlier run
+                twins = (one.draw(its_number) for one, its_number in records[done - 1 :])
+                pending = _search_side_by_side(model, twins, len(records) - done + 1, rule)
             answer = next(pending)
             left = (time.perf_counter() - begun) / done * (len(records) - done)
             request.progress(f"{done} of {len(records)} simulated records are searched; about {left:.0f} s remain")
@@ -165,16 +164,17 @@ def search_records(records: Sequence[tuple[TwinSource, int]], model: Simulation,
         yield answer
 
 
-def _search_side_by_side(records: Sequence[tuple[TwinSource, int]], model: Simulation, rule: Request) -> Iterator[str]:
-    processes = min(os.cpu_count() or 1, MOST_PROCESSES, len(records))
-    drawn = ((model, source.draw(number), rule) for source, number in records)
+def _search_side_by_side(
+    model: Simulation, twins: Iterator[Measured | None], count: int, rule: Request
+) -> Iterator[str]:
+    processes = min(os.cpu_count() or 1, MOST_PROCESSES, count)
     if processes == 1:
-        yield from starmap(_search, drawn)
+        yield from (_search(model, twin, rule) for twin in twins)
         return
     from joblib import Parallel, delayed
 
     side_by_side = Parallel(n_jobs=processes, return_as="generator", inner_max_num_threads=1)
-    answers: Any = side_by_side(delayed(_search)(*one) for one in drawn)
+    answers: Any = side_by_side(delayed(_search)(model, twin, rule) for twin in twins)
     yield from answers
 
 

@@ -117,8 +117,9 @@ class PythonCompiled(Compiled):
 
 @dataclass(frozen=True)
 class Divergence:
-    """The last that is known of a row that did not stay finite."""
+    """The last that is known of a row."""
 
+    row: int
     trial: int
     time: float  # of its last finite sample [s]
     state: str  # that changes fastest there, relative to its size
@@ -126,16 +127,23 @@ class Divergence:
     parameter: str  # that the state's rate depends on most there; empty where it depends on none
 
 
-def refuse_divergence(compiled: Compiled, drive: Drive, rows: Rows, states: Values, ok: NDArray[np.bool_]) -> None:
-    """Refuse a run of which a row did not stay finite.
+def divergences(
+    compiled: Compiled, drive: Drive, rows: Rows, states: Values, ok: NDArray[np.bool_]
+) -> tuple[Divergence, ...]:
+    """Where each row that did not stay finite was last seen.
 
-    states (row, step, state), ok (row,): from `Compiled.run`
+    states (row, step, state): from `Compiled.run`
+    ok (row,): from `Compiled.run`
     """
-    lost = np.flatnonzero(~ok)
-    if not lost.size:
+    return tuple(_divergence(compiled, drive, rows, states, int(row)) for row in np.flatnonzero(~ok))
+
+
+def refuse_divergence(compiled: Compiled, drive: Drive, rows: Rows, states: Values, ok: NDArray[np.bool_]) -> None:
+    """Refuse a run of which a row did not stay finite."""
+    if np.all(ok):
         return
-    first = find_divergence(compiled, drive, rows, states, int(lost[0]))
-    more = f"; so do {lost.size - 1} more of {len(ok)} runs" if lost.size > 1 else ""
+    first, *others = divergences(compiled, drive, rows, states, ok)
+    more = f"; so do {len(others)} more of {len(ok)} runs" if others else ""
     driven = f"{first.parameter!r}, which affects its rate most, and " if first.parameter else ""
     late = " (the time must be in seconds, not in milliseconds)" if drive.rate < SLOW_HZ else ""
     raise SimulationError(
@@ -147,8 +155,7 @@ def refuse_divergence(compiled: Compiled, drive: Drive, rows: Rows, states: Valu
     )
 
 
-def find_divergence(compiled: Compiled, drive: Drive, rows: Rows, states: Values, row: int) -> Divergence:
-    """Find where a row was last seen, and what drives it; states (row, step, state): from `Compiled.run`."""
+def _divergence(compiled: Compiled, drive: Drive, rows: Rows, states: Values, row: int) -> Divergence:
     finite = np.isfinite(states[row]).all(axis=1)
     last = max(int(np.argmin([*finite, False])) - 1, 0)
     trial, sample = int(rows.trial[row]), int(rows.begin[row]) + last
@@ -168,9 +175,9 @@ def find_divergence(compiled: Compiled, drive: Drive, rows: Rows, states: Values
     parameter = ""
     if len(values):
         moved = values * (1 + _NUDGE * np.eye(len(values)))
-        times, states_there, inputs, delayed = (np.repeat(each, len(values), axis=0) for each in (t, x[None], u, late))
+        times, here, inputs, delayed = (np.repeat(each, len(values), axis=0) for each in (t, x[None], u, late))
         with np.errstate(all="ignore"):
-            change = compiled.rates(times, states_there, inputs, moved, delayed)[:, fastest] - rates[fastest]
+            change = compiled.rates(times, here, inputs, moved, delayed)[:, fastest] - rates[fastest]
         change = np.nan_to_num(np.abs(change), nan=0.0, posinf=0.0)
         parameter = compiled.parameters[int(np.argmax(change))] if change.max() > 0 else ""
-    return Divergence(trial, float(t[0]), compiled.states[fastest], float(x[fastest]), parameter)
+    return Divergence(row, trial, float(t[0]), compiled.states[fastest], float(x[fastest]), parameter)

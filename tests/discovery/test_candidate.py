@@ -19,7 +19,7 @@ WAVE = Candidate("missing_physics", "port", "load", "wave", ("sin(_w*t)", "cos(_
 
 
 def _candidates(simulation, shapes=None):
-    places = list_places(simulation, compile_simulation(simulation))
+    places = list_places(simulation)
     return list_candidates(simulation, places, read_shapes() if shapes is None else shapes)
 
 
@@ -156,7 +156,7 @@ def test_a_lagged_input_replaces_the_input_everywhere_but_in_its_own_equation():
 
 
 def terms(simulation):
-    found = list_unnamed_terms(simulation, list_places(simulation, compile_simulation(simulation)))
+    found = list_unnamed_terms(simulation, list_places(simulation))
     return [(one.place, one.pieces[0]) for one in found]
 
 
@@ -173,7 +173,7 @@ def test_another_bodys_acceleration_may_act_with_nothing_at_its_port():
 
 def test_each_compiles_where_it_is_put():
     simulation = two_rods()
-    for one in list_unnamed_terms(simulation, list_places(simulation, compile_simulation(simulation))):
+    for one in list_unnamed_terms(simulation, list_places(simulation)):
         assert one.name == "unnamed"
         compile_simulation(one.written(simulation, {"factor": "0.5"}))
 

@@ -11,14 +11,13 @@ from gaitdisc.discovery.discover import discover
 from gaitdisc.discovery.estimates import NORMAL_95, name_estimates, slot_units, wrong_starts
 from gaitdisc.discovery.places import list_places
 from gaitdisc.discovery.scored_model import Part
-from gaitdisc.simulation.running import compile_simulation
 
 
 @pytest.fixture(scope="module")
 def candidates():
     base = mass()
     own = Shape("stick", ("x/(1 + x**2)",), names={"factor": "stiffness"})
-    return list_candidates(base, list_places(base, compile_simulation(base)), (*read_shapes(), own))
+    return list_candidates(base, list_places(base), (*read_shapes(), own))
 
 
 def named(candidates, label, values, piece=""):

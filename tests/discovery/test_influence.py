@@ -12,7 +12,6 @@ from gaitdisc.discovery.places import list_places
 from gaitdisc.discovery.process_noise import rank_process_noise
 from gaitdisc.discovery.result import Estimate, FoundEffect
 from gaitdisc.errors import SimulationError
-from gaitdisc.simulation.running import compile_simulation
 from gaitdisc.simulation.simulation_file import parse_simulation
 
 PORT = '[ports.load]\nunit = "N"\n'
@@ -79,7 +78,7 @@ def test_all_has_influence_where_all_is_as_it_should_be(measured):
 def test_pushes_that_show_nowhere_explain_nothing(measured):
     case = set_up_case(parse_simulation(MUTED), measured)
     now = case.as_read()
-    places = list_places(case.search.base, compile_simulation(case.search.base))
+    places = list_places(case.search.base)
     best, muted = rank_process_noise(now, places)
     assert (best.place.name, muted.place.name) == ("load", "wind")
     assert np.isfinite(best.bic) and np.isinf(muted.bic)

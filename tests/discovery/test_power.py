@@ -41,8 +41,8 @@ def test_records_have_more_and_more_of_the_effect(monkeypatch):
     """A record counts where exactly this effect is named; two sizes that are found end it; positive damping resists."""
     measured, factors = record(mass(), 3, Experiment(trials=2, seconds=6.0)), []
 
-    def searched(records, *_):
-        for source, number in records:
+    def searched(sources, _, request):
+        for source, number in ((one, k) for one in sources for k in range(request.twins)):
             now, begun = source.now, source.begun
             place = now.machine.parameters.index(now.names[0]["factor"])
             factors.append((now.fit.values[place], number + len(begun.parts)))  # it begins without
