@@ -32,8 +32,8 @@ def test_no_rule_is_a_diagnosis():
 
 @pytest.mark.parametrize(
     ("part", "first", "last"),
-    [("contact", 0, 0), ("loading", 0, 20), ("mid stance", 23, 37), ("stance", 0, 60), ("late stance", 30, 60), ("push-off", 50, 75),
-     ("swing", 60, 100), ("mid swing", 73, 87), ("cycle", 0, 100)],
+    [("contact", 0, 0), ("loading", 0, 20), ("mid stance", 23, 37), ("stance", 0, 60), ("late stance", 30, 60),
+     ("push-off", 50, 75), ("swing", 60, 100), ("mid swing", 73, 87), ("cycle", 0, 100)],
 )  # fmt: skip
 def test_parts_of_a_cycle_with_foot_off_at_60_percent(part, first, last):
     found = find_part(part, 60.0)
