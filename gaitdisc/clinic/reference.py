@@ -7,7 +7,6 @@ from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.special import stdtrit
 
 from gaitdisc.clinic.clinical_reference import Band, ClinicalReference, Limits, ReferenceLeg
 from gaitdisc.errors import SchemaError
@@ -105,6 +104,8 @@ def limits_about(mean: float, sd: float, people: int, tests: int = 1, far: float
     """
     if people < FEWEST:
         return Limits(float("-inf"), float("inf"), mean, sd, people)
+    from scipy.special import stdtrit  # which takes a tenth of a second, and a run with nothing new does not need
+
     free, wider = people - 1 - (far is not None), far or 0.0
     reach = float(stdtrit(free, 1 - ALPHA / (2 * tests))) * sd * float(np.sqrt(1 + 1 / people + wider))
     return Limits(mean - reach, mean + reach, mean, sd * float(np.sqrt(1 + wider)), people)

@@ -268,6 +268,12 @@ def naming_findings(columns: Sequence[Column], file: str) -> list[Finding]:
     if sides == {"r"} and any(column.label.startswith("1_ground_force_v") for column in columns):
         what = "ground_force_ is read as the right foot, 1_ground_force_ as the left, as in OpenSim's own examples"
         findings.append(Finding("note", "guessed", file, what, "the sides if this is wrong; map them in [channels]"))
+    forces = [one for one in columns if "ground_force" in one.label.lower() and one.channel.name != IGNORE]
+    if sideless := [one.label for one in forces if not one.channel.side]:
+        what = f"{list_names(sideless)}: no foot is named, so these forces are not used"
+        such_as = f'"{sideless[0]}" = "ground_force_r_{sideless[0][-2:]} [N]"'
+        remedy = f"contacts and forces; name the foot in [channels], such as {such_as}"
+        findings.append(Finding("warning", "plate without a foot", file, what, remedy))
     return findings
 
 

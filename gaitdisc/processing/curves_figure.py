@@ -9,7 +9,7 @@ import numpy as np
 import pandas as pd
 
 from gaitdisc.channel import find_side
-from gaitdisc.processing.pooled_cycles import WALK, WalkSummary, mean_curve
+from gaitdisc.processing.pooled_cycles import WALK, WalkSummary, mean_curve, stack_means
 from gaitdisc.recording import Recording
 from gaitdisc.recording.arrays import Values
 from gaitdisc.report.figure import Figure
@@ -40,16 +40,15 @@ def curves_figures(run: StudyRun, participant: str, name: str) -> list[Figure]:
 
 def curve_numbers(run: StudyRun, participant: str) -> pd.DataFrame:
     """Channel, unit, walk (`nominal` or `exo`), percent (101 points), n of strides, mean and sd over strides."""
-    tables = []
+    means = []
     for walk in WALKS:
         summary = find_walk(run, participant, walk)
         if summary is None or not len(summary.curves):
             continue
         curves = summary.curves
         for column, channel in enumerate(summary.channels):
-            tables.append(mean_curve(curves[:, :, column], channel=channel.name, unit=channel.unit, walk=walk))
-    columns = pd.Index(["channel", "unit", "walk", "percent", "n", "mean", "sd"])
-    return pd.concat(tables, ignore_index=True) if tables else pd.DataFrame(columns=columns)
+            means.append(mean_curve(curves[:, :, column], channel=channel.name, unit=channel.unit, walk=walk))
+    return stack_means(means, "walk")
 
 
 def find_walk(run: StudyRun, participant: str, walk: str) -> WalkSummary | None:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from operator import itemgetter
 
@@ -177,17 +177,22 @@ class PooledCycles(Saved, file="cycles.json"):
             channel, unit, side (of the cycles), percent, n (cycles with a value there), mean, sd (NaN for one cycle).
         """
         curves, feet = self.curves, self.kept["side"].to_numpy()
-        tables = []
+        means = []
         for column, channel in enumerate(self.channels):
             for side in (channel.side,) if channel.side else ("l", "r"):
                 own = curves[feet == side, :, column]
                 if np.isfinite(own).any():
-                    tables.append(mean_curve(own, channel=channel.name, unit=channel.unit, side=side))
-        columns = ["channel", "unit", "side", "percent", "n", "mean", "sd"]
-        return pd.concat(tables, ignore_index=True) if tables else pd.DataFrame(columns=pd.Index(columns))
+                    means.append(mean_curve(own, channel=channel.name, unit=channel.unit, side=side))
+        return stack_means(means, "side")
 
 
-def mean_curve(curves: Values, **words: str) -> pd.DataFrame:
+def stack_means(means: Sequence[Mapping[str, np.ndarray]], word: str) -> pd.DataFrame:
+    """Table of mean curves that are of a side or walk, the column of that word; of none the columns."""
+    columns = ("channel", "unit", word, "percent", "n", "mean", "sd")  # joined before the table: half of its time
+    return pd.DataFrame({name: np.concatenate([one[name] for one in means] or [[]]) for name in columns})
+
+
+def mean_curve(curves: Values, **words: str) -> dict[str, np.ndarray]:
     """Mean and deviation of the known curves (cycle, phase) on 101 points, behind a column of each of these words."""
     present = np.isfinite(curves)
     count = present.sum(axis=0)
@@ -195,7 +200,8 @@ def mean_curve(curves: Values, **words: str) -> pd.DataFrame:
         mean = np.where(present, curves, 0.0).sum(axis=0) / count
         square = np.where(present, (curves - mean) ** 2, 0.0).sum(axis=0)
         spread = np.where(count > 1, np.sqrt(square / (count - 1)), np.nan)
-    return pd.DataFrame({**words, "percent": PERCENT, "n": count, "mean": mean, "sd": spread})
+    said = {name: np.full(len(PERCENT), word) for name, word in words.items()}
+    return {**said, "percent": PERCENT, "n": count, "mean": mean, "sd": spread}
 
 
 def cycles_name(subject: str, session: str, condition: str) -> str:

@@ -8,6 +8,7 @@ from collections.abc import Mapping
 from dataclasses import replace
 from functools import partial
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 from gaitdisc.errors import GaitdiscError, ReadError
 from gaitdisc.ingest.c3d import C3DReader
@@ -16,11 +17,12 @@ from gaitdisc.ingest.reading import read_planned_trial
 from gaitdisc.ingest.study import Participant, PlannedTrial, Study
 from gaitdisc.ingest.trial_sets import functional_trial, not_compared, static_trial, trial_sets
 from gaitdisc.processing.pooled_cycles import CYCLES, PooledCycles, cycles_name
-from gaitdisc.processing.process import StudyWalks, Walk
-from gaitdisc.processing.samples import gait_samples
 from gaitdisc.recording import Trial
 from gaitdisc.regular_file import file_sha256
 from gaitdisc.saved.provenance import Refusal, code_sha256
+
+if TYPE_CHECKING:
+    from gaitdisc.processing.process import Walk
 
 
 def unit_keys(study: Study, participant: Participant) -> dict[str, str]:
@@ -71,6 +73,9 @@ def process_walks(study: Study, participant: Participant) -> tuple[dict[str, Wal
 
 def walks_and_errors(study: Study, participant: Participant) -> tuple[dict[str, Walk], dict[str, GaitdiscError]]:
     """Both walks of a complete participant, by condition, and the error of one that could not be, in public words."""
+    from gaitdisc.processing.process import StudyWalks  # brings scipy.signal, which a second run does not need
+    from gaitdisc.processing.samples import gait_samples
+
     walks, errors = {}, {}
     words = list_words(study, participant)
     with C3DReader() as reader:  # starts its process at the first C3D file, one for both walks
@@ -114,7 +119,7 @@ def compute_cycles(study: Study, participant: Participant, folder: Path) -> tupl
 
 def pool_public(study: Study, participant: Participant) -> tuple[list[PooledCycles], bool]:
     """Pooled cycles of a participant in public words, and whether a file could not be read."""
-    from gaitdisc.processing.pooled import pool_cycles  # brings scipy.signal, which a second run does not need
+    from gaitdisc.processing.pooled import pool_cycles  # brings scipy.signal
 
     words = list_words(study, participant)
     unread: list[ReadError] = []

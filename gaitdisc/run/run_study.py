@@ -13,8 +13,7 @@ from gaitdisc.ingest.study import Participant, Study
 from gaitdisc.ingest.trial_sets import not_compared, why_refused
 from gaitdisc.models.training_settings import TrainingSettings
 from gaitdisc.processing.pooled_cycles import CYCLES, WALK, PooledCycles, WalkSummary
-from gaitdisc.processing.process import Walk
-from gaitdisc.processing.processed_walks import compute_cycles, cycles_key, response_key, unit_keys
+from gaitdisc.processing.processed_walks import compute_cycles, cycles_key, response_key, unit_keys, walks_and_errors
 from gaitdisc.response.participant_response import QUANTITY, RESPONSE, ParticipantResponse, ResponseRun
 from gaitdisc.response.participants_result import OVER, TESTS
 from gaitdisc.run.workers import StudyProgress, Workers, compute_units
@@ -25,6 +24,7 @@ from gaitdisc.saved.unit_folder import damage_lines, unit_name
 from gaitdisc.write_lock import write_lock
 
 if TYPE_CHECKING:
+    from gaitdisc.processing.process import Walk
     from gaitdisc.response.fit_response import ResponseSettings
 
 Progress = Callable[[float], None]
@@ -92,10 +92,6 @@ def _compare_unit(study: Study, participant: Participant, folder: Path, progress
     stored = _find_stored(participant, keys, folder)
     if stored is not None:
         return stored
-    from gaitdisc.processing.processed_walks import (
-        walks_and_errors,  # brings scipy.signal, which a second run does not need
-    )
-
     walks, errors = walks_and_errors(study, participant)
     for word, walk in walks.items():
         WALK.save(walk.summary(), _walk_folder(folder, participant, word), keys[word])

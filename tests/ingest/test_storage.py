@@ -80,6 +80,20 @@ def test_ground_forces_of_both_naming_habits(gait_data):
     assert any("as the right foot" in finding.what for finding in trial.findings)
 
 
+def test_plates_without_a_foot_are_said_until_the_study_names_it(tmp_path):
+    labels, file = ("ground_force_1_vx", "ground_force_1_vy"), tmp_path / "grf.mot"
+    write_storage(
+        Recording(np.arange(9.0), np.ones((9, 2)), tuple(Channel(name, "signal", "N") for name in labels)), file
+    )
+    text = file.read_text().splitlines()
+    file.write_text("\n".join(["forces", "endheader", *text[text.index("endheader") + 1 :]]))
+    (found,) = [one for one in read_storage(file).findings if one.severity == "warning"]
+    assert found.what.startswith(", ".join(labels))
+    assert found.spoils.endswith('"ground_force_1_vx" = "ground_force_r_vx [N]"')
+    mapped = read_storage(file, {name: f"{name.replace('1', 'r')} [N]" for name in labels})
+    assert mapped.streams["forces"].names == ("ground_force_r_vx", "ground_force_r_vy") and not mapped.findings
+
+
 def test_joint_moments(gait_data):
     trial = read_storage(gait_data / "opensim_walks" / "moco_3dwalking" / "id_walk.sto")
     moments = trial.streams["moments"]
