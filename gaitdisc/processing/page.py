@@ -27,7 +27,7 @@ from gaitdisc.recording import PERCENT
 from gaitdisc.recording.arrays import Values
 from gaitdisc.report.figure import Figure, SavedFigure, file_names, largest_inline, save_figures
 from gaitdisc.report.page import Block, draw_side_by_side, save_block, write_page
-from gaitdisc.report.panels import SIDES, Room, in_style, legend, panels_for, sheets
+from gaitdisc.report.panels import SIDES, Room, in_style, legend, legend_lines, panels_for, sheets
 from gaitdisc.report.table import findings_table, provenance_tables, refusals_table, save_table, save_tables
 from gaitdisc.saved.provenance import Provenance
 from gaitdisc.saved.study_run import StudyRun
@@ -181,9 +181,7 @@ def cycles_figures(pooled: PooledCycles, name: str) -> list[Figure]:
 
 
 def _figure(pooled: PooledCycles, numbers: pd.DataFrame, joints: list[str], name: str) -> Figure:
-    from matplotlib.lines import Line2D
-
-    columns, curves = [one.name for one in pooled.channels], pooled.curves  # read from the disk once
+    columns, curves = [channel.name for channel in pooled.channels], pooled.curves  # read from the disk once
     drawn, cells = panels_for(len(joints), COLUMNS, 1.15, Room(left=0.6, across=0.64, down=0.46))
     stems = {channel: sideless(channel) for channel in numbers["channel"].unique()}
     shown = numbers[numbers["channel"].map(stems).isin(joints)].reset_index(drop=True)
@@ -204,10 +202,10 @@ def _figure(pooled: PooledCycles, numbers: pd.DataFrame, joints: list[str], name
         label_curve(axes, str(own["channel"].iloc[0]), str(own["unit"].iloc[0]))
     for axes in cells[-COLUMNS:]:
         axes.set_xlabel("cycle [%]", labelpad=1)
-    key = [Line2D([], [], color=SIDES[side].colour, label=SIDE_WORDS[side]) for side in FEET]
-    key.append(Line2D([], [], color="#666666", linewidth=0.5, label="single cycles"))
-    key.append(Line2D([], [], color="#666666", linestyle=(0, (1.5, 1.5)), linewidth=0.9, label="foot off"))
-    legend(drawn, key)
+    cycle = {"color": "#666666", "linewidth": 0.5}
+    foot_off = {"color": "#666666", "linestyle": (0, (1.5, 1.5)), "linewidth": 0.9}
+    sides = {SIDE_WORDS[side]: SIDES[side] for side in FEET}
+    legend(drawn, legend_lines({**sides, "single cycles": cycle, "foot off": foot_off}))
     alt = f"Mean cycles of {pooled.subject}, {pooled.where}: {range_words(shown)}."
     return Figure(name, _caption(pooled), alt, shown, drawn)
 

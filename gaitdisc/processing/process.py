@@ -99,8 +99,7 @@ def processed(trial: Trial, study: Study, body_weight_n: float | None = None) ->
     body_weight_n: mass x 9.81, by which a plate counts as loaded; 50 N without it
     """
     raw = without_spikes(plateau_marked(_require(trial, "kinematics", study.models.angles)))
-    direction = study.treadmill.direction if study.treadmill else ""
-    choice = choose_contacts(trial, study.strides.detector, direction, body_weight_n)
+    choice = choose_contacts(trial, study.strides.detector, study.walking_direction, body_weight_n)
     limits = (study.strides.min_s, study.strides.max_s)
     side = study.strides.side
     if side not in choice.contacts:
