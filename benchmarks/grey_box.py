@@ -186,7 +186,7 @@ def criterion(fit: OptimizeResult, terms: int, samples: float) -> float:
 def picked(simulation: Simulation, measured: Measured, seconds: float) -> tuple[GreyBox, OptimizeResult, Tried | None]:
     """The fit that the criterion picks, and its effect."""
     rhythm, machine = find_rhythm(measured.observed, measured.rate), compile_simulation(simulation)
-    guess = guess_states(simulation, measured, rhythm.period, kinematic_rates(simulation, machine)).states
+    guess = guess_states(simulation, measured, rhythm.period, kinematic_rates(simulation, machine))
     samples = np.isfinite(measured.observed).sum() / (SHARE_OF_PERIOD * rhythm.samples)
     box = box_of(simulation, measured, guess)
     fit = box.fit(np.zeros(len(box.fitted)))

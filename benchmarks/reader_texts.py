@@ -101,8 +101,8 @@ def write_template(node: ast.AST) -> str:
 def split_text(text: str | None) -> list[str]:
     """Paragraphs of prose, list items and rows of tables; no headings, code or doctests."""
     text = re.sub(r"^```.*?^```|<!--.*?-->", "", text or "", flags=re.DOTALL | re.MULTILINE)
-    parts = [re.sub(r"\s+", " ", one).strip() for one in re.split(r"\n\s*\n|\n(?=[-*|] )|\n(?=\w+ : )", text)]
-    hidden = ("#", ">>>", "|--", "| --", ":::", "![", "{{")
+    parts = [re.sub(r"\s+", " ", one).strip() for one in re.split(r"\n\s*\n|\n(?=[-*|] )|\n(?=[\w, ]+ : )", text)]
+    hidden = ("#", ">>>", "|--", "| --", ":::", "![", "{{", "Examples ---")
     counts = (len(re.sub(r"\{\{.*?\}\}", "", one).split()) for one in parts)
     return [
         one for one, count in zip(parts, counts, strict=True) if count >= FEWEST_WORDS and not one.startswith(hidden)

@@ -108,7 +108,7 @@ def record_of(simulation: Simulation, measured: Measured) -> Record:
     window = max(int(SHARE_OF_PERIOD * rhythm.samples) // 2 * 2 + 1, 5)
     slope: Any = ps.SmoothedFiniteDifference(smoother_kws={"window_length": window, "polyorder": 3})
     rate_of = kinematic_rates(simulation, machine)
-    guess = np.nan_to_num(guess_states(simulation, measured, rhythm.period, rate_of).states)
+    guess = np.nan_to_num(guess_states(simulation, measured, rhythm.period, rate_of))
     trials = []
     for number, count in enumerate(measured.samples.astype(int)):
         time, states = measured.time(number), guess[number, :count]

@@ -22,7 +22,7 @@ class GaitdiscError(ValueError):
     found : str
         What was found instead: file, channel, frame, number, unit.
     remedy : str
-        What to do, one sentence.
+        What the user can do, in one sentence.
 
     Examples
     --------
@@ -86,7 +86,7 @@ class SimulationError(SchemaError):
 
 
 class ChannelError(GaitdiscError):
-    """A channel is missing, doubled or unknown."""
+    """A channel is missing, duplicated or unknown."""
 
 
 class UnitError(GaitdiscError):
@@ -102,7 +102,7 @@ class SamplingError(GaitdiscError):
 
 
 class StrideError(GaitdiscError):
-    """Strides cannot be cut: no contacts, wrong order, not walking."""
+    """Strides cannot be cut: contacts are missing or out of order, or the trial is not a walk."""
 
 
 class TrainingError(GaitdiscError):

@@ -143,8 +143,8 @@ def convert(values: NDArray[np.floating], unit: str, to: str) -> NDArray[np.floa
 
 def offset_words(*units: str) -> str:
     """Say why a temperature is not converted, as the end of a sentence, where one of the units is K or degF."""
-    why = "; temperatures must be in degC, because K and degF differ from it by an offset and units are converted by "
-    return f"{why}factors" if {"K", "degK", "degF", "°F"}.intersection(units) else ""
+    why = "; temperatures must be in degC: units are converted by a factor only, and K and degF also have "
+    return f"{why}an offset" if {"K", "degK", "degF", "°F"}.intersection(units) else ""
 
 
 def rate_unit(unit: str, order: int = 1) -> str:

@@ -9,7 +9,7 @@ import json
 import os
 import re
 import sys
-from collections.abc import Iterable, Sequence
+from collections.abc import Sequence
 from pathlib import Path
 from typing import Any, NamedTuple
 
@@ -139,13 +139,11 @@ def written(finding: dict[str, Any]) -> str:
     return f"{finding['severity']}: {finding['kind']}: " + ", ".join(word for word in words if word)
 
 
-def without_numbers(lines: Iterable[str]) -> set[str]:
-    """Lines with # for each number, so that one that only counts differently is the same."""
-    return {NUMBER.sub("#", line) for line in lines}
-
-
 def new_lines(planted: Answer, clean: Answer, notes: bool = False) -> list[str]:
-    """Warnings and refusals, and notes where they count, that the recordings without the fault do not have."""
-    known = without_numbers(clean.lines)
+    """Warnings and refusals, and notes where they count, that the recordings without the fault do not have.
+
+    A line that only counts differently is the same.
+    """
+    known = {NUMBER.sub("#", line) for line in clean.lines}
     lines = [line for line in dict.fromkeys(planted.lines) if notes or not line.startswith("note")]
     return [line for line in lines if NUMBER.sub("#", line) not in known]

@@ -1,10 +1,11 @@
-"""Tables of docs/results.md and docs/chapter3.md: claims whose numbers are taken from the pages of studies/results.
+"""Tables of docs/results.md, docs/chapter3.md and items.md: claims whose numbers are taken from studies/results.
 
     python studies/claims.py SUBJECT
 
 `claims.toml` beside this file holds the rows of each subject. `at` names the pages and headings of a row. In its other
 columns `{ROW @ COLUMN}` stands for the cell of a table there (several cells name one row: `SINDy & estimated`), and
-`"words"` for words that stand there. A number without either is an error, as is one that the pages do not hold.
+`"words"` for words that stand there. A number without either is an error, as is one that the pages do not hold; an
+`item` is named by the dissertation's own.
 """
 
 from __future__ import annotations
@@ -67,12 +68,13 @@ def write_table(subject: str) -> str:
     columns = [name for name in claims[0] if name != "at"]
     for claim in claims:
         text = "\n".join(read_section(place) for place in claim["at"])
-        files = ", ".join(dict.fromkeys(place.partition(": ")[0] for place in claim["at"]))
-        words = {name: fill(claim[name], text, name == columns[0]) for name in columns if name != "command"}
-        rows.append([words.get(name, f"`{claim[name]}`") for name in columns] + [files])
+        files = ", ".join(dict.fromkeys(place.partition(".md: ")[0] for place in claim["at"]))
+        kept = {"item": claim.get("item"), "command": f"`{claim.get('command')}`"}
+        words = [kept[name] if name in kept else fill(claim[name], text, name == columns[0]) for name in columns]
+        rows.append([*words, files])
     if len({row[-1] for row in rows}) > 1:
-        return markdown_table(" | ".join([*columns, "file"]), rows)
-    return markdown_table(" | ".join(columns), [row[:-1] for row in rows]) + f"\n\nTables: `{rows[0][-1]}`."
+        return markdown_table(" | ".join([*columns, "page"]), rows)
+    return markdown_table(" | ".join(columns), [row[:-1] for row in rows]) + f"\n\nTables: `{rows[0][-1]}.md`."
 
 
 if __name__ == "__main__":

@@ -1,8 +1,7 @@
 """What is said of people without faults: those at hand with all their trials, and made ones, half of them patients.
 
 Made people walk over two plates; a static trial stands on both. Patterns are hallmarks of the clinic, planted into the
-habit (gaitdisc/cohort/other_people.py; equinus and Trendelenburg here). Their sentences and alarms are kept, so that
-the same people under another version of the package show which alarm is new and which sentence was lost.
+habit (gaitdisc/cohort/other_people.py; equinus and Trendelenburg here). `faults_on_pages.py` runs this.
 """
 
 from __future__ import annotations
@@ -14,13 +13,14 @@ from pathlib import Path
 from typing import Any, NamedTuple
 
 import numpy as np
-from as_a_user import Answer, answer_of, told, without_numbers
+from as_a_user import Answer, answer_of, told
 from markdown_table import markdown_table
 
 import gaitdisc as gd
 from gaitdisc.cohort.other_people import PATTERNS, Pattern, somebody, walking_with
 from gaitdisc.cohort.person import Person, draw_one
 
+Files = dict[str, list[Path]]  # static, walk, turn
 COLUMNS = ("person", "kind", "trials", "cycles", "alarms", "sentences", "said")
 ALWAYS, WALKED_STRIDES, TRIALS, CONTROLS = 10.0, 6.5, 3, 20
 # sentence that has to be there; patterns that the package does not have
@@ -138,10 +138,19 @@ def of_made(made: Made) -> list[dict[str, Any]]:
     return [row_of(f"M{made.number:03d}", made.kind, TRIALS + 1, answer)]
 
 
-def of_person(job: Any) -> list[dict[str, Any]]:
-    """Rows of a real person with all trials, by the file's angles and by the markers'."""
-    from faults_on_pages import laid_out
+def laid_out(folder: Path, who: str, files: Files, kinds: Sequence[str] = ("static", "walk")) -> Path:
+    """A folder with a person's recordings, new."""
+    shutil.rmtree(folder, ignore_errors=True)
+    for kind in kinds:
+        for path in files.get(kind, []):
+            target = folder / "rec" / who / kind / path.name
+            target.parent.mkdir(parents=True, exist_ok=True)
+            shutil.copyfile(path, target)
+    return folder
 
+
+def of_person(job: Any) -> list[dict[str, Any]]:
+    """Rows of a real person without faults, with all trials, by the file's angles and by the markers'."""
     rows = []
     for angles in ("file", "markers"):
         folder = laid_out(job.out / "healthy" / f"{job.who} {angles}", job.who, job.files, tuple(job.files))
@@ -159,8 +168,8 @@ def row_of(person: str, kind: str, trials: int, answer: Answer) -> dict[str, Any
     return dict(zip(COLUMNS, values, strict=True))
 
 
-def table(rows: Sequence[dict[str, str]], before: Sequence[dict[str, str]] = ()) -> str:
-    """Trials, people with an alarm, sentences; and, against rows of another version, what is new and what was lost."""
+def table(rows: Sequence[dict[str, str]]) -> str:
+    """Trials, people with an alarm, sentences; then every alarm."""
     lines = []
     for kind in dict.fromkeys(row["kind"] for row in rows):
         own = [row for row in rows if row["kind"] == kind]
@@ -170,12 +179,6 @@ def table(rows: Sequence[dict[str, str]], before: Sequence[dict[str, str]] = ())
         trials = sum(int(row["trials"]) for row in own)
         lines.append((kind or "healthy", len(own), trials, alarmed, spoken, said))
     text = [markdown_table("kind | people | trials | with a warning | with a sentence | planted one said", lines)]
-    earlier = {(row["person"], row["kind"]): row for row in before}
-    for row in rows:
-        old = earlier.get((row["person"], row["kind"]))
-        known = without_numbers(old["alarms"].split(" || ")) if old else set()
-        new = [line for line in row["alarms"].split(" || ") if line and not without_numbers([line]) <= known]
-        text += [f"{'new' if old else 'alarm'}: {row['person']} {row['kind']}: {line[:240]}" for line in new]
-        lost = set(old["sentences"].split("; ")) - set(row["sentences"].split("; ")) if old else set()
-        text += [f"lost: {row['person']} {row['kind']}: {sentence}" for sentence in sorted(lost) if sentence]
+    alarms = [(row, line) for row in rows for line in row["alarms"].split(" || ") if line]
+    text += [f"alarm: {row['person']} {row['kind']}: {line[:240]}" for row, line in alarms]
     return "\n".join(text)

@@ -72,7 +72,7 @@ def _young(gait: Path, kind: str = "straight") -> Iterator[Case]:
         case = _planter(person, files)
         measured = r"^(?!.*(Angles|Moment|Power|Force))"
         yield case("numbers in m for mm", "looks like m", points_times, 1e-3, measured)
-        yield case("angles in radians for degrees", "look like radians", points_times, 0.0174533, "Angles")
+        yield case("angles in radians for degrees", "may be in radians", points_times, 0.0174533, "Angles")
         yield case("EMG in V for mV", r"looks? like V", analog, "Voltage", 1.0, "mV")
         yield case("EMG in mV for V", r"looks? like mV", analog, "Voltage", 1e3)
         yield case("forces per kg", r"per kg", analog, "Force|Moment", 0.02)

@@ -25,8 +25,6 @@ GIVEN = command_line(
     argument("-j", "processes", 1),
     argument("--healthy", "no faults: what is said of the people at hand", False),
     argument("--made", "no faults: what is said of so many made people", 0),
-    argument("--seed", "of the made people", 27_000_000),
-    argument("--against", "table of --healthy or --made under another version of the package", ""),
     argument("--fast", "call what `run` calls, and draw no pages", False),
     QUICK,
 )  # before the slow imports
@@ -42,14 +40,16 @@ from pathlib import Path
 from typing import Any, NamedTuple
 
 from as_a_user import Answer, answer_of, new_lines, rows_of, told
+from false_alarms import COLUMNS as SEEN
+from false_alarms import Files, Made, laid_out, made_reference, of_made, of_person, table
 from faults_in_people import KINDS, Kind, NotHereError, Recorded
 from markdown_table import markdown_table
 
+SEED = 27_000_000  # of the made people
 SHARED_HALVES = {"develop": ("HC030A", "HC031A", "HC002D"), "kept": ("HC032A", "HC033A", "HC036A")}
 QUICK_KINDS = ("1 static heel and toe", "5 gain of a plate 1.3", "9 zeros, angle")
 COLUMNS = ("kind", "person", "half", "skipped", "said", "line", "sentences")
 COLUMNS += ("moved", "cycles", "cycles_clean", "seconds")
-Files = dict[str, list[Path]]  # static, walk, turn
 
 
 class Job(NamedTuple):
@@ -74,17 +74,6 @@ def people(half: str, others: Path, shared: Path = SHARED) -> dict[str, Files]:
     for own in sorted((others / half).glob("*/walk")):
         found[own.parent.name] = {kind: sorted((own.parent / kind).glob("*.c3d")) for kind in ("static", "walk")}
     return {who: files for who, files in found.items() if files["walk"]}
-
-
-def laid_out(folder: Path, who: str, files: Files, kinds: Sequence[str] = ("static", "walk")) -> Path:
-    """A folder with a person's recordings, new."""
-    shutil.rmtree(folder, ignore_errors=True)
-    for kind in kinds:
-        for path in files.get(kind, []):
-            target = folder / "rec" / who / kind / path.name
-            target.parent.mkdir(parents=True, exist_ok=True)
-            shutil.copyfile(path, target)
-    return folder
 
 
 def reference(out: Path) -> Path:
@@ -206,19 +195,16 @@ def main() -> None:
     out.mkdir(parents=True, exist_ok=True)
     reference(out)
     if GIVEN.healthy or GIVEN.made:
-        from false_alarms import COLUMNS as SEEN
-        from false_alarms import Made, made_reference, of_made, of_person, table
-
         jobs = jobs_of(out, GIVEN.half, GIVEN.people, Path(GIVEN.others), not GIVEN.fast) if GIVEN.healthy else []
         if GIVEN.made:
-            made_reference(out, GIVEN.seed)
-        made = [Made(number, GIVEN.seed, out) for number in range(GIVEN.made)]
+            made_reference(out, SEED)
+        made = [Made(number, SEED, out) for number in range(GIVEN.made)]
         name = "healthy.csv" if GIVEN.healthy else "made.csv"
         (out / name).unlink(missing_ok=True)
         work, chosen = (of_person, jobs) if GIVEN.healthy else (of_made, made)
         rows = (row for rows in mapped(work, chosen, GIVEN.j) for row in rows)
         written_rows(out / name, SEEN, rows, 0)
-        print(table(rows_of(out / name), rows_of(Path(GIVEN.against or "-"))))
+        print(table(rows_of(out / name)))
         return
     everybody = jobs_of(out, GIVEN.half, GIVEN.people, Path(GIVEN.others), not GIVEN.fast)[: 1 if GIVEN.quick else None]
     words = QUICK_KINDS if GIVEN.quick else [word.strip() for word in GIVEN.kinds.split(",")]

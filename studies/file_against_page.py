@@ -30,7 +30,8 @@ import numpy as np
 import pandas as pd
 from as_a_user import told
 from c3d_in_place import InPlace
-from faults_on_pages import jobs_of, laid_out
+from false_alarms import laid_out
+from faults_on_pages import jobs_of
 from markdown_table import markdown_table
 from numpy.typing import NDArray
 from scipy.interpolate import CubicSpline

@@ -135,7 +135,7 @@ def test_a_trial_shorter_than_the_longest_training_length_shortens_the_ablation_
     written(folder, walker("P01"))
     words = said("ablate", folder, "--length", 5, "--length", 60, "--quiet", ends=0)
     assert says(words, "left", "P01", "60 s", "20.7 s")
-    assert says(page_of(folder), "Lengths left out", "60 s")
+    assert says(page_of(folder), "lengths are left out", "60 s")
     quantity = pd.read_csv(folder / "run" / "quantities" / "P01" / "quantity.csv")
     assert sorted(set(quantity["length_s"])) == [5.0, 20.7]
 

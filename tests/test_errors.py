@@ -71,9 +71,9 @@ def test_every_kind_of_refusal_has_its_place_on_the_page_and_none_is_left_over()
 
 
 @pytest.mark.parametrize("code", sorted(kinds()))
-def test_the_page_says_what_it_means_with_a_refusal_that_the_code_holds_and_the_mend(code):
-    means, example, mend = (part.strip() for part in sections()[code].partition("\n")[2].strip().split("\n\n"))
+def test_the_page_says_what_it_means_with_a_refusal_that_the_code_holds_and_the_remedy(code):
+    means, example, remedy = (part.strip() for part in sections()[code].partition("\n")[2].strip().split("\n\n"))
     assert means == kinds()[code].__doc__.partition("\n")[0]
     patterns = list(refused_by(kinds()[code].__name__))
     assert any(re.fullmatch(one, example.removeprefix("> ")) for one in patterns)
-    assert mend.startswith("**Mend**: ")
+    assert remedy.startswith("**Remedy**: ")

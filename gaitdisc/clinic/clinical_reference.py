@@ -21,7 +21,7 @@ from gaitdisc.whole_file import write_whole
 
 COLUMNS = ("group", "speed_low", "speed_high", "people", "variable", "percent", "mean", "sd")
 FEWEST_POINTS = 20  # a curve of fewer is none
-FORM = f"a published reference is a CSV with {', '.join(COLUMNS)}, after a line '# source, who, licence'"
+FORM = f"a published reference must be a CSV with a line '# source, who, licence', then columns {', '.join(COLUMNS)}"
 FILE, FORMAT = "reference.json", 1
 PUBLISHED = "published.csv"
 DIGITS = 4
@@ -59,13 +59,15 @@ def _group(name: str, rows: pd.DataFrame, file: str) -> PublishedGroup:
     for variable, own in rows.groupby("variable", sort=False):
         where = f"{file}, {name} {variable}"
         if variable not in BY_NAME:
-            raise SchemaError(f"{where}: the variable must be one of {', '.join(BY_NAME)}", "it is not", "Correct it.")
+            raise SchemaError(
+                f"{file}, {name}: a variable must be one of {', '.join(BY_NAME)}", f"found {variable!r}", "Correct it."
+            )
         curve = own.sort_values("percent")[["percent", "mean", "sd"]].to_numpy(float)
         at, mean, sd = curve.T
         whole = len(at) >= FEWEST_POINTS and np.isfinite(curve).all() and (np.diff(at) > 0).all() and (sd >= 0).all()
         if not (whole and at[0] <= PERCENT[0] + 2.5 and at[-1] >= PERCENT[-1] - 2.5):
             raise SchemaError(
-                f"{where}: a curve needs {FEWEST_POINTS} points or more from 0 to 100 % once each, with mean and sd",
+                f"{where}: a curve must have {FEWEST_POINTS} points or more from 0 to 100 %, each with mean and sd",
                 f"found {len(at)} from {at.min():g} to {at.max():g} %",
                 "Correct the table.",
             )
@@ -120,7 +122,7 @@ class ClinicalReference:
 def save_reference(reference: ClinicalReference, folder: Path) -> Path:
     """Save a reference as `reference.json`, whole, with a hash of its own."""
     if reference.published:
-        raise SchemaError("only a reference made of single legs can be saved", reference.title, "Keep its table.")
+        raise SchemaError("only a reference made of single legs can be saved", reference.title, "Keep this table.")
     data = {
         "format": FORMAT,
         "title": reference.title,

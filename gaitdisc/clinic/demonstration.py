@@ -125,7 +125,7 @@ def write_week(
         side = "left" if one.side == "l" else "right"
         truth[f"{one.name} {one.session}".strip()] = one.what if one.what in ("", *NO_GAIT) else f"{one.what} {side}"
     said = "; ".join(f"{who} {what}" for who, what in truth.items() if what)
-    week = _write(folder / "week", WEEK, f"A clinic week (simulated, no people). Planted: {said}", WEEK_SEED, progress)
+    week = _write(folder / "week", WEEK, f"A simulated clinic week with gait deviations: {said}", WEEK_SEED, progress)
     write_whole(folder / "week" / "clinic.toml", LABORATORY)
     write_whole(folder / "planted.json", json.dumps(truth, indent=1))
     return own, week, truth

@@ -26,9 +26,7 @@ FOLDER = "laboratory"  # of a run: what its pages were drawn with
 LARGEST_LOGO = 2**19  # [bytes] a page stays one file that can be mailed
 LONGEST = 1000  # letters of a comment
 PICTURES = {b"\x89PNG": "image/png", b"\xff\xd8\xff": "image/jpeg"}  # by their first bytes
-FORM = (
-    f"{FILE} may contain only laboratory, logo, pdf, a table [axes] and tables [people.P07] with affected and comment"
-)
+FORM = f"{FILE} may have only laboratory, logo, pdf, [axes], and tables such as [people.P07] with affected and comment"
 KINDS: dict[str, type] = {"laboratory": str, "logo": str, "pdf": bool, "axes": dict, "people": dict}
 AFFECTED = ("left", "right", "both")
 Axes = Mapping[str, tuple[float, float]]
@@ -107,7 +105,7 @@ def _picture(path: Path) -> str:
 
 
 def _refusal(found: str) -> SchemaError:
-    return SchemaError(FORM, f"found {found}", f"Correct it; affected is one of {', '.join(AFFECTED)}.")
+    return SchemaError(FORM, f"found {found}", f"Correct the line. Words for affected: {', '.join(AFFECTED)}.")
 
 
 def page_of_run(run: StudyRun, run_folder: Path) -> Path:

@@ -73,11 +73,11 @@ def like_published(
     known = [one for one in groups if np.isfinite(one.speeds).all()] if speed is not None else []
     if speed is None or not known:
         found = max(groups, key=lambda one: one.people)
-        return found, f"Compared with its group “{found.name}”, {found.people} people; no group is selected by speed."
+        return found, f"Compared with the group “{found.name}” ({found.people} people); no group is selected by speed."
     found = min(known, key=lambda one: max(one.speeds[0] - speed, speed - one.speeds[1], 0.0))
     low, high = found.speeds
     whose = f"{found.people} people, dimensionless speed {low:.2f} to {high:.2f}; this person's is {speed:.2f}"
-    return found, f"Compared with its group “{found.name}”, the nearest in speed: {whose}."
+    return found, f"Compared with the group “{found.name}”, the nearest in speed: {whose}."
 
 
 def list_groups(legs: Legs) -> list[Legs]:

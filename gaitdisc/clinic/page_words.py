@@ -21,8 +21,8 @@ if TYPE_CHECKING:
     from gaitdisc.clinic.panels import Panel
 
 TIERS = {
-    2: "Outside the limits for one more healthy person (95 % for this page)",
-    1: "Outside 2 standard deviations of the controls, within those limits",
+    2: "Outside the prediction limits for a healthy person (95 % over all values on this page)",
+    1: "Outside 2 standard deviations of the controls, but within the prediction limits",
 }
 TEMPLATES = Path(__file__).parents[1] / "report" / "templates"
 WITH_WORDS = ("person.html.j2", "people.html.j2", "person.typ")
@@ -98,20 +98,22 @@ def read_words(path: Path, english: Sequence[str]) -> PageWords:
     if not rows or len(text) > LARGEST_BYTES or [cell.strip() for cell in rows[0][:2]] != list(HEADER):
         first = ", ".join(rows[0][:4]) if rows else "nothing"
         raise SchemaError(
-            form, f"{path.name} begins with {first}", "gaitdisc report CLINIC --language NEW.csv writes one."
+            form,
+            f"{path.name} begins with {first}",
+            "Begin with: gaitdisc report CLINIC --language NEW.csv.",
         )
     known, other = set(english), {}
     for line, row in enumerate(rows[1:], 2):
         word, said = (*(cell.strip() for cell in row[:2]), "", "")[:2]
         if word and word not in known:
             raise SchemaError(
-                "each text must be one of the pages' texts",
-                f"{path.name}, line {line}: {word[:60]!r} is not",
+                "each English text of the table must occur on the pages",
+                f"{path.name}, line {line}: {word[:60]!r} does not",
                 "Delete the line.",
             )
         if said and word.count("{}") != said.count("{}"):
             raise SchemaError(
-                "a sentence must keep its place for a number, {}",
+                "a translation must contain {}, the place of a number, as often as the English text",
                 f"{path.name}, line {line}: {said[:60]!r}",
                 f"Write {{}} as often as in {word!r}.",
             )

@@ -55,17 +55,17 @@ MOMENT_SIGNS = (
     "alone was on one plate for the entire stance are shown."
 )
 EMG = (
-    "Envelopes are in percent of the peak of the leg's own mean. Dark bars show roughly when the muscle is active in "
-    "healthy adults (Perry and Burnfield 2010); a muscle without a bar is not in that source."
+    "Envelopes are in percent of the peak of the leg's mean envelope. Dark bars show roughly when the muscle is active "
+    "in healthy adults (Perry and Burnfield 2010); a muscle without a bar is not in that source."
 )
-RAW = " Below the envelopes: raw EMG of one cycle of each leg, whose envelopes are closest to their means."
+RAW = " Below the envelopes: raw EMG of one cycle of each leg, the cycle whose envelopes are closest to their means."
 CYCLES = (
-    f"Thick: means; thin: single cycles (the first {MOST_SINGLE}). CMC: coefficient of multiple correlation of a leg's "
-    "cycles, L, R (Kadaba 1989); 1 if all cycles are identical, – if it is undefined."
+    f"Thick lines: means; thin lines: single cycles (the first {MOST_SINGLE}). CMC: coefficient of multiple "
+    "correlation of a leg's cycles, left and right (Kadaba 1989); 1 if all cycles are identical, – if it is undefined."
 )
 CONTRAST = (
-    "Dotted: {}; solid or dashed: {}. Bars above, in the colour of the leg, show where the two differ in a permutation "
-    "test of the cycles, corrected for the entire cycle, all curves and both legs. Faint bars: by less than 5 deg."
+    "Dotted lines: {}; solid or dashed lines: {}. Bars above, in the leg's colour, show differences in a permutation "
+    "test of the cycles, corrected for the entire cycle, all curves and both legs. Faint bars: differences below 5 deg."
 )
 LIGHT_MARKS = {"green": "●", "amber": "▲", "red": "■"}
 RANKS = {"red": 0, "amber": 1, "green": 2}
@@ -194,7 +194,7 @@ def _reference(reference: ClinicalReference | None, condition: str) -> str:
     if reference.published:
         return ""  # its source stands among what the person is read beside
     count = reference.people(condition)
-    people = f"{counted(count, 'control')} of the laboratory's own" if count else "no controls in this condition"
+    people = f"{counted(count, 'control')} of the laboratory" if count else "no controls in this condition"
     return f"Reference: {people}, saved {reference.created[:10]}."
 
 
@@ -204,17 +204,17 @@ def _method(person: PersonSession) -> list[str]:
         pooled = reading.pooled
         by = ", ".join(f"{name} ({counted(count, 'trial')})" for name, count in pooled.detectors.items())
         moved = pooled.contact_offset_s
-        words = f", shifted by {1000 * moved:+.0f} ms after {pooled.offset_steps} steps on a plate" if moved else ""
+        words = f", shifted by {1000 * moved:+.0f} ms to match {pooled.offset_steps} steps on a plate" if moved else ""
         found.append(f"{pooled.where}: contacts by {by or 'nothing'}{words}.")
         filters = dict.fromkeys(finding.what for finding in pooled.findings if finding.kind == "filter")
-        found += [f"{pooled.where}: {words}; Butterworth, forwards and backwards." for words in filters]
+        found += [f"{pooled.where}: {words}; Butterworth filters, run forwards and backwards." for words in filters]
         found += dict.fromkeys(f"Angles by {one.what}." for one in pooled.findings if one.kind == "marker set")
-    found.append("Pelvic angles are shown for the side of the leg: obliquity up and rotation forwards of that side.")
+    found.append("Pelvic obliquity is positive if the side of the leg is up, and pelvic rotation if it is forwards.")
     found.append(
-        "What stands out: each rule takes one number of a leg's mean cycle. □: outside mean ± 2 standard deviations of "
-        "the reference. ■: outside the limits that contain all numbers of one more healthy person with probability "
-        "0.95 (t · sd · √(1 + 1/n), n people). With 10 controls or more, mean and limits are those at this person's "
-        "speed."
+        "What stands out: each rule takes one value of a leg's mean cycle. □: outside mean ± 2 standard deviations of "
+        "the reference. ■: outside the prediction limits, which contain all values of a healthy person with "
+        "probability 0.95 (t · sd · √(1 + 1/n), n people). With at least 10 controls, mean and limits are those at "
+        "this person's speed."
     )
     return found
 
@@ -286,4 +286,4 @@ def _reference_words(reference: ClinicalReference | None) -> str:
     if reference.published:
         return f"Published reference: {reference.title}."
     counts = ", ".join(f"{word} {reference.people(word)}" for word in reference.legs)
-    return f"Reference of the laboratory's own controls: {counts}; saved {reference.created[:10]}."
+    return f"Reference: controls of the laboratory ({counts}), saved {reference.created[:10]}."

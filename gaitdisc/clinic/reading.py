@@ -67,7 +67,7 @@ def read_beside(pooled: PooledCycles, reference: ClinicalReference | None) -> Cl
     why = "" if controls else NO_REFERENCE
     if reference is not None and not controls:
         there = ", ".join(map(repr, reference.legs))
-        why = f"no person of the reference walked {pooled.condition!r}; its conditions are {there}"
+        why = f"the reference has nobody in the condition {pooled.condition!r}; its conditions are {there}"
     why = why if legs else NO_CYCLE
     like = like_controls(controls, tuple(legs.values()), pooled.leg_m, pooled.age_years)
     profile, no_profile = (None, why) if why else find_profile(legs, like.curves)
@@ -118,7 +118,7 @@ def choose_light(pooled: PooledCycles, legs: dict[str, LegCurves]) -> tuple[str,
     if few:
         gone = len({refusal.condition for refusal in pooled.refusals})
         words = f" ({gone} {'trial is' if gone == 1 else 'trials are'} left out)" if gone else ""
-        reasons.append(f"few cycles, {', '.join(few)}{words}: record until each leg has {FEW}")
+        reasons.append(f"few cycles: {', '.join(few)}{words}; record until each leg has {FEW} cycles")
     lost: dict[str, list[Finding]] = {}
     for one in pooled.findings:
         if one.severity == "refused" and one.channel:
@@ -127,9 +127,9 @@ def choose_light(pooled: PooledCycles, legs: dict[str, LegCurves]) -> tuple[str,
     partly = [name for name, own in lost.items() if len({one.file for one in own}) < pooled.trials]
     if loose := [name for name in partly if name.startswith("emg_")]:
         muscles = "; ".join(label(name).removeprefix("EMG ") for name in loose)
-        reasons.append(f"EMG lost in some trials, {muscles}: fasten the electrodes")
+        reasons.append(f"EMG is missing in some trials ({muscles}): fasten the electrodes")
     others = [(name, own[0]) for name, own in lost.items() if not name.startswith("emg_")]
-    reasons += [f"left out, {label(name)}: {_remedy(first)}" for name, first in others]
+    reasons += [f"{label(name)} is left out: {_remedy(first)}" for name, first in others]
     kinds = {one.kind: one for one in reversed(pooled.findings) if one.severity == "warning"}
     reasons += [f"{kind}: {_remedy(one)}" for kind, one in reversed(kinds.items())]
     return ("amber" if reasons else "green"), tuple(reasons)
@@ -172,7 +172,7 @@ def find_profile(
     """
     turned = max((leg.turned_deg for leg in legs.values()), default=0.0)
     if turned > TURNED_DEG:
-        return None, f"the pelvis turns by {turned:.0f} deg: its rotation and foot progression assume a straight path"
+        return None, f"the pelvis turns by {turned:.0f} deg, but the angles of pelvis and foot assume a straight path"
     known = published or bands(reference)
     lacking = [name for name in PROFILE if name not in known]
     if lacking:
@@ -180,7 +180,7 @@ def find_profile(
     absent = {side: [name for name in PROFILE if name not in leg.cycles] for side, leg in legs.items()}
     if all(absent.values()) or not legs:
         names = ", ".join(next(iter(absent.values()), PROFILE)).replace("_", " ")
-        return None, f"the recording lacks {names}; the score is over nine curves"
+        return None, f"the recording has no {names}; the score needs all nine curves"
     means = {name: known[name].mean for name in PROFILE}
     controls = _own_scores(reference)
     people = max(known[name].people for name in PROFILE)
@@ -263,7 +263,7 @@ def deviation_index(legs: Mapping[str, LegCurves], reference: Sequence[Reference
             vector = vector_of({name: leg.mean(name) for name in PROFILE})
             raw = np.log(np.linalg.norm(vector @ features.T - middle))
             found[side] = float(100 - 10 * (raw - own.mean()) / own.std(ddof=1))
-    return found, "" if found else "the recording lacks one of its nine curves"
+    return found, "" if found else "no leg has all nine curves that the index needs"
 
 
 def contrast(first: ClinicalReading, second: ClinicalReading) -> Contrast:
@@ -273,11 +273,11 @@ def contrast(first: ClinicalReading, second: ClinicalReading) -> Contrast:
     tested: dict[str, int] = {}
     for side in FEET:
         if side not in first.legs or side not in second.legs:
-            untested[side] = "one of the two has no cycle of this leg."
+            untested[side] = "one of the two walks has no cycle of this leg."
             continue
         counts = [one.legs[side].count for one in (first, second)]
         if min(counts) < FEWEST_CYCLES:
-            untested[side] = f"a test needs {FEWEST_CYCLES} cycles of each; there are {counts[0]} and {counts[1]}."
+            untested[side] = f"a test needs {FEWEST_CYCLES} cycles of each walk; there are {counts[0]} and {counts[1]}."
             continue
         try:
             found, tested[side] = _spans(first.legs[side], second.legs[side])

@@ -17,7 +17,7 @@ from gaitdisc.errors import SchemaError
 from gaitdisc.processing.leg_curves import BY_NAME, LegCurves
 from gaitdisc.processing.pooled_cycles import SPATIOTEMPORAL
 
-PARTS = ("contact", "loading", "single support", "stance", "late stance", "push-off", "swing", "mid swing", "cycle")
+PARTS = ("contact", "loading", "mid stance", "stance", "late stance", "push-off", "swing", "mid swing", "cycle")
 RULE_WORDS = ("name", "variable", "value", "part", "take", "less", "more", "group")
 TAKES = {"min": np.min, "max": np.max, "mean": np.mean, "range": np.ptp}
 LOADING, LATE, PUSH_OFF = (0, 20), 30, (50, 75)  # % of the cycle
@@ -86,7 +86,8 @@ def find_part(part: str, stance_percent: float) -> slice | None:
     else:
         off, swing = stance_percent, 100 - stance_percent
         first, last = {
-            "single support": (round(off) - 50, 50),  # of legs that walk alike: the other's off and contact
+            # middle third of single support, of legs that walk alike: from the other's off to its contact
+            "mid stance": (round(off - 50 + swing / 3), round(off - 50 + 2 * swing / 3)),
             "stance": (0, round(off)),
             "late stance": (LATE, round(off)),
             "swing": (round(off), 100),
@@ -120,15 +121,14 @@ def rules_in(data: Mapping[str, list[dict[str, object]]]) -> tuple[Rule, ...]:
         said = words["name"] and (words["less"] or words["more"]) and known != (words["value"] in SPATIOTEMPORAL)
         if not said or not isinstance(least, float) or least <= 0:
             raise SchemaError(
-                "a rule needs name, least > 0, less or more, and either variable, part and take or a spatiotemporal "
-                "value",
+                "a rule must have name, least > 0, and less or more; also either variable, part and take, or value",
                 f"found {dict(entry)}",
                 "Correct rules.toml.",
             )
         found.append(Rule(least=least, **words))
     names = [rule.name for rule in found]
     if len(set(names)) < len(names):
-        raise SchemaError("each rule needs a name of its own", f"found {names}", "Rename one of them.")
+        raise SchemaError("each rule must have its own name", f"the names are {names}", "Rename one rule.")
     return tuple(found)
 
 
@@ -152,7 +152,7 @@ def outstanding(
     people = len({leg.person for leg in reference})
     if people < FEWEST:
         count = f"{people} people" if people != 1 else "1 person"
-        return (), f"limits need a reference of {FEWEST} people or more; it has {count} in this condition"
+        return (), f"limits need a reference of at least {FEWEST} people; the reference has {count} in this condition"
     wide = of_values or reference  # a speed that the group for curves lacks is on the line of everybody
     near = wide if speed_words(legs, reference) else reference
     known = [(rule, known_numbers(rule, wide if rule.value else near)) for rule in table or rules()]
@@ -188,10 +188,10 @@ def speed_words(legs: Mapping[str, LegCurves], reference: Sequence[ReferenceLeg]
     if not own or not len(speeds) or speeds.min() <= np.mean(own) <= speeds.max():
         return ()
     speed, sample = float(np.mean(own)), Sample(speeds, len({leg.person for leg in reference}), speeds)
-    range_words = f"{speed:.2f} m/s is outside the controls' {speeds.min():.2f} to {speeds.max():.2f} m/s"
+    range_words = f"{speed:.2f} m/s is outside the controls' range, {speeds.min():.2f} to {speeds.max():.2f} m/s"
     if sample.leverage(speed) <= FARTHEST:
-        return (f"{range_words}: limits are those at this speed, on a line through the controls.",)
-    return (f"{range_words}, too far for a correction: deviations may be due to the speed.",)
+        return (f"{range_words}. The limits are extrapolated to this speed by a line through the controls.",)
+    return (f"{range_words}. This is too far for a correction: deviations may be due to the speed.",)
 
 
 def _note(rule: Rule, side: str, number: float, limits: Limits, count: int) -> Noted:

@@ -139,7 +139,7 @@ def score_sentences(reading: ClinicalReading) -> list[str]:
         each = [f"{SIDE_WORDS[side]} {number(value, 0)}" for side, value in reading.deviation_index.items()]
         far = max(0.0, (100 - min(reading.deviation_index.values())) / 10)
         found.append(
-            f"Gait deviation index: {', '.join(each)} (controls 100 ± 10). The lower of these lies {number(far, 1)} "
+            f"Gait deviation index: {', '.join(each)} (controls 100 ± 10). The lowest value lies {number(far, 1)} "
             "standard deviations of the controls below their mean."
         )
     else:
@@ -172,7 +172,7 @@ def contrast_sentences(contrast: Contrast) -> list[str]:
             f"{sides.capitalize()}: no part of the cycle differs by 5 deg or more between ‘{first}’ and ‘{second}’."
         )
     if small:
-        found.append(f"{counted(small, 'stretch').replace('stretchs', 'stretches')} differ by less than 5 deg.")
+        found.append(f"In {counted(small, 'part')} of the cycle the difference is less than 5 deg.")
     return found
 
 

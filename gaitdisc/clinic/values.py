@@ -44,8 +44,8 @@ def values_table(reading: ClinicalReading) -> Table:
     people = max((one.people for one in reading.spatiotemporal.values()), default=0)
     known = f"reference mean ± standard deviation over legs, {people} people" if people else "no reference"
     caption = (
-        f"Mean ± standard deviation (number of cycles), from {FEW} cycles on; {known}; asymmetry: left minus right, "
-        "divided by their mean."
+        f"Mean ± standard deviation (number of cycles), if {FEW} cycles are kept; {known}; asymmetry: left minus "
+        "right, divided by the mean of both."
     )
     columns = ("value", "left", "right", "reference", "asymmetry")
     return Table("spatiotemporal", caption, columns, tuple(rows), pd.DataFrame(records))
@@ -79,8 +79,8 @@ def numbers_table(reading: ClinicalReading) -> Table:
         })  # fmt: skip
     caption = (
         f"All values that the rules use, n = {len(rows)}; {len(reading.noted)} stand out: □ outside 2 standard "
-        "deviations, ■ outside the limits that contain all values of one more healthy person with probability 0.95. In "
-        "brackets: number of cycles; of controls. Reference: at this person's speed, if the value depends on speed."
+        "deviations, ■ outside the prediction limits, which contain all values of a healthy person with probability "
+        "0.95. In brackets: numbers of cycles; controls. Reference: at this person's speed, if the value depends on it."
     )
     columns = ("value of", "side", "value", "limits", "reference", "stands out")
     return Table("outstanding", caption, columns, tuple(rows), pd.DataFrame(records))
@@ -102,7 +102,7 @@ def profile_table(reading: ClinicalReading) -> Table | None:
             records.append({"variable": name, "side": side, "score_deg": score.value, "low": score.low,
                             "high": score.high, "cycles": score.cycles, "reference_mean": score.reference_mean,
                             "reference_sd": score.reference_sd, "people": score.people})  # fmt: skip
-    caption = "Movement analysis profile: root mean square difference to the reference's mean curve [deg] (Baker 2009)."
+    caption = "Movement analysis profile: root mean square difference from the reference mean curve [deg] (Baker 2009)."
     return Table("profile", caption, ("curve", "left", "right", "reference"), tuple(rows), pd.DataFrame(records))
 
 

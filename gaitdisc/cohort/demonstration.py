@@ -47,7 +47,7 @@ def write_demonstration(
     laboratory: `angles` of a treadmill; `markers`, two belts and a static trial; or short trials `overground`
     """
     if laboratory not in LABORATORIES:
-        raise SchemaError(f"laboratories are {', '.join(LABORATORIES)}", f"found {laboratory!r}", "Use one of these.")
+        raise SchemaError(f"laboratory must be {', '.join(LABORATORIES)}", f"found {laboratory!r}", "Use one of these.")
     participants, markers = [], laboratory != "angles"
     for person in the_twelve()[:people]:
         walks = make_walks(person, duration_s, hidden, markers)
@@ -69,7 +69,7 @@ def write_demonstration(
         write_whole(folder / "truth" / f"{person.name}.json", json.dumps(walks.truth, indent=1))
         progress(person.name, 1.0)
     study = Study(
-        title=f"Demonstration: {people} of the embedded cohort, hidden effect: {hidden}",
+        title=f"Demonstration: {people} simulated participants (embedded cohort); hidden effect: {hidden}",
         conditions=Conditions(nominal="nominal", device="exo"),
         channels={} if markers else {name: f"{name} [N]" for name in FORCES},
         models=Models(emg=tuple(f"emg_{muscle}_{side}" for side in "rl" for muscle in MUSCLES), outputs=OUTPUTS),

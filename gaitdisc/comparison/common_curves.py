@@ -48,7 +48,7 @@ def common_curves(walks: Sequence[WalkSummary], wanted: Sequence[str] = ()) -> C
     spoiled = {f.channel: f.kind for walk in walks for f in walk.findings if f.kind in SPOILED and f.severity != "note"}
     named = [f"{c.name} ({spoiled[c.name]})" for c in shared if c.name in spoiled and not wanted]
     if named:
-        what = f"{', '.join(named)}: excluded; name one with --channel to compare it nevertheless"
+        what = f"excluded: {', '.join(named)}; name a channel with --channel to compare it nevertheless"
         findings.append(Finding("warning", "not compared", _both(walks), what, "the comparison of these channels"))
         shared = [c for c in shared if c.name not in spoiled]
     by_channel = {c.name: _whole_strides(walks, c) for c in shared}
@@ -93,7 +93,7 @@ def _list_shared(walks: Sequence[WalkSummary], wanted: Sequence[str], findings: 
     for walk, unit in zip(walks, units, strict=True):
         absent = sorted(everything - set(unit))
         if absent:
-            what = f"no {list_names(absent)}, although another walk has them"
+            what = f"the walk has no {list_names(absent)}, but another walk has"
             findings.append(Finding("note", "not compared", walk_name(walk), what, "the comparison of these channels"))
     kept = []
     for channel in walks[0].channels:

@@ -78,7 +78,7 @@ def compare_study(
     for person in study.participants:
         walks = _pick_walks(study, person.id)
         if isinstance(walks, str):
-            left_out.append(Finding("refused", "left out", person.id, walks, "this participant's part"))
+            left_out.append(Finding("refused", "left out", person.id, walks, "this participant, who is not compared"))
         else:
             pairs.append(walks)
     nominal, device = ([pair[k] for pair in pairs] for k in (0, 1))

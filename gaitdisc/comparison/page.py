@@ -136,8 +136,8 @@ def _caption(mismatch: Mismatch, kind: str, count: int) -> str:
     if done.unit == "participant":
         n = f"n = {done.first} participants, {n}"
     shaded = (
-        f"Shaded, with a bar at the foot: the permutation test gives p < {done.alpha:g} for all points and channels "
-        "together, and the gap reaches the smallest difference that is named."
+        f"Shaded, with a bar at the bottom: parts in which the permutation test gives p < {done.alpha:g}, corrected "
+        "for all points and channels, and the gap reaches the smallest difference that is named."
     )
     if mismatch.alignment.applied:
         moved = f"{mismatch.alignment.percent:+.1f} % of the stride"
@@ -158,10 +158,10 @@ def regions_table(mismatch: Mismatch) -> Table:
     """Every stretch that differs, channel by channel, the largest gap against the smallest that is named first."""
     rows = [row for name in mismatch.ordered() for row in _rows(mismatch, name)]
     caption = (
-        f"Where they differ, n = {len(mismatch.regions)} parts of the stride: {mismatch.second} minus "
-        f"{mismatch.first}; sorted by the gap in multiples of the smallest difference named. Gap: the largest in that "
-        f"part, also in stride-to-stride standard deviations of {mismatch.second}; p: of that part, corrected for all "
-        f"points and channels. {smallest_p_sentence(mismatch)}"
+        f"Where the walks differ, n = {len(mismatch.regions)} parts of the stride: {mismatch.second} minus "
+        f"{mismatch.first}; sorted by the gap in multiples of the smallest difference that is named. Gap: the largest "
+        f"in that part, also in stride-to-stride standard deviations of {mismatch.second}; p: p-value of that part, "
+        f"corrected for all points and channels. {smallest_p_sentence(mismatch)}"
     )
     return Table("regions", caption, HEADINGS, tuple(rows), mismatch.regions)
 
@@ -193,11 +193,11 @@ def channels_table(mismatch: Mismatch) -> Table:
     )
     caption = (
         f"All {counted(len(rows), 'channel')}. rms: root mean square over the stride, of the gap and of the "
-        f"stride-to-stride SD of {mismatch.second}; p: of the largest |t|, corrected for all points and channels; "
-        "agrees within: largest half-width of the gap's band; visible: the gap that four of five such comparisons "
-        f"would detect at a typical point; shift: the best-fitting delay of {mismatch.first}, and the rms gap after "
-        "it; offset: the mean gap; shape: the largest gap without the offset; named from: the smallest difference "
-        f"that is named; last column: the largest gap {other_way} the common shift of {mismatch.first}, "
+        f"stride-to-stride SD of {mismatch.second}; p: p-value of the largest |t|, corrected for all points and "
+        "channels; agrees within: largest half-width of the gap's band; visible: the gap that four of five such "
+        f"comparisons would detect at a typical point; shift: the best-fitting delay of {mismatch.first}, and the rms "
+        "gap after it; offset: the mean gap; shape: the largest gap without the offset; named from: the smallest "
+        f"difference that is named; last column: the largest gap {other_way} the common shift of {mismatch.first}, "
         f"{found.percent:+.1f} % of the stride, which was {'' if found.applied else 'not '}applied."
     )
     headings = (

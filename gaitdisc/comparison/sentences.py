@@ -25,7 +25,7 @@ def mismatch_sentences(mismatch: Mismatch) -> list[str]:
     if unseen:
         bounds, sure = _by_unit(mismatch, unseen, "within"), f"{100 * (1 - done.alpha):g} %"
         agreeing.append(
-            f"No significant gap in {_shorten(unseen)}: with {sure} confidence they agree to within {bounds} at "
+            f"No significant gap in {_shorten(unseen)}: with {sure} confidence the walks agree to within {bounds} at "
             f"every point."
         )
     if not ordered and not small:
@@ -42,7 +42,7 @@ def mismatch_sentences(mismatch: Mismatch) -> list[str]:
     if not ordered:
         return [
             f"No difference exceeds the smallest one that is named: {walks} differ significantly in "
-            f"{_shorten(small)}, but by less than {_by_unit(mismatch, small, 'limit')} at every such point.",
+            f"{_shorten(small)}, but by less than {_by_unit(mismatch, small, 'limit')} at every significant point.",
             *moved,
             *agreeing,
         ]
@@ -57,7 +57,7 @@ def mismatch_sentences(mismatch: Mismatch) -> list[str]:
     sentences += [timing] if (timing := _timing(mismatch, ordered[0])) else []
     if small:
         less = _by_unit(mismatch, small, "limit")
-        sentences.append(f"Significant, but less than {less} and not named: {_shorten(small)}.")
+        sentences.append(f"Not named, because the significant difference is less than {less}: {_shorten(small)}.")
     return [*sentences, *agreeing]
 
 
@@ -101,8 +101,8 @@ def _kind(mismatch: Mismatch, name: str) -> str:
     if abs(offset) < limit:
         return ""
     if shape < limit:
-        return f": an offset, because without its mean the shape agrees to within {with_unit(amount(shape), unit)}"
-    return f"; {with_unit(amount(abs(offset)), unit)} of the gap are an offset of the whole curve"
+        return f": an offset, because without the mean gap the curves agree to within {with_unit(amount(shape), unit)}"
+    return f"; {with_unit(amount(abs(offset)), unit)} of the gap is an offset of the entire curve"
 
 
 def method_sentences(mismatch: Mismatch) -> list[str]:
@@ -116,10 +116,10 @@ def method_sentences(mismatch: Mismatch) -> list[str]:
             f"Participants are the units, paired (n = {done.first}): under the null hypothesis the sign of each mean "
             "difference is random."
         )
-        about = "p refers to people like these."
+        about = "p applies to people like these."
     else:
         about = (
-            "p refers to these two recordings only, not to other days, marker placements or people. Two walks of one "
+            "p applies to these two recordings only, not to other days, marker placements or people. Two walks of one "
             "person often differ by more than their strides do."
         )
         if done.first == 1:
@@ -137,13 +137,13 @@ def method_sentences(mismatch: Mismatch) -> list[str]:
                 "differ in spread."
             )
     return [
-        f"The gap is the mean curve of {mismatch.second} minus that of {mismatch.first}, each channel over the "
-        "strides of its own foot, on 101 points of the stride.",
+        f"The gap is the mean curve of {mismatch.second} minus that of {mismatch.first}. Each channel is averaged over "
+        "the strides of its own foot, at 101 points of the stride.",
         units,
-        "The t at every point is compared with the largest |t| over all points and all "
+        "The t-value at every point is compared with the largest |t| over all points and all "
         f"{counted(len(mismatch.channels), 'channel')} in {done.permutations} permutations ({all_of}). The gap is "
         f"shaded beyond |t| = {done.threshold:.2f}, which {100 * done.alpha:g} % of the permutations exceed at some "
-        f"point. The p of a region is that of its integral above this threshold. {smallest_p_sentence(mismatch)}",
+        f"point. The p-value of a region is that of its integral above this threshold. {smallest_p_sentence(mismatch)}",
         f"A difference is named if its gap reaches {named_from}; differences are sorted by the multiple of that "
         "limit. A shift along the stride that most channels share is removed before the test.",
         f"The band of the gap contains {band} for all points and channels together, and is wider if successive "
@@ -183,8 +183,8 @@ def _timing(mismatch: Mismatch, name: str) -> str:
         return ""
     way = f"{abs(shift):.0f} % of the stride {'later' if shift > 0 else 'earlier'}"
     return (
-        f"Much of the largest gap is timing: after a shift {way}, the curve of {mismatch.first} differs by "
-        f"{number(after, 1)} instead of {with_unit(number(before, 1), str(row['unit']))} (rms)."
+        f"Much of the largest gap is a difference in timing: after a shift {way}, the curve of {mismatch.first} "
+        f"differs by {number(after, 1)} instead of {with_unit(number(before, 1), str(row['unit']))} (rms)."
     )
 
 

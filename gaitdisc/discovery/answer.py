@@ -113,7 +113,7 @@ def answer(
 def left_out(findings: tuple[Finding, ...]) -> list[str]:
     """Say which trials were left out, and why."""
     return [
-        f"{finding.what[0].upper()}{finding.what[1:]}; it was left out."
+        f"{finding.what[0].upper()}{finding.what[1:]}. This trial was left out."
         for finding in findings
         if finding.kind == ODD_TRIAL
     ]
@@ -291,9 +291,10 @@ def exact_inputs(case: Case, now: ScoredModel) -> tuple[Finding, ...]:
             size = with_unit(amount(float(np.sqrt(np.mean(push**2)))), unit)
             what = (
                 f"an error of {' or '.join(like)} in step with the {spoken(candidate.name)}, {size} (rms), would "
-                "explain it as well, because inputs were assumed to be exact"
+                "explain the gap as well, because the inputs were assumed to be exact"
             )
-            found.append(Finding("note", "exact inputs", case.measured.source, what, "the name, if the error is real"))
+            spoils = "which effect is named, if an input has this error"
+            found.append(Finding("note", "exact inputs", case.measured.source, what, spoils))
     return tuple(found)
 
 

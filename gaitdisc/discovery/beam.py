@@ -231,7 +231,7 @@ def near_runs(case: Case) -> CrossValidated:
     while True:
         shooting = case.cut_learned_runs(samples)
         plain = shooting.with_noise(white_noise(scale.spread))  # as if it erred by the whole spread of the channels
-        enough, starts = CONVERGED * shooting.seen.size, case.guess.starts(shooting.segments)
+        enough, starts = CONVERGED * shooting.seen.size, shooting.segments.starts(case.guess)
         begun = fit_model(plain, case.search.base, (), starts, TURNS, enough)
         now = cross_validated(scale, replace(begun, shooting=shooting), ())
         tried.append((scale.relative(now.fit), now))
@@ -248,10 +248,10 @@ def on_longer_runs(case: Case, now: CrossValidated) -> CrossValidated | None:
     samples = now.shooting.segments.span
     while samples < longest:
         before, samples = found or now, min(2 * samples, longest)
-        guess = guess.with_run(before.shooting.segments, before.fit.states)
-        shooting = replace(case.cut_learned_runs(samples), past=guess.states)
+        guess = before.shooting.segments.put(guess, before.fit.states)
+        shooting = replace(case.cut_learned_runs(samples), past=guess)
         shooting = shooting.with_noise(scale.white_error(before.fit))
-        starts = guess.starts(shooting.segments)
+        starts = shooting.segments.starts(guess)
         begun = before.refitted(shooting, starts=starts, turns=TURNS)
         longer = cross_validated(scale, begun, begun.parts)
         if not scale.relative(longer.fit) < CRITERIA.near:

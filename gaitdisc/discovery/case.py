@@ -11,7 +11,7 @@ from gaitdisc.discovery.candidate import list_candidates
 from gaitdisc.discovery.catalogue import ALL, Request, read_shapes
 from gaitdisc.discovery.criteria import CRITERIA
 from gaitdisc.discovery.estimated_filter import find_record_filter
-from gaitdisc.discovery.first_states import StateGuess, guess_states
+from gaitdisc.discovery.first_states import guess_states
 from gaitdisc.discovery.gap_share import GapScale
 from gaitdisc.discovery.grids import Rhythm, find_rhythm
 from gaitdisc.discovery.influence import Idle, idle_parts, refuse_idle
@@ -50,7 +50,7 @@ class Case:
     measured: Measured
     learned: tuple[int, ...]  # trials that are searched and fitted
     held_out: tuple[int, ...]  # trials that nothing but a start is fitted to
-    guess: StateGuess
+    guess: Values  # (trial, sample, state), states of every trial, roughly; NaN beyond a trial's end
     record_filter: RecordFilter
     alpha: float = ALPHA  # the greatest rate of false finds
     substeps: int = TRIED_SUBSTEPS[0]  # integration steps a sample
@@ -117,9 +117,7 @@ class Case:
         """Return the segments, ready to be fitted, under noise of unit size."""
         channels = self.measured.observed.shape[2]
         noise = white_noise(np.ones(channels))
-        return Shooting(
-            self.measured, segments, noise, self.substeps, self.guess.states, record_filter=self.record_filter
-        )
+        return Shooting(self.measured, segments, noise, self.substeps, self.guess, record_filter=self.record_filter)
 
     @property
     def longest(self) -> int:
@@ -138,18 +136,18 @@ class Case:
         """
         periods = self.predictable_periods()
         first = self.shooting(self.segments(self.learned, FIRST_SHARE * periods).spread(MOST_SEARCHED))
-        begun = fit_model(first, self.search.base, (), self.guess.starts(first.segments))
-        guess = self.guess.with_run(first.segments, begun.fit.states)
+        begun = fit_model(first, self.search.base, (), first.segments.starts(self.guess))
+        guess = first.segments.put(self.guess, begun.fit.states)
         shooting = self.shooting(self.segments(self.learned, periods).spread(MOST_SEARCHED))
-        model = begun.refitted(shooting, starts=guess.starts(shooting.segments))
+        model = begun.refitted(shooting, starts=shooting.segments.starts(guess))
         if not np.isfinite(model.fit.misfit):  # short runs leave hidden states open, and a long one may end with these
-            model = fit_model(shooting, self.search.base, (), self.guess.starts(shooting.segments))
+            model = fit_model(shooting, self.search.base, (), shooting.segments.starts(self.guess))
         return score(model.with_own_past())
 
     def predictable_periods(self) -> float:
         """Return how long a run may be, in periods, before a change of its start has grown by `growth`."""
         shooting = self.shooting(self.segments(self.learned).spread(MOST_SEARCHED))
-        states = shooting.segments.of(self.guess.states)
+        states = shooting.segments.of(self.guess)
         machine = compile_simulation(self.search.base)
         line = linearise_along(shooting, self.search.base, (), states, machine.defaults)
         step = line.first_growth(CRITERIA.growth, states)
@@ -162,8 +160,8 @@ class Case:
     def fit_over(self, samples: int, model: ScoredModel, noise: Noise) -> ScoredModel:
         """Fit a model to the learned trials cut into other runs, which begin along its own."""
         shooting = self.cut_learned_runs(samples).with_noise(noise)
-        starts = self.guess.with_run(model.shooting.segments, model.fit.states).starts(shooting.segments)
-        return model.refitted(shooting, starts=starts)
+        guess = model.shooting.segments.put(self.guess, model.fit.states)
+        return model.refitted(shooting, starts=shooting.segments.starts(guess))
 
     def lengthen(self, now: ScoredModel, most: int = 10**9) -> ScoredModel:
         """Return a model fitted to runs as long as it can follow.
@@ -212,8 +210,8 @@ def set_up_case(simulation: Simulation, measured: Measured, request: Request = A
 def _count_substeps(case: Case) -> int:
     """Return the integration steps a sample of which twice as many end short runs alike: too few run away."""
     segments, machine = case.segments(case.learned, 0.0), compile_simulation(case.search.base)
-    rows = Rows(segments.trial, segments.begin, case.guess.starts(segments))
-    spread = np.nanstd(case.guess.states, axis=(0, 1))
+    rows = Rows(segments.trial, segments.begin, segments.starts(case.guess))
+    spread = np.nanstd(case.guess, axis=(0, 1))
     spread = np.where(spread > 0, spread, 1.0)
     ends = {
         count: machine.run(case.measured.drive, rows, FEWEST_SAMPLES - 1, substeps=count)[0][:, -1] / spread
@@ -238,7 +236,7 @@ def _less_idle(case: Case) -> Case:
     search = case.search
     for periods in (1.0, case.rhythm.duration / case.rhythm.period):  # what comes late may need a whole trial
         segments = case.segments(case.learned, periods)
-        idle = idle_parts(case.shooting(segments), search.base, search.places, case.guess.starts(segments))
+        idle = idle_parts(case.shooting(segments), search.base, search.places, segments.starts(case.guess))
         if idle == Idle():
             return case
     refuse_idle(idle, search.base, search.places)

@@ -187,7 +187,7 @@ def _shape(entry: Any, where: str) -> Shape:
         if key not in _ENTRIES:
             near = get_close_matches(key, _ENTRIES, 1)
             hint = f"Did you mean {near[0]}?" if near else "Remove it."
-            raise SchemaError(f"entries of a shape must be among {', '.join(_ENTRIES)}", f"{where} has {key!r}", hint)
+            raise SchemaError(f"the keys of a shape must be among {', '.join(_ENTRIES)}", f"{where} has {key!r}", hint)
     name, pieces, constants = entry.get("name"), entry.get("pieces"), entry.get("constants", {})
     states = entry.get("states", {})
     if not isinstance(name, str) or not _NAME.fullmatch(name):
@@ -217,7 +217,7 @@ def _shape(entry: Any, where: str) -> Shape:
     numbers = [*name_factors(pieces), *constants]
     if not isinstance(names, dict) or not set(names) <= set(numbers) or not all(map(_is_name, names.values())):
         raise SchemaError(
-            f"the names of a shape's numbers must be for {', '.join(numbers)}",
+            f"a shape may give names only to its numbers: {', '.join(numbers)}",
             f"{where} has {names!r}",
             'Write names = { factor = "stiffness" }.',
         )
@@ -230,10 +230,10 @@ def _check_piece(piece: str, known: tuple[str, ...], where: str) -> None:
         written = set(names_in(parse(piece)))
     except SimulationError as error:
         found = f"{where}, piece {piece[:60]!r}: {error.found}"
-        raise SchemaError("pieces must be expressions as in a simulation file", found, error.remedy) from error
+        raise SchemaError("pieces must be expressions, written as in a simulation file", found, error.remedy) from error
     for name in sorted(written - set(known)):
         raise SchemaError(
-            f"a shape must be written in {', '.join(known)}",
+            f"the expressions of a shape may use only {', '.join(known)}",
             f"{where}, piece {piece[:60]!r} has {name!r}",
             f'If {name} is a fitted constant, give it a search grid: constants = {{ {name} = "quantiles of x" }}.',
         )

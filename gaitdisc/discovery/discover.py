@@ -61,7 +61,7 @@ def explain(simulation: Simulation, measured: Measured, request: Request = ALL) 
         explanation = augment_with(whole.search.base, verdict.found.parts)
         kept = agreeing_trials(replace(whole, search=replace(whole.search, base=explanation)), measured)
         if kept.trials != suspected.trials:
-            progress("the identified effects explain a trial that was left out: the search is repeated with it")
+            progress("the identified effects explain a trial that was left out: repeating the search with this trial")
             case, as_read, verdict = explained(kept)
     progress("testing the answer on held-out data")
     return case, as_read, verdict
@@ -82,7 +82,7 @@ def weigh_explanations(
     if not case.leaves_noise(verdict.found):
         kept = without_trial_apart(case)
         if kept is not case.measured:
-            progress("one trial is an outlier: no explanation fits it together with the others; it is left out")
+            progress("one trial is an outlier that no explanation fits with the others: this trial is left out")
             measured, case = kept, begun(kept)
             as_read = case.as_read()
             verdict = decide(case, as_read)
@@ -93,9 +93,9 @@ def weigh_explanations(
         case, as_read = noted(case, first), first.as_read()
         verdict = decide(case, as_read)
     elif unproven and alone and grows_along_runs(case, as_read):  # a fall, after a rise that was learned; two tries
-        progress("the held-out data show a gap that the rest does not show: other data are held out")
+        progress("the held-out data show a gap that the training data do not show: other data are held out")
         first = begun(split_in_time(measured, last=False))
-        first = replace(noted(case, first, "shows a gap that the rest does not show"), alpha=case.alpha / 2)
+        first = replace(noted(case, first, "shows a gap that the training data do not show"), alpha=case.alpha / 2)
         as_read_first = first.as_read()
         tried = decide(first, as_read_first)
         if tried.found.parts:
@@ -103,7 +103,7 @@ def weigh_explanations(
     for step in (prefer_relatives, prefer_delay, read_shape, read_instead):
         verdict = step(case, as_read, verdict)
     as_read, verdict = look_at_whole_runs(case, as_read, verdict)
-    progress("weighing errors of the inputs")
+    progress("testing errors of the inputs as explanations")
     case, verdict = weigh_input_errors(case, verdict)
     case, verdict = weigh_unstated_errors(case, verdict)
     verdict = without_small(case, as_read, verdict)
@@ -119,7 +119,7 @@ def refuse_blow_up(simulation: Simulation, measured: Measured) -> bool:
     """
     case, machine = set_up_case(simulation, without_spikes(measured)), compile_simulation(simulation)
     segments = case.segments((*case.learned, *case.held_out), 0.0)
-    rows = Rows(segments.trial, segments.begin, case.guess.starts(segments))
+    rows = Rows(segments.trial, segments.begin, segments.starts(case.guess))
     drive = case.measured.drive
     states, ok = machine.run(drive, rows, FEWEST_SAMPLES - 1)
     if np.mean(~ok) > MOST_LOST:

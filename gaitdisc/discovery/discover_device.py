@@ -52,7 +52,7 @@ def discover_study(
     for word in words:
         of = f"{word}: " if len(words) > 1 else ""
         own = replace(request, progress=lambda step, of=of: request.progress(f"{of}{step}"))
-        own.progress(f"comparing both walks of {participant} by the Nominal model")
+        own.progress(f"comparing both walks of {participant} with the Nominal model")
         try:
             answers[word] = _discover_condition(walks, word, own, joint)
         except GaitdiscError as error:
@@ -85,7 +85,7 @@ def _discover_condition(
     try:
         both = walks.calibrated(condition, joint)
     except NoMomentsError as lacking:
-        progress("comparing the motion alone")
+        progress("comparing only the motion of both walks")
         motion = nominal_and_trials(against(study, condition), person.id, joint)
         found, augmented = find_missing(*motion, request, files)
         why = f"{lacking.needed[:1].upper()}{lacking.needed[1:]}, but {lacking.found}"
@@ -100,7 +100,7 @@ def _discover_condition(
     found, augmented = with_model_error(found, both), model if both.agrees else augmented
     errors = beside(both, found)
     if joint == "ankle_angle" and not found.effects:
-        progress("estimating the mass of the foot at knee and hip")
+        progress("estimating an added mass of the foot at the knee and hip")
         found = with_foot_mass(found, walks, condition)
     if found.provenance is not None:
         found = replace(found, provenance=replace(found.provenance, section=DEVICE))
@@ -111,14 +111,14 @@ def with_model_error(found: Discovery, walks: DeviceWalks) -> Discovery:
     """Return what was found with the number of both walks, whose interval holds the error of the moment model."""
     if walks.agrees:
         said = "The Nominal moment model predicts the device walk as well as held-out Nominal strides: "
-        return replace(found, verdict="no_gap", effects=(), sentence=f"{said}it shows no missing effect.")
+        return replace(found, verdict="no_gap", effects=(), sentence=f"{said}no effect is missing.")
     if walks.changed is not None:
         found = _with_number(found, walks.changed)
     if not found.effects or walks.nominal.joint != "hip_flexion":
         return found
     electrodes = {name.split("_")[1] for name in walks.nominal.muscles}
     unseen = " and ".join(muscle for muscle, channels in DEEP.items() if not electrodes & set(channels))
-    doubt = f" Its size is unreliable: the hip's {unseen} has no electrode." if unseen else ""
+    doubt = f" The size of the effect is unreliable: no electrode records the {unseen} of the hip." if unseen else ""
     return replace(found, sentence=found.sentence + doubt)
 
 
@@ -135,7 +135,7 @@ def _with_number(found: Discovery, changed: Changed) -> Discovery:
     sentence = found.sentence.replace(estimate_text(old), estimate_text(new))
     if abs(old.value - new.value) > APART * abs(new.value):
         number = f"{old.value:.3g} {old.unit}".removesuffix(" 1")
-        sentence += f" The written model has {number}, fitted with the other parameters."
+        sentence += f" In the written model the value is {number}, fitted together with the other parameters."
     return replace(found, effects=tuple(mended if one is effect else one for one in found.effects), sentence=sentence)
 
 
@@ -148,8 +148,8 @@ def with_foot_mass(found: Discovery, walks: PersonWalks, condition: str) -> Disc
     if mass is None:
         return found
     sentence = (
-        f"added_foot_mass is {estimate_text(mass)}, estimated at the knee and supported by the hip; the ankle is "
-        "insensitive to it."
+        f"added_foot_mass is {estimate_text(mass)}, estimated at the knee and supported by the hip; the ankle moment "
+        "is insensitive to this mass."
     )
     effect = FoundEffect("parameter", "added_foot_mass", "wrong_parameter", "", {"value": mass})
     return replace(found, verdict="wrong_parameter", effects=(effect,), sentence=sentence)
@@ -161,14 +161,14 @@ def device_findings(walks: DeviceWalks) -> tuple[Finding, ...]:
     late_ms = 1000 * (model.form.delay_s + model.form.lag_s)
     unseen = np.nanstd(model.others(drives(nominal))[np.isfinite(nominal.moment)])
     calibration = (
-        f"the residual of the {joint}'s moment model is {model.left_nm:.1f} N m of {model.before_nm:.1f} N m on "
+        f"the {joint} moment model leaves a residual of {model.left_nm:.1f} of {model.before_nm:.1f} N m (rms) on "
         f"held-out Nominal strides (R2 {model.r2:.2f}); EMG acts {late_ms:.0f} ms "
         f"later; {unseen:.1f} N m come from muscles without an electrode"
     )
-    mass = "not estimated: no marker shows the foot"
+    mass = "the added mass is not estimated: no marker shows the foot"
     if device.per_kg.size:  # which mass at the foot would be as large as what the moment model leaves
         least = model.left_nm / float(np.nanstd(device.per_kg))
-        mass = f"at the {joint}, {least:.1f} kg at the foot would have the size of the residual"
+        mass = f"an added mass of {least:.1f} kg at the foot would change the {joint} moment by as much as the residual"
     findings = [
         *nominal.findings,
         *device.findings,
@@ -182,7 +182,7 @@ def device_findings(walks: DeviceWalks) -> tuple[Finding, ...]:
             "device strides"
         )
         if rival := changed.rival:
-            both += f"; with the next best, {spoken(rival.name)} at {rival.place}, "
+            both += f"; with the next best effect, {spoken(rival.name)} at {rival.place}, "
             both += f"the error of the fit is {changed.rival_leaves:.2f} times as large"
         findings.append(Finding("note", "moment model", nominal.subject, both, ""))
     return tuple(findings)

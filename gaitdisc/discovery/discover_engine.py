@@ -68,12 +68,12 @@ def discover_engine(
     refuse_unmeasured(mapping, engine, data)
     clean, rate_of = without_spikes(data), {coordinate.name: coordinate.speed for coordinate in engine.coordinates}
     window = (SMOOTH if engine.fibres else NARROW) * find_rhythm(clean.observed, clean.rate).period
-    states = guess_states(replace(mapping, model=""), clean, window, rate_of).states  # coordinates, then speeds
+    states = guess_states(replace(mapping, model=""), clean, window, rate_of)  # coordinates, then speeds
     refuse_other_units(mapping, engine, data, states)
     refuse_other_conventions(mapping, engine, data, states)
     met, read = tuple(_report_limits(engine, states, data)), {engine.path: "model", **(files or {})}
     fit = EngineFit(mapping, engine, data, states, progress=request.progress)
-    request.progress(f"running {engine.path.name} by {engine.called} along every trial")
+    request.progress(f"running {engine.path.name} with {engine.called} along every trial")
     as_read = write_model(engine, mapping)  # what the mapping says otherwise than the model's file
     answer = EngineAnswer(_NOTHING, mapping, as_read, base_runs(as_read.engine, fit), engine)
     if request.effects or not answer.runs.leave_mere_noise:
@@ -100,7 +100,7 @@ def discover_engine(
 def search(fit: EngineFit, base: EngineAnswer, request: Request, read: dict[Path, str]) -> EngineAnswer:
     """Search the expansion along the record; of what it names, that stays which the engine's own runs bear out."""
     mapping, engine, data, states = fit.mapping, fit.engine, fit.measured, fit.states
-    request.progress(f"computing the accelerations of {engine.path.name} along the record by {engine.called}")
+    request.progress(f"computing the accelerations of {engine.path.name} along the record with {engine.called}")
     linear, driven = expand(mapping, engine, data, states)
     request = replace(request, added=saturations(mapping, getattr(engine, "servos", {})))
     if not request.effects:  # a limit is the input's own, and of no force
@@ -111,10 +111,10 @@ def search(fit: EngineFit, base: EngineAnswer, request: Request, read: dict[Path
     now, own = answer.values(), {k: one for k, one in mapping.values().items() if engine.as_force(k) is None}
     moved = {name: now[name] for name, value in own.items() if abs(now[name] - value) > MOVED * abs(value)}
     if moved and (len(found.effects) > 1 or engine.fibres):  # one number alone rests on the engine's own runs
-        request.progress(f"expanding again about the new value of {' and '.join(moved)}")
+        request.progress(f"expanding the model again about the new value of {' and '.join(moved)}")
         linear, driven = expand(mapping, engine, data, states, moved)
         found, answer = find_missing(linear, driven, request, read)
-    request.progress(f"running it by {engine.called}")
+    request.progress(f"running the augmented model with {engine.called}")
     runs = base_runs(base.written.engine, fit) if fit.low_pass.margin else base.runs  # filtered as the record was
     runs = runs.among(np.isin(runs.at.trial, [trial_called(data, name) for name in found.runs.names]))
     augmented, written, _ = fit.written(found, fit.parts)
@@ -232,10 +232,10 @@ def _report_limits(engine: Engine, states: Values, data: Measured) -> Iterator[F
     for coordinate, q in zip(engine.coordinates, states[inside].T, strict=False):
         if share := 100 * np.mean((q <= coordinate.low) | (q >= coordinate.high)):
             limits = f"{coordinate.low:.3g} to {coordinate.high:.3g} {coordinate.unit}"
-            what = f"{coordinate.called} is at its limit ({limits}) in {share:.2g} % of samples"
+            what = f"{coordinate.called} is at its limit ({limits}) in {share:.2g} % of the samples"
             yield Finding("note", "limit", "model", f"{what}: the model's own limit acts there", "")
     if touched := getattr(engine, "contacts", 0):
-        what = f"bodies touch in the record (at most {touched} contacts); their stiff forces are expanded unchanged"
+        what = f"bodies are in contact (at most {touched} contacts); their stiff forces are expanded unchanged"
         yield Finding("warning", "contact", "model", what, "results that depend on runs through a contact")
 
 
@@ -244,7 +244,7 @@ def _report_saturation(engine: Engine, data: Measured) -> Iterator[Finding]:
     driven = data.drive.inputs[np.arange(data.drive.inputs.shape[1]) < data.samples[:, None]]
     for control, u, (low, high) in zip(engine.controls, driven.T, engine.control_ranges, strict=False):
         if share := 100 * np.mean((u < low) | (u > high)):
-            what = f"{control.name} is beyond its range ({low:.3g} to {high:.3g}) in {share:.2g} % of samples"
+            what = f"{control.name} is beyond its range ({low:.3g} to {high:.3g}) in {share:.2g} % of the samples"
             yield Finding("note", "saturated", "model", f"{what}: the engine clips it there", "")
 
 

@@ -50,7 +50,7 @@ def find_missing(
     files: files that were read, and what each is called in the result
     """
     recall(hash_content((model, data, data.drive), repr((request.shapes, request.effects, request.alpha))))
-    request.progress("checking that the simulation stays finite (at its first use, gaitdisc is compiled: about 20 s)")
+    request.progress("checking that the simulation stays finite (gaitdisc is compiled at its first use, in about 20 s)")
     if refuse_blow_up(model, data):  # the model moves as slowly as the clock says: no milliseconds
         data = replace(data, findings=tuple(finding for finding in data.findings if finding.spoils != MILLISECONDS))
     try:

@@ -70,11 +70,11 @@ def discover_tracked(tracked: Tracked, kinematics: Path, request: Request = ALL)
     walk = compute_pass(tracked, kinematics, progress)
     findings, engine, motion = balance(walk), walk.engine, walk.motion
     refuse_other_motion(walk)
-    progress("computing the noise of the moments from that of the angles")
+    progress("computing the noise of the moments from the noise of the angles")
     angle_noise = moments_of_angle_noise(walk, tracked.noise_deg)
     base, joints = search_joints(walk, angle_noise, request)
     found = make_discovery(base, joints)
-    progress("writing it into the model")
+    progress("writing the effects into the model")
     augmented = draft(engine)
     for one in found.effects:
         if one.kind == "port":
@@ -134,8 +134,8 @@ def make_discovery(base: Simulation, joints: list[JointFinding]) -> Discovery:
     before, after = (np.sqrt(np.mean((first.joint.left - each) ** 2)) for each in (0.0, first.rivals[0].explained))
     unit = units[joints.index(first)]
     sentence = (
-        f"Not proven: {named_at(one)} explains most of the residual, from "
-        f"{amount(before)} to {amount(after)} {unit} where it is fitted (noise floor {amount(first.joint.floor)}). "
+        f"Not proven: {named_at(one)} explains most of the residual, which falls from "
+        f"{amount(before)} to {amount(after)} {unit} on the fitted data (noise floor {amount(first.joint.floor)}). "
         "Held-out data do not support it, or its evidence is too small: a longer walk or a second one can decide."
     )
     return replace(found, verdict="unexplained", sentence=sentence)
@@ -166,7 +166,7 @@ def stretch_used(walk: Pass, file: str) -> str:
         one, q = walk.engine.coordinates[k], walk.motion.q[:, k]
         unit, factor = display_unit(one.unit)
         ranges.append(f"{one.called} {factor * q.min():.3g} to {factor * q.max():.3g} {unit}")
-    used = f"searched from {time[0]:.2f} to {time[-1]:.2f} s of the {begin:.2f} to {end:.2f} s in {file}"
+    used = f"{file} has {begin:.2f} to {end:.2f} s, of which {time[0]:.2f} to {time[-1]:.2f} s were searched"
     return "; ".join([used, *ranges])
 
 
@@ -189,7 +189,7 @@ def _gaps(walk: Pass, written: WrittenModel, found: Discovery) -> tuple[str, ...
     for k in numbers:
         one = walk.engine.coordinates[k]
         before, now = (f"{amount(walk.size(each[:, k]))} {one.force_unit}" for each in (walk.left, after))
-        said.append(f"{one.called}, computed by OpenSim with the written model: residual {before} before, {now} after")
+        said.append(f"{one.called}, computed with the written model: residual {before} without, {now} with the effects")
     return tuple(said)
 
 
@@ -217,8 +217,8 @@ def _simulation(walk: Pass) -> Simulation:
     """The walk as a simulation: what its muscles' groups may do otherwise, and a port at each joint."""
     plain, numbers = draft(walk.engine), []
     for name in walk.groups:
-        numbers.append(Parameter(f"{name}_strength", 1.0, "1", 1 - STRENGTH, 1 + STRENGTH, "against the file's forces"))
-        numbers.append(Parameter(f"{name}_delay", 0.0, "s", meaning="by which they act later than in the file"))
+        numbers.append(Parameter(f"{name}_strength", 1.0, "1", 1 - STRENGTH, 1 + STRENGTH, "compared with the file"))
+        numbers.append(Parameter(f"{name}_delay", 0.0, "s", meaning="delay of these muscles compared with the file"))
     seen, sensors = [], []
     for k in walk.joints:
         one = walk.engine.coordinates[k]
@@ -229,7 +229,7 @@ def _simulation(walk: Pass) -> Simulation:
         plain,
         title=f"tracked walk of {walk.engine.path.name}",
         model="",
-        inputs=tuple(Input(name, "N m", "of the forces' file") for name in walk.groups),
+        inputs=tuple(Input(name, "N m", "from the forces file") for name in walk.groups),
         parameters=tuple(numbers),
         observations=tuple(seen) or plain.observations,
         sensors=tuple(sensors),
@@ -290,13 +290,13 @@ def summarise_joint(walk: Pass, number: int, found: JointFinding) -> Finding:
     ]
     left = float(np.sqrt(np.mean(joint.left**2)))
     what = (
-        f"{one.called}: residual {left:.3g} of {np.std(joint.demanded):.3g} {unit}, noise {joint.floor:.2g}; it would "
-        f"show a spring from {spring:.2g} {unit}/{one.unit}, a damper from {damper:.2g} {unit} s/{one.unit}"
+        f"{one.called}: residual {left:.3g} of {np.std(joint.demanded):.3g} {unit}, noise {joint.floor:.2g}; smallest "
+        f"visible effects: a spring of {spring:.2g} {unit}/{one.unit}, a damper of {damper:.2g} {unit} s/{one.unit}"
         + "".join(f", {each}" for each in shares)
     )
     unexplained = float(np.sqrt(np.mean((joint.left - (found.named.explained if found.named else 0.0)) ** 2)))
     if unexplained > BEYOND * joint.floor and found.named is None:
-        return Finding("warning", "without a name", "model", what, "the residual there, which no candidate explains")
+        return Finding("warning", "without a name", "model", what, "this joint's residual, which no effect explains")
     return Finding("note", "joint", "model", what, "", one.called)
 
 

@@ -29,10 +29,10 @@ SENSORS = frozenset({"sensor_gain", "sensor_offset", "sensor_lag", "sensor_drift
 STEADY = frozenset({"constant_load", "sensor_offset", "sensor_drift", "linear_stiffness"})
 # from the narrowest; both names must be in a group, or one in each of two
 WITHIN = (
-    (STEADY, "a recording at rest in two known positions"),
+    (STEADY, "the system at rest in two known positions"),
     (SPRINGS, "movement through a wider range, in both directions from rest"),
     (LOSSES, "the same movement at clearly different speeds"),
-    (REMEMBERING, "the same movement at clearly different speeds: hysteresis does not depend on them"),
+    (REMEMBERING, "the same movement at clearly different speeds: hysteresis does not depend on the speed"),
     (CLOCKED, "the same movement at another cadence, or started at another time"),
     (LATE, "a sharp push that both the drive and the sensor record, or a second sensor of the same movement"),
     (SENSORS, "a calibration of the sensor against a known movement"),
@@ -53,8 +53,8 @@ BETWEEN = (
     (CLOCKED, SPRINGS | LOSSES | LATE, "the same movement at another cadence"),
     (SENSORS, frozenset({"wrong_parameter", "input_gain"}), "a calibration of the sensor against a known movement"),
     (SENSORS, SPRINGS | LOSSES | {"constant_load", "linear_coupling"}, "a second sensor of the same movement"),
-    (frozenset({"input_gain"}), frozenset({"wrong_parameter"}), "a recording with the drive switched off"),
-    (frozenset({"input_gain", "input_delay"}), SPRINGS | LOSSES, "a recording with the drive switched off"),
+    (frozenset({"input_gain"}), frozenset({"wrong_parameter"}), "movement with the drive switched off"),
+    (frozenset({"input_gain", "input_delay"}), SPRINGS | LOSSES, "movement with the drive switched off"),
 )
 
 

@@ -10,7 +10,6 @@ from dataclasses import replace
 
 import numpy as np
 
-from gaitdisc.discovery.first_states import StateGuess
 from gaitdisc.discovery.noise import white_noise
 from gaitdisc.discovery.record_filter import RecordFilter
 from gaitdisc.discovery.scored_model import ScoredModel, fit_model
@@ -31,11 +30,12 @@ ROUGH = 1.0  # times the noise's power at the cut-off, from which on a signal th
 
 
 def find_record_filter(
-    simulation: Simulation, measured: Measured, period: float, guess: StateGuess
+    simulation: Simulation, measured: Measured, period: float, guess: Values
 ) -> tuple[RecordFilter, tuple[Finding, ...]]:
     """Return what the measured channels went through: as the file says, or as their spectra show.
 
     period: the motion's main period [s]
+    guess (trial, sample, state): states of every trial, roughly
     returns findings: about filters that the file does not state
     """
     stated = tuple(simulation.sensor(name).lowpass for name in measured.channels)
@@ -46,8 +46,8 @@ def find_record_filter(
         length = min(max(int(period * measured.rate), FEWEST_SAMPLES), int(measured.samples.min()) // 2)
         runs = cut_segments(measured.samples, tuple(range(len(measured.trials))), length, length // OVERLAP)
         size = np.nanstd(measured.observed, axis=(0, 1))
-        shooting = Shooting(measured, runs, white_noise(size), past=guess.states)
-        as_read = fit_model(shooting, simulation, (), guess.starts(runs))
+        shooting = Shooting(measured, runs, white_noise(size), past=guess)
+        as_read = fit_model(shooting, simulation, (), runs.starts(guess))
         seen = _beside_the_simulation(as_read, seen, inputs)
     units = [simulation.sensor(name).unit for name in measured.channels]
     cutoffs = _as_the_surer(seen, units)
@@ -56,7 +56,7 @@ def find_record_filter(
     passed = RecordFilter(tuple(cutoffs.get(number, cutoff) for number, cutoff in enumerate(stated)), measured.rate)
     findings = []
     for number, hz in cutoffs.items():
-        what = f"assumed to be low-passed at {hz:.3g} Hz without lag (order 2, both directions), as its spectrum falls"
+        what = f"assumed to be low-passed at {hz:.3g} Hz without lag (order 2, both ways), because of its spectrum"
         spoils = "everything that depends on this filter; state lowpass in the simulation file if you know it"
         findings.append(Finding("note", "low-pass", measured.source, what, spoils, measured.channels[number]))
     return passed, tuple(findings)

@@ -165,8 +165,8 @@ def _over_time(discovery: Discovery, table: pd.DataFrame) -> Figure:
     fitted = ", its parameters fitted within their bounds" if discovery.corrections else ""
     caption = (
         f"Trial {trial}, {methods_used(discovery).held_out}. Left: measured (black), initial model{fitted} (orange, "
-        "dashed), with the identified effect (green). The gap is shaded. Right: residual of each model. Grey band: two "
-        f"standard deviations of the noise. Typical section, {len(numbers)} samples."
+        "dashed), model with the identified effect (green). The gap is shaded. Right: residual of each model. Grey "
+        f"band: two standard deviations of the noise. Typical section, {len(numbers)} samples."
     )
     return Figure("held_out", caption, _alt(discovery), numbers, drawn)
 
@@ -208,8 +208,8 @@ def _over_stride(discovery: Discovery, table: pd.DataFrame) -> Figure:
         axes.set_xlabel("stride [%]", labelpad=1)
     legend(drawn, discovery_key(measured=True))
     caption = (
-        f"The same over the stride, all {len(table)} held-out samples in {STRIDE_BINS} bins; bands: standard "
-        "deviation in a bin. Bar at the foot: where the identified effect reaches at least half of its maximum."
+        f"Signals and residuals over the stride, all {len(table)} held-out samples in {STRIDE_BINS} bins; bands: "
+        "standard deviation in a bin. Bar at the bottom: where the effect reaches at least half of its maximum."
     )
     return Figure("over_stride", caption, _alt(discovery), pd.concat(kept, ignore_index=True), drawn)
 

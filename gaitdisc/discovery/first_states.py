@@ -13,7 +13,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 from gaitdisc.discovery.noise import savgol_filter
-from gaitdisc.discovery.segments import Segments
 from gaitdisc.discovery.shooting import Shooting
 from gaitdisc.recording.arrays import Values
 from gaitdisc.simulation.compiled_simulation import SUBSTEPS, Compiled, Drive, Rows
@@ -36,32 +35,14 @@ SOLVED = 1e-3  # of a channel's spread, below which no other beginning is tried
 LEFT = 0.5  # of a channel's spread, beyond which a sample is not solved
 
 
-@dataclass(frozen=True)
-class StateGuess:
-    """States of every trial, roughly."""
-
-    states: Values  # (trial, sample, state), NaN beyond a trial's end
-
-    def starts(self, segments: Segments) -> Values:
-        """Return the guess at each segment's first sample (segment, state)."""
-        return self.states[segments.trial, segments.begin].copy()
-
-    def with_run(self, segments: Segments, states: Values) -> StateGuess:
-        """Return the guess with a run put in its place where there is one.
-
-        states (segment, sample, state): their states; those that effects bring along, after the others, are left out
-        """
-        return StateGuess(segments.put(self.states, states[..., : self.states.shape[2]]))
-
-
-def guess_states(simulation: Simulation, measured: Measured, period: float, rate_of: dict[str, str]) -> StateGuess:
+def guess_states(simulation: Simulation, measured: Measured, period: float, rate_of: dict[str, str]) -> Values:
     """Guess the states: the observation map solved for them on smoothed channels, rates as slopes of positions.
 
     simulation: names, and observations: any expressions of states, inputs and time
     period: the motion's main period [s]
-    returns: a state that the channels do not determine and that is no rate of one that they do follows its equation
-        where it forgets its start within a trial, from its `initial`, or from where a run before ended; else it stays
-        at its `initial`, or at 0, moved by what the channels say of it
+    returns (trial, sample, state): NaN beyond a trial's end. A state that the channels do not determine and that is no
+        rate of one that they do follows its equation where it forgets its start within a trial, from its `initial`, or
+        from where a run before ended; else it stays at its `initial`, or at 0, moved by what the channels say of it
     """
     machine, drive = compile_simulation(simulation), measured.drive
     observed, rate = measured.observed, drive.rate
@@ -82,8 +63,8 @@ def guess_states(simulation: Simulation, measured: Measured, period: float, rate
         out[trial, :length], known = _states(seeing, smooth, slope, np.tile(initial, (length, 1)), rates, rate)
         hidden &= ~known
     if hidden.any() and not hidden.all() and isinstance(simulation, Simulation):
-        out = _following(simulation, drive, out, hidden)
-    return StateGuess(out)
+        return _following(simulation, drive, out, hidden)
+    return out
 
 
 def _following(simulation: Simulation, drive: Drive, states: Values, hidden: NDArray[np.bool_]) -> Values:

@@ -87,7 +87,7 @@ class EngineFit:
                 column = called.index(part.candidate.place)
                 lags[column] = seconds = max(part.values["seconds"], 0.1 / data.rate)
                 controls[:, :, column] = lag_signal(controls[:, :, column], seconds * data.rate)
-                lag = f"{part.candidate.place}, behind a first-order lag of {seconds:.4g} s, has no form in a mapping: "
+                lag = f"{part.candidate.place} with a first-order lag of {seconds:.4g} s has no form in a mapping: "
                 written = replace(written, notes=(*written.notes, f"{lag}only discovery.json contains it"))
         recorded = self.low_pass.filtered
         return augmented, written, Driven(written.engine, augmented, controls, lags, recorded, self.progress)
@@ -116,7 +116,7 @@ class EngineFit:
         left = [residual_by(driven, self.measured, at, self.states, near) for *_, driven in both]
         sizes = zip(runs.units.items(), root_mean_square(left[0] - left[1]), strict=True)
         said = ", ".join(f"{name} by {size:.1g} {unit}" for (name, unit), size in sizes)
-        notes = (*written.notes[:-1], f"{written.notes[-1]}; its held-out runs deviate from the expression's in {said}")
+        notes = (*written.notes[:-1], f"{written.notes[-1]}; the held-out runs deviate from the expression in {said}")
         return augmented, replace(written, notes=notes)
 
     def fitted(self, found: Discovery, base: Simulation, runs: OwnRuns) -> Discovery:
@@ -140,9 +140,7 @@ class EngineFit:
         near: dict[int, Values] = {}
         now, slopes = white(values, near), np.zeros((0, len(slots)))
         for turn in range(TURNS):
-            self.progress(
-                f"fitting {counted(len(slots), 'number')} by the engine's own runs, round {turn + 1} of at most {TURNS}"
-            )
+            self.progress(f"fitting {counted(len(slots), 'value')} by engine runs, round {turn + 1} of at most {TURNS}")
             steps = STEP * np.maximum(np.abs(values), STEP) * np.eye(len(slots))
             slopes = np.column_stack([(white(values + step, near.copy()) - now) / step.sum() for step in steps])
             moved = values + np.asarray(np.linalg.lstsq(slopes, -now, rcond=None)[0], np.float64)

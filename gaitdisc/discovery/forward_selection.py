@@ -34,7 +34,7 @@ def select_forward(
     for turn in range(MOST_TURNS):
         if len(selection.model.parts) >= most or selection.is_far:
             break
-        search.progress(f"round {turn + 1} of at most {MOST_TURNS}")
+        search.progress(f"selection of effects, round {turn + 1} of at most {MOST_TURNS}")
         if not selection.add_one():
             break
     return selection.model, selection.rivals

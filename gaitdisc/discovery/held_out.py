@@ -8,7 +8,7 @@ import numpy as np
 
 from gaitdisc.discovery.case import LENGTHENED, Case
 from gaitdisc.discovery.criteria import CRITERIA
-from gaitdisc.discovery.first_states import StateGuess, with_own_states
+from gaitdisc.discovery.first_states import with_own_states
 from gaitdisc.discovery.input_errors import wandering, with_drawn_errors
 from gaitdisc.discovery.noise import white_noise
 from gaitdisc.discovery.paired_test import PairedTest, compare_errors
@@ -20,7 +20,7 @@ from gaitdisc.recording.arrays import Values
 from gaitdisc.recording.recording import Finding
 
 TURNS = 30
-ALIKE = "runs alike with and without the identified effect"
+ALIKE = "has the same simulated motion with and without the identified effect"
 DRAWN = 20  # times, inputs with their stated errors: the mean square to some 10 % where their effects are independent
 
 
@@ -31,9 +31,9 @@ def run_trials(case: Case, model: ScoredModel, trials: tuple[int, ...], like: Sc
     """
     guess, run = case.guess, model
     for length in _lengths(like.shooting.segments.span / case.rhythm.samples):
-        shooting = replace(case.shooting(case.segments(trials, length)).with_noise(like.noise), past=guess.states)
+        shooting = replace(case.shooting(case.segments(trials, length)).with_noise(like.noise), past=guess)
         run = _start_runs(shooting, model, guess)
-        guess = guess.with_run(shooting.segments, run.fit.states)
+        guess = shooting.segments.put(guess, run.fit.states)
     return run
 
 
@@ -141,9 +141,9 @@ def holding_out_others(case: Case, as_read: ScoredModel, now: ScoredModel) -> Ca
 def noting_alike(case: Case) -> Case:
     """Return a case with a finding that says that the held-out data do not show what the others speak for."""
     blind = ", ".join(case.measured.trials[trial] for trial in case.held_out)
-    what = f"trial {blind} {ALIKE}; only the other trials show it"
+    what = f"trial {blind} {ALIKE}; only the other trials show the effect"
     return case.noting(
-        Finding("note", "held out", case.measured.source, what, "the test, in which the effect does not act")
+        Finding("note", "held out", case.measured.source, what, "the test on these data, where the effect does not act")
     )
 
 
@@ -166,10 +166,13 @@ def _apart(case: Case, as_read: ScoredModel, now: ScoredModel, trials: tuple[int
     return float(((before.fit.white - after.fit.white) ** 2).sum())
 
 
-def _start_runs(shooting: Shooting, model: ScoredModel, guess: StateGuess) -> ScoredModel:
-    """Return a model run over segments from the start states that suit it best, its constants as they are."""
+def _start_runs(shooting: Shooting, model: ScoredModel, guess: Values) -> ScoredModel:
+    """Return a model run over segments from the start states that suit it best, its constants as they are.
+
+    guess (trial, sample, state): of every trial, near which these are found
+    """
     machine, values = model.machine, model.fit.values
-    starts = with_own_states(shooting, machine, values, guess.starts(shooting.segments))
+    starts = with_own_states(shooting, machine, values, shooting.segments.starts(guess))
     return replace(model, shooting=shooting, fit=shooting.fitted(machine, (), values, starts, TURNS))
 
 

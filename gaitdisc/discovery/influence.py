@@ -33,7 +33,7 @@ class Idle:
     def findings(self, source: str, kind: str) -> tuple[Finding, ...]:
         """One for each kind."""
         idle = (
-            ("warning", kind, self.places, "a search there: an effect that does not show cannot be identified"),
+            ("warning", kind, self.places, "a search there: an effect without influence cannot be identified"),
             ("note", "parameter", self.parameters, "nothing; these data cannot determine its value"),
             ("note", "state", self.states, "nothing; these data cannot determine its initial value"),
         )

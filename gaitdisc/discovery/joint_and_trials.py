@@ -112,7 +112,7 @@ def joint_model(record: JointRecord, model: MuscleMoment) -> Simulation:
     muscles = [(name, against if sign < 0 else towards) for name, sign in muscles if sign]
     inputs = [
         Input("reference", "rad/s^2", "recorded motion, low-passed: acceleration + 57*rate + 800*angle"),
-        *(Input(name, "1", "activation, from its EMG as in the Nominal walk") for name, _ in muscles),
+        *(Input(name, "1", "activation from the EMG, processed as in the Nominal walk") for name, _ in muscles),
         *(Input(f"{name}_gain", "N m", "moment at activation 1, as in the Nominal walk") for name, _ in muscles),
         Input("others", "N m", "moment of muscles without an electrode, as in the Nominal walk"),
         Input("phase", "1", "percent stride / 100"),
@@ -120,7 +120,7 @@ def joint_model(record: JointRecord, model: MuscleMoment) -> Simulation:
     groups = [one for one in (against, towards) if any(group == one for _, group in muscles)]
     numbers = [Parameter("emg_delay", 0.0, "s", meaning="additional delay of EMG compared with the Nominal walk")]
     numbers += [
-        Parameter(f"{group}_strength", 1.0, "1", 1 - STRENGTH, 1 + STRENGTH, "compared with the Nominal walk")
+        Parameter(f"{group}_strength", 1.0, "1", 1 - STRENGTH, 1 + STRENGTH, "strength compared with the Nominal walk")
         for group in groups
     ]
     said = [f"{group}_strength*{name}_gain*delay({name}, emg_delay)" for name, group in muscles]
@@ -128,7 +128,7 @@ def joint_model(record: JointRecord, model: MuscleMoment) -> Simulation:
     if carried:
         inputs.append(Input("per_kg", "N m/kg", "change of the muscles' moment per kg added to the foot"))
         numbers.append(
-            Parameter("added_foot_mass", 0.0, "kg", meaning="at the foot, in addition to the body's own mass")
+            Parameter("added_foot_mass", 0.0, "kg", meaning="mass at the foot, in addition to that of the body")
         )
     total = " + ".join(said) + (" - added_foot_mass*per_kg" if carried else "")
     return Simulation(

@@ -49,7 +49,7 @@ class Work:
         """Keep a result; an earlier run that had not come to it has none that follow from it."""
         again = self.chain in self.known
         if again and not self.done:
-            self.progress(f"continuing an earlier run: {counted(len(self.known), 'fit')} kept")
+            self.progress(f"continuing an earlier run: {counted(len(self.known), 'fit')} reused")
         self.done[self.chain] = result
         if not again:
             self.known = {}

@@ -68,7 +68,7 @@ def _check_inputs(simulation: Simulation, measured: Measured, where: str) -> Non
         raise ShapeError(
             f"{simulation.title!r} needs {len(names)} inputs: {', '.join(names) or 'none'}",
             f"{where} has {given.shape[2]}",
-            "Give one column for each, in this order.",
+            "Give one column for each input, in this order.",
         )
     for trial, (name, samples) in enumerate(zip(measured.trials, measured.samples, strict=True)):
         sample, column = _first(~np.isfinite(given[trial, :samples]))

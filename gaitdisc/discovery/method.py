@@ -32,9 +32,9 @@ SHORT_RUNS = (
     "residual (one-sided test, each sample weighted by its size, with the autocorrelation of the residual: Newey and "
     "West 1987). The intervals follow from the curvature of the likelihood under that noise.",
     "The noise floor is the sensor noise, estimated from the data without a model: the residual of a cubic over "
-    "seven samples. Up to four explanations are the answer if their residual does not exceed it. Otherwise sets of "
-    "explanations were compared by the share of the gap that they close on held-out runs, minus a complexity penalty "
-    "per term: 3 % of the gap for a plain term, up to 10 % for a term that can imitate many others (a delay, a "
+    "seven samples. Up to four explanations are the answer if their residual does not exceed this floor. Otherwise "
+    "sets of explanations were compared by the share of the gap that they close on held-out runs, minus a complexity "
+    "penalty per term: 3 % of the gap for a plain term, up to 10 % for a term that can imitate many others (a delay, a "
     "product, a periodic force). Terms that close less than 5 % are listed as small.",
     UNNAMED,
 )
@@ -47,8 +47,8 @@ BY_ENGINE = (
     *SHORT_RUNS,
     "If no muscle has fibres, the parameters and their intervals were fitted again with the engine's own runs.",
     "Effects with a form in the model's own file were inserted there and compared with the expression; others acted "
-    "as a force at each step. The same runs with all effects, and without each of several, decide: an effect that "
-    "they do not support is withdrawn. All errors and shares here are those of the engine's runs.",
+    "as a force at each step. The same runs with all effects, and without each one if there are several, decide: an "
+    "effect that they do not support is withdrawn. All errors and shares here are those of the engine's runs.",
 )
 ALONG_A_WALK = (
     "The measured motion was prescribed. Inverse dynamics gave the moments that this motion requires in addition to "
@@ -66,7 +66,7 @@ ALONG_A_WALK = (
     "This is evidence from one walk, often from one stride; a second walk may differ.",
     "The noise floor of a moment is the noise of the angles, propagated by inverse dynamics, and 1 % of the moment's "
     "spread.",
-    "The effect was inserted into the model's file, and OpenSim computed the moments again (findings, above).",
+    "The effect was inserted into the model's file, and OpenSim computed the moments again (see the findings above).",
 )
 OF_A_DEVICE = (
     "A moment model of this person was calibrated on the Nominal walk. Each muscle's envelope, after a delay and a "
@@ -100,17 +100,17 @@ class Method:
 
 RUNS_HELD_OUT = "held out: neither searched nor fitted, except the initial state of each run"
 METHODS = {
-    ENGINE: Method(BY_ENGINE, RUNS_HELD_OUT, "In augmented.toml, and in the model's own file as far as it has a form:"),
+    ENGINE: Method(BY_ENGINE, RUNS_HELD_OUT, "As in augmented.toml, and in the model's own file if it has a form:"),
     TRACKED: Method(
         ALONG_A_WALK,
-        "with the identified effect when each block of time is predicted from the other blocks",
-        "In the model's own file as far as it has a form there, and in the mapping next to it:",
+        "each block of time predicted from the other blocks",
+        "As in the model's own file, if it has a form there, and in the mapping next to that file:",
     ),
     DEVICE: Method(
-        OF_A_DEVICE, "held out: neither searched nor fitted", "In augmented.toml, the moment model of this person:"
+        OF_A_DEVICE, "held out: neither searched nor fitted", "As in augmented.toml, the moment model of this person:"
     ),
 }
-OF_A_SIMULATION = Method(SHORT_RUNS, RUNS_HELD_OUT, "In augmented.toml, which runs like the simulation:")
+OF_A_SIMULATION = Method(SHORT_RUNS, RUNS_HELD_OUT, "As in augmented.toml, which runs like the simulation:")
 
 
 def methods_used(discovery: Discovery) -> Method:

@@ -76,7 +76,7 @@ def agreeing_trials(case: Case, measured: Measured) -> Measured:
             source,
             f"trial {measured.trials[one.trial]!r} looks as if {one.change}: with this correction the error of the "
             f"simulation falls from {one.errors[0]:.2g} to {one.errors[1]:.2g} standard deviations; in the other "
-            f"trials the same correction raises it from {one.errors[2]:.2g} to {one.errors[3]:.2g}",
+            f"trials the same correction raises the error from {one.errors[2]:.2g} to {one.errors[3]:.2g}",
             "this trial, which was left out; correct or remove it",
             one.channel,
         )
@@ -123,8 +123,8 @@ def fit_trials(case: Case, measured: Measured, samples: int) -> ScoredModel:
     guess = guess_states(simulation, measured, case.rhythm.period, rate_of)
     segments = cut_segments(measured.samples, tuple(range(len(measured.trials))), samples).spread(MOST_SEARCHED)
     spread = white_noise(np.nanstd(case.measured.observed, axis=(0, 1)))
-    shooting = Shooting(measured, segments, spread, case.substeps, guess.states)
-    return fit_model(shooting, simulation, (), guess.starts(segments))
+    shooting = Shooting(measured, segments, spread, case.substeps, guess)
+    return fit_model(shooting, simulation, (), segments.starts(guess))
 
 
 def trial_errors(model: ScoredModel) -> Values:

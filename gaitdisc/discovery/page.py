@@ -60,7 +60,7 @@ def gap_table(discovery: Discovery) -> Table:
             amounts = [with_unit(amount(factor * one, factor * floor / 10), shown) for one in (before, after, floor)]
             rows.append((data, channel, *amounts, _percent(share_closed(before, after, floor)), p_cell(size.p)))
             records.append((data, channel, before, after, floor, unit, share_closed(before, after, floor), size.p))
-    moved = " (initial model, parameters with bounds fitted within these)" if discovery.corrections else ""
+    moved = " (initial model, its parameters fitted within their bounds)" if discovery.corrections else ""
     held, fitted = (counted(size.pieces, "independent sample") for size in (discovery.held_out, discovery.train))
     caption = (
         f"Root-mean-square residual (measured minus simulated) before{moved} and after the identified effect is added, "

@@ -76,7 +76,7 @@ class Power:
             return f"{what} is found in 19 of 20 records like these even with a {number} of {least}."
         if math.isinf(size):
             most = with_unit(amount(self.sizes[-1], self.sizes[-1] / 10), self.unit)
-            instead = f"; most records with {most} are answered with {self.instead}" if self.instead else ""
+            instead = f"; in most records with {most} the answer is {self.instead}" if self.instead else ""
             return f"{what} is not found in 19 of 20 records like these with a {number} of up to {most}{instead}."
         said = with_unit(amount(size, size / 10), self.unit)
         return f"{what} is found in 19 of 20 records like these from a {number} of {said} on."
@@ -95,7 +95,7 @@ def find_power(model: Simulation, data: Measured, request: Request) -> list[Powe
         )
     case = set_up_case(model, without_spikes(data), request)
     refuse_unknown(case.search, request.effects)
-    request.progress("fitting the simulation as it was read")
+    request.progress("fitting the initial simulation")
     as_read = case.as_read()
     return [find_power_for(effect, case, as_read, model, request) for effect in request.effects]
 

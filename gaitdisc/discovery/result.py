@@ -161,7 +161,7 @@ class ConditionAnswer:
 
 @dataclass(frozen=True)
 class Twins:
-    """Answers of the same search to simulated records like the user's.
+    """Answers of the same search to simulated records that resemble the user's.
 
     >>> Twins(20, "coulomb_friction@air", {"coulomb_friction@air": 19, "no_gap": 1}, {"no_gap": 20}).sentence[44:77]
     'gives the same answer in 19 of 20'
@@ -177,10 +177,10 @@ class Twins:
     def sentence(self) -> str:
         """How often the answer returns, and how often something is named where nothing is missing."""
         invented = sum(count for answer, count in self.without.items() if "@" in answer)
-        said = [f"names an effect in {invented} of {self.records} in which nothing is missing"]
+        said = [f"names an effect in {invented} of {self.records} records in which nothing is missing"]
         if self.with_effects:
             same = self.with_effects.get(self.named, 0)
-            said.insert(0, f"gives the same answer in {same} of {self.records} with the effect")
+            said.insert(0, f"gives the same answer in {same} of {self.records} records with the effect")
         return f"In simulated records like these, the search {', and '.join(said)}."
 
 
@@ -225,12 +225,13 @@ class Discovery(Saved, file="discovery.json"):
     Parameters
     ----------
     verdict : str
-        One of nine words.
+        Kind of the answer, one of the nine words of `VERDICTS`.
     sentence : str
-        The answer in words.
+        The answer in one sentence.
     where : tuple of Whereabouts
         Where the gap arises, the largest share first.
-    effects : tuple of FoundEffect        Identified effects.
+    effects : tuple of FoundEffect
+        Identified effects.
     rivals : tuple of FoundEffect
         Other tested explanations, best first.
     train, held_out : GapSize
@@ -253,8 +254,9 @@ class Discovery(Saved, file="discovery.json"):
     conditions : tuple of ConditionAnswer
         Answers for all conditions, if a study has several in addition to Nominal.
     given : str
-        ``proven`` or ``refuted`` by held-out data for effects that the user specified; empty after a search.
-    twins : Twins, optional        Answers of the same search to simulated records like the user's.
+        For effects that the user specified: ``proven`` or ``refuted`` by held-out data. Empty after a search.
+    twins : Twins, optional
+        Answers of the same search to simulated records that resemble the user's.
     hide : callable, optional
         Returns the discovery as it is written: without words that may name a person.
     """

@@ -38,13 +38,21 @@ class Segments:
         """
         return records[self.trial[:, None], self.samples]
 
-    def put(self, records: Values, runs: Values) -> Values:
-        """Return records (trial, sample, ...) with runs in their places; of two that overlap, the one that is compared.
+    def starts(self, states: Values) -> Values:
+        """Return the states at each segment's first sample (segment, state).
 
-        records (trial, sample, ...): of every trial
-        runs (segment, sample, ...): one for each segment
+        states (trial, sample, state): of every trial
         """
-        out = records.copy()
+        return states[self.trial, self.begin]
+
+    def put(self, records: Values, runs: Values) -> Values:
+        """Return states of every trial with runs in their places; of two that overlap, the one that is compared.
+
+        records (trial, sample, state): of every trial
+        runs (segment, sample, state): one for each segment; states that effects bring along, the last ones, are left
+            out
+        """
+        out, runs = records.copy(), runs[..., : records.shape[-1]]
         out[self.trial[:, None], self.samples] = runs
         if self.margin:
             inner = slice(self.margin, self.length - self.margin)
@@ -125,7 +133,7 @@ def cut_segments(
     shortest = int(min(samples[trial] for trial in trials)) - 2 * margin
     if shortest < 4:
         found = f"one has {shortest + 2 * margin}"
-        raise SamplingError(f"a trial needs at least {4 + 2 * margin} samples", found, "Remove it.")
+        raise SamplingError(f"a trial must have at least {4 + 2 * margin} samples", found, "Remove this trial.")
     if shortest // max(shortest // length, 1) != length:
         length = shortest // max(round(shortest / length), 1)
     pairs = [(trial, at) for trial in trials for at in range(0, int(samples[trial]) - 2 * margin - length + 1, length)]

@@ -208,13 +208,8 @@ class Shooting:
         return best.starts if best.misfits[stuck].sum() < FREED * now.misfits[stuck].sum() else None
 
     def with_past(self, states: Values) -> Shooting:
-        """Return the same segments with a run's states as the past of what comes late.
-
-        states (segment, sample, state): a fitted run; states that effects bring along, after the others, are left out
-        """
-        if self.past is None:
-            return self
-        return replace(self, past=self.segments.put(self.past, states[..., : self.past.shape[2]]))
+        """Return the same segments with a run's states (segment, sample, state) as the past of what comes late."""
+        return self if self.past is None else replace(self, past=self.segments.put(self.past, states))
 
     def with_noise(self, noise: Noise) -> Shooting:
         """Return the same segments, divided by other noise."""

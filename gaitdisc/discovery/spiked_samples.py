@@ -121,7 +121,7 @@ def _finding(measured: Measured, marks: NDArray[np.bool_], channel: int) -> Find
             f"({value:.4g} between {beside})"
         )
         spans += [(float(time[begin]), float(time[end - 1])) for begin, end in runs(mine)]
-    more = f"; the same in {len(said) - LISTED} more trials" if len(said) > LISTED else ""
+    more = f"; spikes also in {len(said) - LISTED} more trials" if len(said) > LISTED else ""
     what = "spikes of one to three samples: " + "; ".join(said[:LISTED]) + more
     spoils = "these samples only, which are excluded like empty cells"
     name = measured.channels[channel]

@@ -98,7 +98,7 @@ def compute_pass(tracked: Tracked, kinematics: Path, progress: Callable[[str], N
     check_loads(tracked)
     engine = OpensimTracked(tracked)
     motion = read_tracked_motion(tracked, kinematics, engine.coordinates, engine.actuators)
-    progress("computing the moments that the motion demands, by OpenSim")
+    progress("computing the moments that the motion requires, with OpenSim")
     demanded = engine.demanded(motion)
     arms = engine.arms(motion.time, motion.q, motion.actuators)
     pulls = arms * motion.forces[:, :, None]
@@ -146,7 +146,7 @@ def balance(walk: Pass) -> list[Finding]:
     found = []
     for k in engine.base:
         one, size = engine.coordinates[k], walk.size(walk.demanded[:, k])
-        what = f"{one.called}: {size:.3g} {one.force_unit} (root mean square) that neither ground nor body explain"
+        what = f"{one.called}: {size:.3g} {one.force_unit} (rms) that neither the ground nor the body explains"
         found.append(Finding("note", "residual", "model", what, "", one.called))
     if up < 0:
         return found
@@ -156,7 +156,7 @@ def balance(walk: Pass) -> list[Finding]:
         mass = engine.mass_kg
         raise SchemaError(
             f"the ground forces must carry the model's weight within {100 * WRONG_MASS:.0f} %",
-            f"{engine.path.name} moves {mass:.1f} kg, {engine.coordinates[up].called} lacks {mean:.0f} N in the mean: "
+            f"{engine.path.name} moves {mass:.1f} kg, {engine.coordinates[up].called} lacks {mean:.0f} N on average: "
             f"the forces carry {mass * (1 - share):.1f} kg",
             "Scale the model to the walker's mass, or correct the scale of the force plates. Otherwise this error "
             "is named as a missing effect.",
@@ -172,7 +172,7 @@ def refuse_other_motion(walk: Pass) -> None:
         if one.unit == "m" and walk.strongest[k] > 0 and weight and size > OTHER_MOTION * weight:
             raise SchemaError(
                 f"residual forces must balance the motion within {100 * OTHER_MOTION:.0f} % of the weight",
-                f"{one.called} lacks {size:.0f} N (root mean square) of {weight:.0f}",
+                f"the residual of {one.called} is {size:.0f} N (root mean square), the weight {weight:.0f} N",
                 "Compute the forces for this motion again: these belong to another one, or their computation failed.",
             )
 
@@ -183,5 +183,5 @@ def only_residuals(walk: Pass) -> str:
     sizes = [f"{amount(walk.size(walk.demanded[:, k]))} {one.force_unit} at {one.called}" for k, one in base]
     return (
         "Nothing can be named at a joint: no file gives the muscles' forces, so any moment between two segments is "
-        f"attributed to muscles. The residuals of ground and body alone are {', '.join(sizes)} (root mean square)."
+        f"attributed to muscles. The residuals of the ground and the body alone are {', '.join(sizes)} (rms)."
     )

@@ -22,7 +22,6 @@ from gaitdisc.discovery.case import Case
 from gaitdisc.discovery.catalogue import Request
 from gaitdisc.discovery.decision import Verdict
 from gaitdisc.discovery.discover import discover
-from gaitdisc.discovery.first_states import StateGuess
 from gaitdisc.discovery.held_out import begin_by_first_samples
 from gaitdisc.discovery.input_errors import with_drawn_errors
 from gaitdisc.discovery.kept_work import keep, note_found, outside_work, recall
@@ -63,11 +62,11 @@ class TwinSource:
         order = np.argsort(drive.time0)
         inputs, observed, states = (
             np.concatenate([one[part, : drive.samples[part]] for part in order])[None]
-            for one in (drive.inputs, measured.observed, case.guess.states)
+            for one in (drive.inputs, measured.observed, case.guess)
         )
         whole = Drive.of([*inputs], drive.rate, [float(drive.time0.min())])
         measured = replace(measured, drive=whole, observed=observed, trials=(first,))
-        return replace(case, measured=measured, guess=StateGuess(states))
+        return replace(case, measured=measured, guess=states)
 
     @cached_property
     def starts(self) -> list[Values]:
@@ -140,7 +139,7 @@ def search_twins(
     models = [verdict.found, as_read] if acts else [as_read]
     sources = [TwinSource(case, now, verdict.found.noise) for now in models]
     if any(source.draw(0) is None for source in sources):
-        what = "a free run of the simulation leaves the record, so that records like these cannot be simulated"
+        what = "a free run of the simulation departs from the record, so that records like these cannot be simulated"
         finding = Finding("note", "twins", case.measured.source, what, "how often this answer is right")
         return replace(found, findings=(*found.findings, finding))
     note_found("")
@@ -161,7 +160,7 @@ def search_records(records: Sequence[tuple[TwinSource, int]], model: Simulation,
             pending = pending or _search_side_by_side(records[done - 1 :], model, rule)
             answer = next(pending)
             left = (time.perf_counter() - begun) / done * (len(records) - done)
-            request.progress(f"{done} of {len(records)} simulated records searched, about {left:.0f} s left")
+            request.progress(f"{done} of {len(records)} simulated records are searched; about {left:.0f} s remain")
             keep(answer)
         yield answer
 

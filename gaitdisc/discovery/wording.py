@@ -9,6 +9,9 @@ from dataclasses import replace
 from gaitdisc.discovery.candidate import SIGNAL_ERRORS
 from gaitdisc.discovery.criteria import CRITERIA
 from gaitdisc.discovery.effect_words import (
+    LOSSES,
+    MINUS,
+    SPRINGS,
     amount,
     at_place,
     brief_text,
@@ -24,7 +27,9 @@ from gaitdisc.discovery.effect_words import (
 from gaitdisc.discovery.result import Discovery, Estimate, FoundEffect, GapSize, Whereabouts
 from gaitdisc.discovery.scored_model import Part
 from gaitdisc.simulation.simulation import Simulation
+from gaitdisc.units import find_dimension
 
+MECHANICAL = {find_dimension(unit) for unit in ("N", "N m", "N/kg", "N m/kg", "rad/s^2", "1", "unknown")}
 FEW = 12  # independent samples of held-out data
 SMALL = 0.05  # of the squared error
 UNIT_SLACK = 0.05
@@ -32,8 +37,8 @@ OTHER_UNITS = (  # gains of a sensor that another convention makes
     (math.pi / 180, ", as if radians were read as degrees"),
     (180 / math.pi, ", as if degrees were read as radians"),
     (-1.0, ", as if its sign were reversed"),
-    (1e3, ", as if its unit were a thousandth"),
-    (1e-3, ", as if its unit were a thousandfold"),
+    (1e3, ", as if its unit were wrong by a factor of 1000, such as mm read as m"),
+    (1e-3, ", as if its unit were wrong by a factor of 1000, such as m read as mm"),
 )
 SATURATED = {"limit": "beyond {} to either side", "upper_limit": "above {}", "lower_limit": "below {}"}
 DIRECTIONS = re.compile(
@@ -68,7 +73,7 @@ def _say(discovery: Discovery, base: Simulation, parts: tuple[Part, ...]) -> str
         return f"Process noise of {push} (standard deviation) acts {where}; {other} deterministic effect is missing."
     if discovery.verdict == "wrong_initial_condition":
         starts = " and ".join(f"{one.place} at {estimate_text(one.estimates['initial'])}" for one in effects)
-        return f"Only the initial condition is wrong: trials begin with {starts}; the dynamics agree within noise."
+        return f"Only the initial condition is wrong: trials begin with {starts}; the dynamics agree within the noise."
     if discovery.verdict == "unnamed":
         return f"{_say_unnamed(effects[0], base, discovery.where)}."
     said = [_one(effect, part, base, discovery.where) for effect, part in zip(effects, parts, strict=True)]
@@ -111,8 +116,8 @@ def _nothing(discovery: Discovery) -> str:
     for_what = named_at(first)
     if discovery.held_out.p < discovery.held_out.alpha:
         return (
-            f"No effect is named: {for_what} would explain most, but less than half of the held-out error. Several "
-            "effects may act at a time; trials in which fewer effects act can distinguish them."
+            f"No effect is named: the best explanation, {for_what}, removes less than half of the held-out error. "
+            "Several effects may act at the same time; trials in which fewer effects act can distinguish them."
         )
     return (
         f"No effect is named: the training data indicate {for_what}, but the held-out data do not support it{tested}. "
@@ -127,7 +132,7 @@ def _removes_most(discovery: Discovery) -> str:
         if size and size.p < size.alpha and size.unexplained < 1:
             effects = " and ".join(named_at(effect) for effect in explanation.effects)
             closed = f"{100 * (1 - size.unexplained):.0f} % of the squared held-out error above the noise"
-            return f" Of those listed, {effects} removes most: {closed}. New trials can test it."
+            return f" Of the listed explanations, {effects} removes most: {closed}. New trials can decide."
     return ""
 
 
@@ -171,6 +176,10 @@ def _missing(effect: FoundEffect, part: Part, base: Simulation, where: tuple[Whe
     noun, _, how = (part.candidate.means or spoken(effect.name)).partition(", ")
     if effect.name.endswith("_coupling"):
         noun = f"{noun} ({part.candidate.pieces[0]})"
+    elif effect.name in SPRINGS | LOSSES and not _is_force(effect, base):
+        opposes = effect.term.startswith("-") == (next(iter(effect.estimates.values())).value > 0)
+        form = re.sub(r"^\((\w+)\)$", r"\1", re.sub(r"\b_", "", part.candidate.pieces[0]))
+        noun = f"a term proportional to {MINUS * opposes}{form}"
     names, left = part.candidate.names or {}, dict(effect.estimates)
     for slot in part.candidate.constants or {}:
         if f"{{{slot}}}" in how:
@@ -188,6 +197,13 @@ def _missing(effect: FoundEffect, part: Part, base: Simulation, where: tuple[Whe
     )
     said = [f"{noun}{of} {at_place(effect.kind, effect.place)}: {', '.join(numbers)}", how, _stride(effect, where)]
     return ", ".join(one for one in said if one)
+
+
+def _is_force(effect: FoundEffect, base: Simulation) -> bool:
+    """Whether an effect adds to a force, a moment or their acceleration, as far as the units of its place say."""
+    units = {port.name: port.unit for port in base.ports} if effect.kind == "port" else {}
+    units |= {state.name: "1" if state.unit == "1" else f"{state.unit}/s" for state in base.states}
+    return find_dimension(units.get(effect.place, "unknown")) in MECHANICAL
 
 
 def _constant(estimate: Estimate, part: Part, base: Simulation) -> str:
@@ -215,7 +231,7 @@ def _say_unnamed(effect: FoundEffect, base: Simulation, where: tuple[Whereabouts
         shape = f"{effect.reads_as}, {spoken(effect.reads_as_effect)} of the catalogue"
         return f"{missing}{acts}; the fitted shape is {shape}"
     shape = f"is approximately {effect.reads_as}" if effect.reads_as else "replaces it"
-    return f"{missing} that is not in the catalogue{acts}; a fitted shape{over} {shape}"
+    return f"{missing}{acts}. The effect is not in the catalogue; a fitted shape{over} {shape}"
 
 
 def _say_tied(discovery: Discovery) -> str:
@@ -267,7 +283,7 @@ def _say_moved(discovery: Discovery) -> str:
     for one in clear:
         unit, factor = display_unit(one.found.unit)
         said.append(f"{one.parameter} from {with_unit(f'{factor * one.given:.6g}', unit)} to {brief_text(one.found)}")
-    return f"Changed within their bounds: {', '.join(said)}."
+    return f"Parameters that changed within their bounds: {', '.join(said)}."
 
 
 def _goes(discovery: Discovery, channel: str) -> str:

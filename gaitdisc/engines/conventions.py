@@ -71,7 +71,7 @@ def refuse_other_units(mapping: Simulation, engine: Engine, measured: Measured, 
             raise SchemaError(
                 f"coordinate {one.called!r} must stay within {_limit(one):.3g} rad",
                 f"column {_column(mapping, one)!r} makes it {largest[k]:.4g} rad: these may be degrees",
-                f"Say so in the mapping: gaitdisc new {engine.path.with_suffix('.toml').name} --from "
+                f"State degrees in the mapping: gaitdisc new {engine.path.with_suffix('.toml').name} --from "
                 f"{engine.path.name} --degrees.",
             )
 
@@ -103,9 +103,9 @@ def refuse_other_conventions(mapping: Simulation, engine: Engine, measured: Meas
     raise SchemaError(
         "the columns must have the units and signs that the mapping states",
         f"column {column!r} {how.is_so}{more}: {engine.called} misses the record's accelerations by "
-        f"{as_read**0.5:.3g} times their size, with this corrected by {now**0.5:.2g}",
+        f"{as_read**0.5:.3g} times their size; with this correction, by {now**0.5:.2g}",
         f"{how.mend.format(column=column, expression=dict(mapping.observations)[column], name=one.name)} "
-        f"A mapping is written by: gaitdisc new {engine.path.with_suffix('.toml').name} --from {engine.path.name}.",
+        f"To write a mapping: gaitdisc new {engine.path.with_suffix('.toml').name} --from {engine.path.name}.",
     )
 
 

@@ -42,7 +42,7 @@ def draft(engine: Engine, degrees: bool = False) -> Simulation:
     states = [State(one.name, one.unit, f"coordinate {one.called}") for one in found]
     states += [State(one.speed, f"{one.unit}/s") for one in found]
     parameters = [one for one in engine.parameters if one.name in engine.offered]
-    ports = [Port(one.port, one.force_unit, f"on {one.called}, positive along it") for one in found]
+    ports = [Port(one.port, one.force_unit, f"on {one.called}, in its positive direction") for one in found]
     turned = {one.name for one in found if degrees and one.unit == "rad"}
     scale = repr(float(np.rad2deg(1.0)))
     return Simulation(
@@ -111,7 +111,7 @@ def check_mapping(mapping: Simulation, engine: Engine) -> None:
                 hint = f"Did you mean {near!r}? " if near else ""
                 raise SchemaError(
                     f"each {kind} of a mapping must exist in the model",
-                    f"{file} has none called {name!r}",
+                    f"{file} has no {name!r}",
                     f"{hint}Known: {', '.join(has) or 'none'}.",
                 )
         whole = kind not in ("parameter", "port")

@@ -31,19 +31,19 @@ def draft_tracked(
     """What a walk is tracked with, and the columns of its forces, once all have been found to belong together."""
     if model.suffix.lower() != ".osim":
         raise SchemaError(
-            "recorded ground forces can be tracked only in an OpenSim model",
+            "a walk can be tracked only with an OpenSim model",
             f"found {model.name}",
             "Leave out --external-loads, --forces and --actuators.",
         )
     if loads is None:
         raise SchemaError(
             "a tracked walk must have recorded ground forces",
-            f"{'--forces' if forces else '--actuators'} is given without them",
+            f"{'--forces' if forces else '--actuators'} is given without --external-loads",
             "Add --external-loads grf.xml, the file of OpenSim's inverse dynamics.",
         )
     for path in (model, loads, forces, actuators):
         if path is not None and not path.is_file():
-            raise SchemaError("files of a tracked walk must exist", f"there is none at {path}", "Check the path.")
+            raise SchemaError("every file of a tracked walk must exist", f"there is no file {path}", "Check the path.")
     tracked = Tracked(model, find_loads(loads), forces, actuators)
     check_loads(tracked)
     engine = OpensimTracked(tracked)
@@ -216,7 +216,7 @@ def actuator_forces(tracked: Tracked, known: tuple[str, ...]) -> tuple[tuple[str
     if not np.isfinite(values).all():
         row, column = (int(one[0]) for one in np.nonzero(~np.isfinite(values)))
         raise ReadError(
-            "forces must be complete", f"{path.name}: {names[kept[column]]!r} is empty in row {row + 1}", "Fill it in."
+            "forces must have no gaps", f"{path.name}: {names[kept[column]]!r} is empty in row {row + 1}", "Fill it."
         )
     return tuple(names[k] for k in kept[1:]), values
 
@@ -230,14 +230,14 @@ def _select_shared(spans: dict[Path, Values], time: Values, tracked: Tracked) ->
         raise SamplingError(
             f"motion and forces must overlap by at least {SHORTEST_S:g} s",
             f"{first.name} begins at {begin:.4g} s, {last.name} ends at {end:.4g} s",
-            "Put both on one clock, or export the same part of the trial.",
+            "Use one clock for both, or export the same part of the trial.",
         )
     inside = (time >= max(begin - 1e-9, tracked.start_s)) & (time <= min(end + 1e-9, tracked.end_s))
     if not inside.any() or np.ptp(time[inside]) < SHORTEST_S:
         raise SamplingError(
             f"a walk must last at least {SHORTEST_S:g} s",
-            f"{tracked.model.name} is to be tracked from {tracked.start_s:g} to {tracked.end_s:g} s, where "
-            f"{inside.sum()} samples are",
+            f"{tracked.model.name} is to be tracked from {tracked.start_s:g} to {tracked.end_s:g} s, with "
+            f"{inside.sum()} samples there",
             "Correct start_s and end_s in [tracked].",
         )
     return inside

@@ -69,7 +69,7 @@ def write_model(engine: Engine, augmented: Simulation, native: bool = True) -> W
             if tried is not None:
                 said = "is refused by the engine in the model's own form"
             if read is not None:
-                said = f"would differ by {deviation:.1g} of the accelerations in the model's own form"
+                said = f"would change the accelerations by a fraction of {deviation:.1g} in the model's own form"
             used = {name for one in more_forces for name in names(parse(one.term))}
             notes.append(f"{what} {said}: only {'discovery.json' if used & own else 'augmented.toml'} contains it")
             at_once = [one for one in more_forces if one.kind == "port" and "delay(" not in one.term]

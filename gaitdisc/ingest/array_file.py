@@ -39,7 +39,7 @@ _COLUMN = re.compile(r"\(\s*((?::|\d{1,9})(?:\s*,\s*(?::|\d{1,9}))+)\s*\)$")
 _SHOWN = 12  # variables that a message names
 _UNPACKED = (64 * MEBIBYTE, 100)  # bytes, and times the file: values deflate up to 12 times, a bomb 1,000 times
 _REMEDY = "See docs/sessions.md, recordings in .mat and .npz, for the form of a path."
-_COMPLEX = "complex numbers, which a recording cannot contain"
+_COMPLEX = "an array of complex numbers, which a recording cannot contain"
 
 
 @dataclass(frozen=True, eq=False)
@@ -113,7 +113,7 @@ class ArrayFile:
             return self._element(node, int(part), path)
         if len(node.held) == 1:
             return node.held[0]
-        remedy = f'Write part = "1" to "{len(node.held)}" next to the trial\'s files, or path{{1}}.'
+        remedy = f'Write part = "1" (up to "{len(node.held)}") next to the trial\'s files, or path{{1}}.'
         raise self._refuse(path, f"it holds {len(node.held)} elements", remedy)
 
     def _column(self, node: Any, columns: re.Match[str] | None, path: str) -> Values:
@@ -129,7 +129,7 @@ class ArrayFile:
         fits = len(wanted) == values.ndim and wanted.count(":") == 1
         fits = fits and all(w == ":" or 1 <= int(w) <= n for w, n in zip(wanted, values.shape, strict=True))
         if not fits:
-            remedy = "Columns are counted from 1, and one ':' stands for time: (:,2)."
+            remedy = "Columns are counted from 1, and one ':' stands for the time, as in (:,2)."
             raise self._refuse(path, f"it is {_shape(values)}", remedy)
         return values[tuple(slice(None) if one == ":" else int(one) - 1 for one in wanted)]
 
@@ -336,9 +336,9 @@ def _time(file: ArrayFile, label: str, clock: str, samples: int, part: str) -> V
         if found.ndim == 1 and found.size > 1:
             if found.size != samples:
                 raise SamplingError(
-                    f"{file.raw.name}: {label!r} must have a time for each of its samples",
-                    f"it has {samples} samples, {text!r} has {found.size} times",
-                    "Name other times, or another column.",
+                    f"{file.raw.name}: {label!r} must have one time for each sample",
+                    f"{label!r} has {samples} samples, but {text!r} has {found.size} times",
+                    f"Name a variable of {samples} times, or another column.",
                 ) from None
             return even_time(found * (1e-3 if unit == "ms" else 1.0), 0.0, file.raw.name)
         rate_hz = float(found.ravel()[0])

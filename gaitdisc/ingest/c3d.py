@@ -82,7 +82,7 @@ class C3DReader:
         Returns
         -------
         Trial
-            With findings for everything that the file leaves open or contradicts.
+            The trial, with findings for everything that the file does not state or contradicts.
         """
         path = Path(path)
         try:
@@ -147,7 +147,7 @@ class C3DReader:
                 f"ezc3d: {failure}; the header and the parameters contradict each other",
                 "Export the trial again, or repair it in the software that wrote it.",
             )
-        what = f"decoded without ezc3d, which failed: {failure}"
+        what = f"the file was decoded without ezc3d, which failed: {failure}"
         spoils = "nothing; the counts agree with the header"
         note = Finding("note", "second reader", header.file, what, spoils)
         return f"gaitdisc {__version__}", [*read_frames(path, header, parameters, layout)], [note]
@@ -166,7 +166,7 @@ def glance_at_c3d(path: Path) -> Trial:
     check_common_scales(header, parameters)
     layout, findings = find_layout(header, parameters)
     if not counts_agree(header, parameters, layout):  # reading all of it may refuse it
-        raise ReadError("a glance needs one statement of each count", f"{header.file} has two", "Read all of it.")
+        raise ReadError("header and parameters must agree", f"{header.file} has two counts", "Read the whole file.")
     rate_hz, _ = _rate(header, parameters, layout)
     step = max(layout.frames // GLANCES, 1)
     points, _ = read_frames(path, header, parameters, layout, step)
@@ -216,15 +216,15 @@ def _rate(header: C3DHeader, parameters: C3DParameters, layout: C3DLayout) -> tu
     rate = rates[0]
     findings = []
     if stated is not None and abs(header.rate_hz - rate) > 1e-3 * rate:
-        what = f"POINT:RATE is {stated:g} Hz, the header says {header.rate_hz:g} Hz; read at {rate:g} Hz"
+        what = f"POINT:RATE is {stated:g} Hz, but the header states {header.rate_hz:g} Hz; {rate:g} Hz is used"
         findings.append(Finding("warning", "contradictory rate", header.file, what, "all times if this is wrong"))
     if analog is not None and of_analog is not None and abs(of_analog - rate) > 1e-9 * rate:
         what = (
-            f"ANALOG:RATE {analog:g} Hz is {analog / rate:.6g} times POINT:RATE {rate:g} Hz; the file has "
-            f"{layout.samples_per_frame} samples per frame; read at {layout.samples_per_frame * rate:g} Hz"
+            f"ANALOG:RATE ({analog:g} Hz) is {analog / rate:.6g} times POINT:RATE ({rate:g} Hz), but the file has "
+            f"{layout.samples_per_frame} samples per frame; {layout.samples_per_frame * rate:g} Hz is used"
         )
         severity = "note" if abs(of_analog - rate) < 1e-3 * rate else "warning"
-        findings.append(Finding(severity, "analog rate", header.file, what, "times of analog channels, if wrong"))
+        findings.append(Finding(severity, "analog rate", header.file, what, "analog times, if this is wrong"))
     return rate, findings
 
 
@@ -233,5 +233,5 @@ def _make_finite(values: Values, what: str, file: str) -> list[Finding]:
     if not infinite.any():
         return []
     values[infinite] = np.nan
-    words = f"{int(infinite.sum())} {what} are infinite; treated as missing"
+    words = f"{int(infinite.sum())} {what} are infinite and are treated as missing"
     return [Finding("warning", "infinite values", file, words, what)]

@@ -134,7 +134,7 @@ def _map_channel(text: str, signal: AnalogLabel, file: str) -> tuple[Channel, st
     if unit is None:
         raise UnitError(
             f"analog channel #{signal.number} is mapped to {name!r} and must have a unit",
-            f"{file} says {(stated if stated is not None else signal.unit)!r}",
+            f"{file} states {(stated if stated is not None else signal.unit)!r}",
             f"Write the unit in the study's [channels]: '{name} [{channel.unit}]'.",
         )
     if channel.quantity == "signal" or (channel.quantity == "emg" and unit == "1"):
@@ -142,7 +142,7 @@ def _map_channel(text: str, signal: AnalogLabel, file: str) -> tuple[Channel, st
     if inner_unit(unit) != channel.unit:
         raise UnitError(
             f"analog channel #{signal.number} is mapped to {channel.name!r}, whose unit is {channel.unit}",
-            f"{file} gives it in {unit}",
+            f"{file} states {unit}",
             "Map another channel, or write the true unit in the study's [channels]: 'name [unit]'.",
         )
     return channel, unit
@@ -155,12 +155,12 @@ def _doubts(emg: list[AnalogLabel], others: list[AnalogLabel], file: str) -> lis
         what = (
             f"{len(unknown)} analog channels have no known unit ({_list_labels(unknown)}); their numbers are unchanged"
         )
-        findings.append(Finding("note", "unit", file, what, "amplitudes of these channels; correct ANALOG:UNITS"))
+        findings.append(Finding("note", "unit", file, what, "these channels' amplitudes; correct ANALOG:UNITS"))
     muscles = [signal.muscle.name for signal in emg if signal.muscle is not None]
     doubled = sorted({name for name in muscles if muscles.count(name) > 1})
     if doubled:
         what = f"several channels are called {', '.join(doubled)}; they are numbered"
-        findings.append(Finding("warning", "equal muscles", file, what, "this muscle; name it in [channels]"))
+        findings.append(Finding("warning", "equal muscles", file, what, "these muscles; name them in [channels]"))
     nameless = [signal for signal in emg if signal.muscle is None]
     if nameless:
         what = f"{len(nameless)} EMG channels do not name a known muscle ({_list_labels(nameless)})"

@@ -66,7 +66,7 @@ def house_kinetics(
         mass = f", {shown.mass_kg:.1f} kg" if shown.mass_kg else ""
         what = (
             f"{shown.words}; {count} forces, moments and powers are therefore per kg of body mass{mass}, contrary to "
-            "the unit in the file; given in N/kg, N m/kg and W/kg"
+            "the unit in the file, and are given in N/kg, N m/kg and W/kg"
         )
         spoils = "" if shown.certain else "joint moments and powers if this is wrong; state the unit in the file"
         findings.append(Finding("note" if shown.certain else "warning", "per body mass", file, what, spoils))
@@ -75,8 +75,8 @@ def house_kinetics(
         what = f"{reaction.words}, but {joints.words} N m; the units are those of the file"
         findings.append(Finding("warning", "per body mass", file, what, "forces, moments and powers; correct the file"))
     if shown.mass_kg and mass_kg and abs(shown.mass_kg / mass_kg - 1) > AGREES:
-        what = f"the plates show a body mass of {shown.mass_kg:.1f} kg, the file states {mass_kg:.1f} kg"
-        findings.append(Finding("warning", "body mass", file, what, "everything that depends on body mass; correct it"))
+        what = f"the plates show a body mass of {shown.mass_kg:.1f} kg, but the file states {mass_kg:.1f} kg"
+        findings.append(Finding("warning", "body mass", file, what, "all that depends on body mass; correct the mass"))
     of_weight = [c.name for c in channels if _NORMALISED.fullmatch(c.name) and c.unit != "%"]
     if of_weight:
         channels = tuple(replace(c, unit="%") if c.name in of_weight else c for c in channels)
@@ -130,7 +130,7 @@ def _internal(kinetics: Kinetics, file: str) -> tuple[Kinetics, list[Finding]]:
     ankles = [i for i in joints if _ANKLE.fullmatch(channels[i].name) and channels[i].unit in PUSH_OFF]
     moments = finite_values(values[:, ankles])
     how = "joint moments are internal (of the muscles), positive towards the positive angle"
-    words, why = "no ankle moment shows the sign", "; interpreted as in Plug-in Gait"
+    words, why = "no ankle moment shows the sign", "; the sign is assumed to be that of Plug-in Gait"
     spoils = "the sign of joint moments if the file comes from another model"
     if moments.size:
         unit = channels[ankles[0]].unit
@@ -146,5 +146,5 @@ def _internal(kinetics: Kinetics, file: str) -> tuple[Kinetics, list[Finding]]:
             words += ", without a push-off"
     signs = np.ones(len(channels))
     signs[joints] = -1.0
-    what = f"{words}{why}; the sign of {len(joints)} joint moments is reversed, {how}"
+    what = f"{words}{why}; the sign of {len(joints)} joint moments is reversed, so that {how}"
     return (values * signs, channels), [Finding("note", "moment sign", file, what, spoils)]

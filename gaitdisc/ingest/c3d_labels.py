@@ -87,9 +87,9 @@ class LabelMap:
                     self._used[key] += 1
                     if self._used[key] > 1:
                         raise ChannelError(
-                            f"{key!r} of the study's [channels] must mean one channel",
+                            f"{key!r} of the study's [channels] must be the label of one channel",
                             f"{self._used[key]} channels of the file have this label",
-                            "Use '#<number>' instead, the number of the analog channel counted from 1.",
+                            "Use '#<number>' instead: the analog channel's number, counted from 1.",
                         )
                     return name
         return None
@@ -101,7 +101,7 @@ class LabelMap:
         for key in self._names:
             if not self._used[key]:
                 hint = hint_nearest(key, labels)
-                what = f"the study maps {key!r} to {self._names[key]!r}; the file does not have this label{hint}"
+                what = f"the study maps {key!r} to {self._names[key]!r}, but the file does not have this label{hint}"
                 spoils = "everything that needs this channel"
                 findings.append(Finding("warning", "label not found", file, what, spoils))
         return findings

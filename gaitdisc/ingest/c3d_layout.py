@@ -202,7 +202,7 @@ def list_unscaled(parameters: C3DParameters, channels: int) -> tuple[frozenset[i
     if not bad:
         return frozenset(), []
     several = f", and {len(bad) - 4} more channels" if len(bad) > 4 else ""
-    what = f"{'; '.join(list(bad.values())[:4])}{several}; treated as missing"
+    what = f"{'; '.join(list(bad.values())[:4])}{several}; these channels are treated as missing"
     doubt = Finding("warning", "scale", parameters.file, what, "these channels; export the trial again")
     return frozenset(bad), [doubt]
 

@@ -263,7 +263,7 @@ def _value(name: str, body: bytes, header: C3DHeader) -> Value:
     count = math.prod(dimensions)
     raw = body[2 + len(dimensions) :][: count * width]
     if len(raw) < count * width:
-        raise _broken(header, f"parameter {name[:24]!r} has {len(raw)} bytes, but {dimensions} need {count * width}")
+        raise _broken(header, f"{name[:24]!r} has {len(raw)} bytes, but dimensions {dimensions} need {count * width}")
     if is_text:
         length, texts = dimensions[0] if dimensions else 1, []
         for cell in (raw[at : at + length] for at in range(0, len(raw), length or 1)):

@@ -148,7 +148,7 @@ def _without_suffix(names: list[str], kinds: Mapping[str, ModelOutput], file: st
     if len(words) != 1:
         return names, []
     (word,) = words
-    what = f"{known[0]} and {len(known) - 1} more outputs of its model end in {word}; read as {bases[known[0]]}, ..."
+    what = f"{known[0]} and {len(known) - 1} more model outputs end in {word} and are read as {bases[known[0]]}, ..."
     plain = [bases[name] if name in bases and name.endswith(word) else name for name in names]
     return plain, [Finding("note", "model suffix", file, what, "nothing if these are Plug-in Gait outputs")]
 
@@ -179,8 +179,8 @@ def _model_part(
             channels.append(Channel(name, quantity, inner, side))
     most = float(np.max(np.abs(values), initial=0.0, where=np.isfinite(values)))
     if kind.group == "ANGLES" and unit == "deg" and 0 < most < 3.2:
-        what = f"no angle exceeds {most:.3g} deg, so they look like radians"
-        findings.append(Finding("warning", "unit", file, what, "all angles if they are; correct POINT:ANGLE_UNITS"))
+        what = f"no angle exceeds {most:.3g} deg, so the angles may be in radians"
+        findings.append(Finding("warning", "unit", file, what, "all angles if so; correct POINT:ANGLE_UNITS"))
     return (values, tuple(channels)), findings
 
 

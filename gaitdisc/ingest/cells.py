@@ -145,7 +145,7 @@ def check_counts(
     for kind, claimed, there in counts:
         wrong = sorted({count for count in claimed if count != there})
         if wrong:
-            what = f"the header states {' and '.join(map(str, wrong))} {kind}, the file has {there}"
+            what = f"the header states {' and '.join(map(str, wrong))} {kind}, but the file has {there}"
             findings.append(
                 Finding("warning", "wrong count", file, what, "nothing here, but other programs may refuse the file")
             )

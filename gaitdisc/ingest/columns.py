@@ -183,7 +183,7 @@ def find_column(label: str, file: str, channels: Mapping[str, str] | None) -> Co
     alias = None if said else vocabulary().named(plain)
     channel = alias or name_channel(name)
     if unit is None and name not in vocabulary().by_name:
-        seems = f"; it seems to be {alias.name}" if alias else ""
+        seems = f"; the column seems to be {alias.name}" if alias else ""
         raise UnitError(
             f"{file}: column {label!r} must have a unit",
             f"neither its header nor the study states one{seems}",

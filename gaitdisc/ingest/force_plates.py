@@ -124,7 +124,7 @@ def force_plates(
         if not wanted:
             why = f"is of type {kind}, but only types 1 to 4 are known"
         elif len(own) < wanted or not np.all((own >= 1) & (own <= channels)):
-            why = f"names channels {', '.join(format(one, 'g') for one in own)} of {channels}"
+            why = f"names channels {', '.join(format(one, 'g') for one in own)}, but the file has {channels}"
         elif any(int(one) - 1 in unscaled for one in own):
             why = "has a channel without a scale"
         elif (
@@ -148,7 +148,7 @@ def force_plates(
                 plates.append(plate)
         if why:
             what = f"force plate {place + 1} {why}; its channels remain signals"
-            findings.append(Finding("warning", "force plate", file, what, "its ground forces; correct FORCE_PLATFORM"))
+            findings.append(Finding("warning", "force plate", file, what, "the plate's forces; correct FORCE_PLATFORM"))
     return plates, findings or _report_undescribed(parameters, used, max(len(kinds), len(columns), len(corners)))
 
 
@@ -214,7 +214,7 @@ def plate_streams(
         ]
     turned = [plate.number for (plate, _, _), sense in zip(wrenches, up, strict=True) if (sense or most) < 0]
     if turned:
-        what = f"plates {', '.join(map(str, turned))} give the force of the foot on the ground; its sign is reversed"
+        what = f"plates {', '.join(map(str, turned))} give the force of the foot on the ground; the sign is reversed"
         findings.append(Finding("note", "force sign", file, what, ""))
     if up and not any(up):
         what = f"no plate was loaded with {CLEAR_LOAD_N:g} N, so the sign of the forces could not be checked"
@@ -253,11 +253,11 @@ def _units(plate: ForcePlate, parameters: C3DParameters, length_unit: str) -> tu
         unit = parse_unit(text) if text else expected
         if unit is None or inner_unit(unit) != inner_unit(expected):
             what = f"force plate {plate.number} has channel #{column + 1} in {text!r} instead of {expected}; "
-            what += "it is not used"
-            return (), [Finding("warning", "force plate", file, what, "its ground forces; correct ANALOG:UNITS")]
+            what += "the plate is not used"
+            return (), [Finding("warning", "force plate", file, what, "the plate's forces; correct ANALOG:UNITS")]
         found.append(unit)
     if not any(texts[column].strip() for column in plate.columns):
-        what = f"force plate {plate.number} states no units; read as {usual[0]} and {usual[-1]}"
+        what = f"force plate {plate.number} states no units; {usual[0]} and {usual[-1]} are assumed"
         return tuple(found), [Finding("warning", "unit", file, what, "its forces if this is wrong; set ANALOG:UNITS")]
     return tuple(found), []
 
@@ -288,8 +288,8 @@ def _with_origin(
         return plate, []
     turned = replace(plate, origin=-plate.origin)
     if plate.kind in (2, 4) and _beside(turned, values, units) < STRAY:
-        what = f"force plate {plate.number}: ORIGIN points from the surface to the sensors; its sign is reversed"
-        return turned, [Finding("note", "plate origin", file, what, "nothing; the centre of pressure is inside")]
+        what = f"force plate {plate.number}: ORIGIN points from the surface to the sensors; the sign is reversed"
+        return turned, [Finding("note", "plate origin", file, what, "nothing; the centre of pressure is now inside")]
     what = f"force plate {plate.number}: the centre of pressure lies outside the plate in {100 * beside:.0f} % of the "
     what += "loaded samples"
     return plate, [Finding("warning", "centre of pressure", file, what, "joint moments; check zero, ORIGIN, units")]
@@ -305,7 +305,7 @@ def _report_exchanged(measured: Sequence[tuple[ForcePlate, Values, tuple[str, ..
         if max(_beside_either(one, others, their_units), _beside_either(other, own, units)) < STRAY:
             what = (
                 f"the channels of force plates {one.number} and {other.number} are swapped: the centre of pressure is "
-                f"outside each plate in {100 * astray:.0f} % of the loaded samples, and inside with them swapped back"
+                f"outside each plate in {100 * astray:.0f} % of the loaded samples, and inside if they are swapped back"
             )
             spoils = "the assignment of feet to plates, moments and powers; correct FORCE_PLATFORM:CHANNEL"
             findings.append(Finding("warning", "swapped plates", file, what, spoils))

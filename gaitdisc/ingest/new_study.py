@@ -138,7 +138,7 @@ def draft_study(
     study = Study(
         title=title, sessions=words, conditions=conditions, models=_models(walks, notes), participants=participants
     ).placed(home)
-    _note(notes, "present in one condition only, therefore not compared: ", study.one_condition_only())
+    _note(notes, "channels of one condition only, which are not compared: ", study.one_condition_only())
     return study, notes
 
 
@@ -200,7 +200,7 @@ def _read_drafts(
             notes += said
     for kind, words in (
         (STATIC, f"standing trials, set to {STATIC!r}: "),
-        (FUNCTIONAL, f"circling legs according to the file names, set to {FUNCTIONAL!r}: "),
+        (FUNCTIONAL, f"trials of circling legs, according to the file names, set to {FUNCTIONAL!r}: "),
     ):
         _note(notes, words, (each.files[0].as_posix() for each in found if each.which == kind))
     order = ("nominal", "device", "", STATIC, FUNCTIONAL, "other")
@@ -322,7 +322,7 @@ def name_conditions(found: Sequence[FoundTrial], notes: list[str]) -> tuple[Cond
         notes,
         "condition unknown; these trials are listed but not used: ",
         (trial.files[0].as_posix() for trial in found if called[trial.word] == UNKNOWN),
-        f'. To set it for all, write in [conditions]: unnamed = "{reference}"',
+        f'. To set the condition of all, write in [conditions]: unnamed = "{reference}"',
     )
     return Conditions(nominal=reference, device=device, others=rest), called
 
@@ -349,11 +349,11 @@ def _people(found: Sequence[FoundTrial], notes: list[str]) -> dict[Who, str]:
     free = (f"P{number:02d}" for number in range(1, 10_000) if f"P{number:02d}" not in taken)
     ids = {who: who[1] if who[1] in taken else next(free) for who in people}
     renamed = [new for (_, old), new in ids.items() if old and old != new]
-    _note(notes, "folder names that are not pseudonyms became ", renamed, "; the paths still contain them")
+    _note(notes, "folder names that are not pseudonyms became ", renamed, "; the paths still contain the names")
     twice = [f"{new} ({group or 'no group'})" for (group, old), new in ids.items() if named[old.lower()] > 1]
-    _note(notes, "the same name in several groups, taken as several people: ", twice)
+    _note(notes, "names that occur in several groups, taken as different people: ", twice)
     kept = [word for _, word in people if word in taken]
-    _note(notes, "used unchanged as pseudonyms: ", kept, "; change any that identifies a person")
+    _note(notes, "names used unchanged as pseudonyms: ", kept, "; change any that identifies a person")
     nobody = [new for (_, old), new in ids.items() if not old]
     _note(notes, "files whose path names no person were assigned to ", nobody)
     return ids
@@ -362,20 +362,20 @@ def _people(found: Sequence[FoundTrial], notes: list[str]) -> dict[Who, str]:
 def _models(found: Sequence[FoundTrial], notes: list[str]) -> Models:
     varying = [trial.varying for trial in found if trial.varying is not None]
     if not varying:
-        notes.append("no file contains joint angles; the draft names the usual ones; markers are used to compute them")
+        notes.append("no file contains joint angles; the draft names the usual angles, which are computed from markers")
         return Models()
     first = next(trial.angles for trial in found if trial.angles is not None)
     shared = [name for name in varying[0] if all(name in names for names in varying)]
-    _note(notes, "excluded because they are constant or copies: ", sorted(set(first) - set(varying[0])))
+    _note(notes, "angles excluded because they are constant or copies: ", sorted(set(first) - set(varying[0])))
     angles = tuple(name for name in ANGLES if name in shared) or tuple(shared)
     absent = [name for name in ANGLES if name not in shared]
-    _note(notes, "excluded because some trials lack them; they vary: ", absent)
+    _note(notes, "varying angles excluded because some trials do not have them: ", absent)
     more = [name for name in shared if name not in angles]
     named = [name for name in more if name in vocabulary().by_name]
     others = [f"{len(more) - len(named)} from the files"] if len(more) > len(named) else []
-    _note(notes, "not used by the response models; add them to angles if you need them: ", [*named, *others])
+    _note(notes, "angles that the response models do not use (add them to angles if needed): ", [*named, *others])
     if not angles:
-        notes.append("the trials share no joint angle that varies; the draft names the usual ones")
+        notes.append("the trials share no joint angle that varies; the draft names the usual angles")
         return Models()
     outputs = tuple(name for name in OUTPUTS if name in angles) or angles[:1]
     emg = _find_shared_emg(found, notes)
@@ -395,7 +395,7 @@ def _find_shared_emg(found: Sequence[FoundTrial], notes: list[str]) -> tuple[str
     if not streams:
         return ()
     if len(streams) < len(found):
-        notes.append(f"only {len(streams)} of {len(found)} trials have EMG, so it is not among the inputs")
+        notes.append(f"only {len(streams)} of {len(found)} trials have EMG, so EMG is not among the inputs")
         return ()
     known = vocabulary().by_name
     shared = tuple(n for n in streams[0] if all(n in other for other in streams) and n in known)

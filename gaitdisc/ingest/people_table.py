@@ -89,7 +89,7 @@ def read_people(folder: Path, files: Iterable[Path], notes: list[str]) -> dict[s
         for word, one in read.items():
             before = found.setdefault(word, one)
             if before != one:
-                notes.append(f"{file.as_posix()}: {word!r} differs from another table; the other value is used")
+                notes.append(f"{file.as_posix()}: {word!r} differs from another table, whose values are used")
     return found
 
 
@@ -133,7 +133,7 @@ def _read(lines: Sequence[str], file: str, notes: list[str]) -> dict[str, Measur
             stated = list(dict.fromkeys(getattr(one, name) for one in measures if getattr(one, name) != empty))
             values[name] = stated[0] if len(stated) == 1 else empty
             if len(stated) > 1:
-                notes.append(f"{file}: {name} of {word!r} differs between rows ({stated[0]}, {stated[1]}); not used")
+                notes.append(f"{file}: {name} of {word!r} varies between rows ({stated[0]}, {stated[1]}): none is used")
         agreed[word] = Measured(**values)
     return agreed
 
@@ -165,11 +165,11 @@ def _within(
         if limits.hold(value * factor):
             return value * factor
     if not math.isfinite(value):
-        notes.append(f"{what} {text!r} is not a number; not used")
+        notes.append(f"{what} {text!r} is not a number and is not used")
     else:
         article = "an" if what[0] in "ae" else "a"
         possible = f"{limits.least:g} and {limits.most:g} {limits.unit}"
-        notes.append(f"{article} {what} of {value:g}{given} is not between {possible}; not used")
+        notes.append(f"{article} {what} of {value:g}{given} is not between {possible} and is not used")
     return None
 
 

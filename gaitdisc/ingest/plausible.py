@@ -88,8 +88,8 @@ def without_impossible(
                 most = float(np.nanmax(np.abs(recording.values[:, i])))
                 thousandth = channel.unit == "V" and most <= 1e3 * high
                 looks = "it looks like mV or counts" if thousandth else "it may be in counts"
-                what = f"reaches {most:.6g} {channel.unit}; EMG in {channel.unit} stays within {high:g}, so {looks}"
-                spoils = "its amplitude; state the unit in the file or in [channels]"
+                what = f"reaches {most:.6g} {channel.unit}, but EMG stays within {high:g} {channel.unit}, so {looks}"
+                spoils = "the amplitude; state the unit in the file or in [channels]"
                 findings.append(Finding("warning", "unit", recording.source.file, what, spoils, channel.name))
             beyond[:, counted] = False
         before_s = recording.time[0] - (begin_s or {}).get(key, recording.time[0]) if len(recording.time) else 0.0
@@ -137,7 +137,7 @@ def without_frozen(streams: Mapping[str, Recording]) -> tuple[dict[str, Recordin
                 value = f"{recording.values[int(np.argmax(here)), place]:.4g} {channel.unit}"
                 more = f", and in {others} more stretch{'es' if others > 1 else ''}" if others else ""
                 what = f"is constant at {'one place' if marker else value} from {spans[0].start:.3f} to "
-                what += f"{spans[0].end:.3f} s{more}; no measurement is constant for so long; treated as missing"
+                what += f"{spans[0].end:.3f} s{more}; no measurement is constant for so long; these count as missing"
                 name, file = channel.name.removesuffix(".x") if marker else channel.name, recording.source.file
                 spoils = "these frames; fill the gap"
                 findings.append(Finding("warning", "frozen", file, what, spoils, name, spans=spans))
@@ -205,7 +205,7 @@ def _finding(
         )
     most = "the unit or the name of the channel, if most of its samples are affected"
     spoils = most if beyond.mean() > 0.5 else "these frames"
-    spans, what = spans_s(recording.time, beyond), f"{where}; treated as missing"
+    spans, what = spans_s(recording.time, beyond), f"{where}; such samples are treated as missing"
     return Finding("warning", "out of range", file, what, f"{spoils}; correct the file", channel.name, spans=spans)
 
 
@@ -246,7 +246,7 @@ def with_flexion_positive(streams: Mapping[str, Recording]) -> tuple[dict[str, R
     for name in turned:
         others = [c for key in moved for c in moved[key][1] if _of_knee(c) == name and c != name]
         why = ", so flexion is negative in this file" if senses[name] == -1 else " and follows the other knee"
-        also = f"; with it {', '.join(others)}" if others else ""
+        also = f", as are the signs of {', '.join(others)}" if others else ""
         what = f"{name} {spans[name]}{why}; its sign is reversed, so that flexion is positive{also}"
         findings.append(Finding("note", "knee sign", file, what, "", name))
     if proven == {1, -1}:

@@ -78,5 +78,5 @@ def _near(path: Path) -> str:
     try:
         names = [entry.name for entry in path.parent.iterdir()]
     except OSError:
-        return ", and no such folder"
+        return ", and its folder does not exist"
     return hint_nearest(path.name, names)

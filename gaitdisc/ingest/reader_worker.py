@@ -123,7 +123,7 @@ def _tree(held: Any, arrays: list[NDArray[Any]]) -> Any:
     if held.dtype.kind == "O":
         return {"cells": [_tree(cell, arrays) for cell in held.ravel(order="F")]}
     if held.dtype.kind not in "biuf":
-        words = {"U": "text", "S": "text", "c": "complex numbers, which a recording cannot contain"}
+        words = {"U": "text", "S": "text", "c": "an array of complex numbers, which a recording cannot contain"}
         return words.get(held.dtype.kind, f"an array of {held.dtype}")
     arrays.append(held)
     return len(arrays) - 1

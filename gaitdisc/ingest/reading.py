@@ -48,7 +48,7 @@ def read_trial(
     reader: C3DReader | None = None,
     part: str = "",
 ) -> Trial:
-    """Trial of one walk, from one file or from several that were recorded together.
+    """Read one walk, from one file or from several files that were recorded together.
 
     Parameters
     ----------

@@ -59,16 +59,16 @@ def plausible_unit(
             "Write inDegrees=no (or [rad]) in its header, or export it again.",
         )
     if stated:
-        what = f"the file states degrees, but no angle varies by more than {reach:.3g}"
+        what = f"the file states degrees, but no angle varies by more than {reach:.3g} deg"
         doubt = Finding("warning", "unit in doubt", file, what, "all angles if they are radians; check inDegrees")
         return stated, doubt if stated == "deg" and like_rad else None
     if not beyond and not like_rad:
         raise _refuse_undecided(
-            file, f"the largest joint angle is {most:.3g}, the widest hip or knee range {reach:.3g}"
+            file, f"the largest joint angle is {most:.3g}, and the widest hip or knee range is {reach:.3g}"
         )
     unit = "deg" if beyond else "rad"
-    what = f"the header does not state degrees or radians; read as {unit} (largest joint angle {most:.4g})"
-    return unit, Finding("warning", "unit inferred", file, what, "all angles, if wrong; state inDegrees in the header")
+    what = f"the header does not state degrees or radians; angles are read as {unit} (largest joint angle {most:.4g})"
+    return unit, Finding("warning", "unit inferred", file, what, "all angles if this is wrong; state inDegrees")
 
 
 def find_copied_unit(name: str, values: Values, angles: dict[str, Values]) -> str | None:

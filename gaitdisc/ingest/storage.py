@@ -142,7 +142,7 @@ def _in_true_unit(
             columns[i] = replace(columns[i], unit=own)
             copies.append(columns[i].channel.name)
     if copies:
-        what = f"{', '.join(copies)} in {'deg' if unit == 'rad' else 'rad'}, all other angles in {unit}; converted"
+        what = f"{', '.join(copies)} in {'deg' if unit == 'rad' else 'rad'} were converted to {unit}, like the others"
         findings.append(Finding("note", "mixed units", file, what, ""))
     return columns, findings
 
@@ -263,11 +263,11 @@ def naming_findings(columns: Sequence[Column], file: str) -> list[Finding]:
     findings = []
     for guess, labels in by_guess.items():
         what = f"{list_names(labels)}: {guess}"
-        findings.append(Finding("note", "guessed", file, what, "these channels if wrong; map them in [channels]"))
+        findings.append(Finding("note", "guessed", file, what, "these channels if it is wrong; map them in [channels]"))
     sides = {column.channel.side for column in columns if column.label.lower().startswith("ground_force_v")}
     if sides == {"r"} and any(column.label.startswith("1_ground_force_v") for column in columns):
         what = "ground_force_ is read as the right foot, 1_ground_force_ as the left, as in OpenSim's own examples"
-        findings.append(Finding("note", "guessed", file, what, "the sides if wrong; map them in [channels]"))
+        findings.append(Finding("note", "guessed", file, what, "the sides if this is wrong; map them in [channels]"))
     return findings
 
 
@@ -280,7 +280,7 @@ def _map_column(label: str, name: str, unit: str | None, title: str, file: str) 
         return Column(label, replace(channel, unit="1"), "1")
     if channel.quantity != "signal" or unit:
         return column_in_unit(label, channel, unit or channel.unit, file)
-    return replace(_guess(label, name, title), guessed="[channels] gives its name but not its unit")
+    return replace(_guess(label, name, title), guessed="[channels] gives the name but not the unit")
 
 
 def _vocabulary_column(label: str, plain: str, title: str, of_emg: bool) -> Column:
@@ -318,7 +318,7 @@ def _guess(label: str, name: str, title: str) -> Column:
     if ground and (ground[1] or _GROUND_WORD.search(name)):
         # by its last letters: v a force, p a place, m a moment; by the word where none stands there
         kind, axis = ground[1].lower(), ground[2].lower()
-        guess = "read as a ground reaction because of its name" + ("" if side else ", side unknown")
+        guess = "read as a ground reaction because of its name" + ("" if side else ", of unknown side")
         quantity, unit = "moment", "N m"
         if kind == "p":
             quantity, unit = "pressure_centre", "m"

@@ -43,7 +43,7 @@ class Conditions(StudyPart):
     """The conditions, in the laboratory's own words."""
 
     nominal: Word = Field(
-        description="the reference condition, without the device or with it passive; or the only condition"
+        description="the reference condition (without the device, or with a passive device), or the only condition"
     )
     device: Word | None = Field(
         default=None, description="the condition with the device, which models compare with the reference"
@@ -51,7 +51,7 @@ class Conditions(StudyPart):
     others: tuple[Word, ...] = Field(default=(), description="further conditions, whose cycles are pooled")
     unnamed: Word | None = Field(
         default=None,
-        description="condition of all trials marked 'unknown'; one of the words above. Without it they are not used",
+        description="condition of all trials marked 'unknown', one of the words above; if empty, they are not used",
     )
 
     @property
@@ -81,7 +81,7 @@ class PlannedTrial(StudyPart):
     files: tuple[FileName, ...] = Field(min_length=1, description="files of this walk, relative to the study file")
     part: Annotated[str, Field(max_length=40)] = Field(
         default="",
-        description="trial in a .mat or .npz file with several: its number, or what * stands for in [channels]",
+        description="trial in a .mat or .npz file with several trials: its number, or the text for * in [channels]",
     )
     speed_m_per_s: Positive | None = Field(default=None, description="walking speed of this trial [m/s]")
     crop_s: tuple[float, float] | None = Field(

@@ -36,12 +36,12 @@ EXAMPLES = {  # of what a study does not have
 }
 UNSET = {  # parts that a study may lack
     "treadmill": "# [treadmill]\n# speed_m_per_s = 1.3  # belt speed [m/s], for strides found from markers\n",
-    "kinematics": '# [kinematics]\n# angles = "markers"  # joint angles from markers, those of the file not used\n',
+    "kinematics": '# [kinematics]\n# angles = "markers"  # joint angles from markers; those of the file are not used\n',
 }
 
 _TOP = """\
-# A study of gaitdisc. Every setting stands here with its default; paths are relative to this file.
-# Participants have pseudonyms only; whoever keeps the key keeps it elsewhere.
+# A study of gaitdisc. Every setting is listed with its default; paths are relative to this file.
+# Participants have pseudonyms only; the key to the pseudonyms must be kept elsewhere.
 """
 _KINDS = {  # kind of a finding of pydantic, or how it begins -> what a value must, and what to do
     "finite_number": ("be a finite number", "Write a number."),
@@ -236,7 +236,7 @@ def schema_error(error: ValidationError, model: type[BaseModel], text: str, file
     where = file if line is None else f"{file}, line {line}"
     needed, found, remedy = _sentence(first, place, model)
     if len(findings) > 1:
-        remedy += f" ({len(findings) - 1} more to correct after this one.)"
+        remedy += f" (Further settings to correct: {len(findings) - 1}.)"
     return SchemaError(f"{where}: {needed}", found, remedy)
 
 

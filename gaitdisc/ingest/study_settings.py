@@ -63,17 +63,17 @@ class Kinematics(StudyPart):
 
     angles: Literal["file", "markers"] | None = Field(
         default=None,
-        description="file: as in the file; markers: computed; by default as in the file, if it has any",
+        description="file: angles of the file; markers: computed angles; by default those of the file, if it has any",
     )
     marker_set: str = Field(
         default="",
         description="plug_in_gait, oxford_foot, helen_hayes, rajagopal, gait2354, or a .toml file; default: by labels",
     )
     hip: Literal["davis", "harrington"] | None = Field(
-        default=None, description="hip joint centre: davis or harrington; by default as in the marker set"
+        default=None, description="hip joint centre: davis or harrington; by default that of the marker set"
     )
     joints: Literal["free", "held", "planar"] | None = Field(
-        default=None, description="free, held or planar; by default as in the marker set"
+        default=None, description="joints: free, held (at joint centres) or planar; by default those of the marker set"
     )
 
 
@@ -87,7 +87,7 @@ class StrideRules(StudyPart):
     min_s: Positive = Field(default=0.4, description="shortest stride [s]")
     max_s: Positive = Field(default=2.5, description="longest stride [s]")
     ground: Literal["auto", "treadmill", "overground"] = Field(
-        default="auto", description="where people walk: auto (by the path of the pelvis), treadmill or overground"
+        default="auto", description="where people walk: auto (from the path of the pelvis), treadmill or overground"
     )
 
     @model_validator(mode="after")
@@ -113,9 +113,9 @@ class HeldOut(StudyPart):
     """The last part of each trial, which no model sees: 30 of 240 s in section 4.2.2."""
 
     share: Annotated[float, Field(gt=0, lt=1)] | None = Field(
-        default=0.125, description="fraction of the trial, its last part"
+        default=0.125, description="held-out fraction of the trial, its last part"
     )
-    seconds: Positive | None = Field(default=None, description="or its length [s]; write one of the two")
+    seconds: Positive | None = Field(default=None, description="or the held-out length [s]; write one of the two")
 
     @model_validator(mode="after")
     def _check(self) -> HeldOut:
@@ -133,7 +133,7 @@ class Quality(StudyPart):
     """What a trial must have to be used."""
 
     min_strides: Annotated[int, Field(ge=1)] = Field(
-        default=10, description="fewest complete strides of a walk on a treadmill, or of one that models are fitted to"
+        default=10, description="fewest complete strides of a treadmill walk, and of a walk that models are fitted to"
     )
     min_cycles: Annotated[int, Field(ge=1)] = Field(
         default=1, description="fewest cycles over ground, pooled over the trials of a person, session and condition"
@@ -159,8 +159,8 @@ def check_channels(channels: Mapping[str, str]) -> None:
         if unit is None:
             _check_spelling(place, name)
         if name in owners:
-            found = f"{owners[name]!r} and {label!r} both mean {name!r}"
-            refuse(place, "be used for one label only", found, "Use two names, or remove one label.")
+            found = f"{owners[name]!r} and {label!r} both name {name!r}"
+            refuse(place, "name a channel that no other label names", found, "Use two names, or remove one label.")
         owners[name] = label
 
 

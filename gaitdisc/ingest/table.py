@@ -225,16 +225,16 @@ def _of_frame(frame: pd.DataFrame, name: str, channels: Mapping[str, str] | None
     for label, dtype in zip(labels, frame.dtypes, strict=True):
         if not is_numeric_dtype(dtype) or is_bool_dtype(dtype) or dtype.kind == "c":
             remedy = "Give times as numbers of seconds." if _time_unit(label, channels) else "Remove that column."
-            raise ReadError(f"{name}: columns must contain numbers", f"column {label!r} has others ({dtype})", remedy)
+            raise ReadError(f"{name}: columns must contain numbers", f"column {label!r} contains {dtype}", remedy)
     if not any(_time_unit(label, channels) for label in labels):
         raise _no_time(name, f"its columns are {', '.join(labels[:6])}")
     _check_labels(labels, name)
     values = frame.to_numpy(float, na_value=np.nan)
     if not len(values) or np.isinf(values).any():
-        where = "it has no row"
+        where = "it has no rows"
         if len(values):
             where = f"column {labels[int(np.argmax(np.isinf(values).any(axis=0)))]!r} contains infinite values"
-        raise ReadError(f"{name} must have rows of finite numbers", f"found {where}", "Write it again.")
+        raise ReadError(f"{name} must have rows of finite numbers", where, "Leave cells without a value empty.")
     return labels, values
 
 

@@ -100,11 +100,11 @@ def parse_trc_header(lines: Sequence[str], file: str) -> TrcHeader:
         raise UnitError(
             f"{file}: markers must have a unit of length in line 3",
             f"Units is {fields['Units']!r}",
-            "Write m, cm, mm.",
+            "Write m, cm or mm.",
         )
     labels = tuple(label.strip() for label in lines[3].split("\t")[2:] if label.strip())
     if not labels:
-        raise ReadError(f"{file} must name its markers in line 4", "there are no names", "Export it again.")
+        raise ReadError(f"{file} must name its markers in line 4", "the line has no names", "Export it again.")
     body = 4
     while body < len(lines) and (not lines[body].strip() or re.match(r"\s*X\d", lines[body], re.IGNORECASE)):
         body += 1

@@ -116,7 +116,7 @@ def report_shared_recording(study: Study, participant: Participant) -> str:
         if same_recording(study, own, trial):
             names = f"{participant.trial_name(own)} and {other.trial_name(trial)}"
             said = f"{names} are the same recording: their files have the same SHA-256. A recording must belong to one"
-            return f"{said} person, session and condition. Remove it from [[participants.trials]] where it is wrong."
+            return f"{said} person, session and condition. Remove one of the two from [[participants.trials]]."
     return ""
 
 
@@ -137,7 +137,7 @@ def differing_body(study: Study, participant: Participant) -> str:
         most, unit = (MOST_KG, "kg") if name == "body mass" else (MOST_M, "m")
         if high - low > most:
             said = f"{name} is {low:.4g} {unit} in {values[low]} and {high:.4g} {unit} in {values[high]}; files of one "
-            said += f"person and session may differ by {most:g} {unit}"
+            said += f"person and session may differ by at most {most:g} {unit}"
             return f"{said}. Give each person or session its own files, or correct the value."
     return ""
 
@@ -159,6 +159,6 @@ def _one_walk_each(study: Study, participant: Participant) -> str:
     counts = {word: len(participant.trials_of(word)) for word in both}
     found = ", ".join(f"{count or 'none'} of {word!r}" for word, count in counts.items())
     others = sum(trial.condition not in both for trial in participant.trials)
-    unused = f"; of other conditions: {others}" if others else ""
+    unused = f"; trials of other conditions: {others}" if others else ""
     needed = f"a comparison needs one trial of {both[0]!r} and one of {both[1]!r}"
     return f"{needed}; {participant.id} has {found}{unused}. Correct the conditions in [[participants.trials]]."

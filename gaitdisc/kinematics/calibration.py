@@ -144,8 +144,8 @@ class _Builder:
         self.static["pelvis"] = Pose(middle[None], _axes(across, np.cross(across, ahead), self.file, "pelvis"))
         width, depth = float(np.linalg.norm(across)), float(np.linalg.norm(ahead))
         if self.measures.inter_asis_m is not None:
-            what = f"measured distance of the iliac spines {self.measures.inter_asis_m * 1000:.0f} mm, "
-            self._note("pelvis width", f"{what}{width * 1000:.0f} mm between the markers")
+            what = f"the measured distance of the iliac spines is {self.measures.inter_asis_m * 1000:.0f} mm, "
+            self._note("pelvis width", f"{what}but {width * 1000:.0f} mm between the markers")
             width = self.measures.inter_asis_m
         for side in "lr":
             hip = self.hips.get(f"hip_{side}")
@@ -164,7 +164,7 @@ class _Builder:
                 'Provide leg_length_m, or use hip = "harrington".',
             )
         if methods[0] == "davis" and side == "l":
-            what = f"hips after Harrington, not Davis: {self.file} and the measures lack a leg length"
+            what = f"the hips are those of Harrington, not Davis: {self.file} and the measures have no leg length"
             self._note("hip", what, "hip centres by 1 to 2 cm compared with Plug-in Gait")
         return harrington_hip(width, depth, side)
 
@@ -174,7 +174,7 @@ class _Builder:
             diameter = USUAL_DIAMETER_M
             if not any(finding.kind == "marker diameter" for finding in self.findings):
                 what = f"the diameter of the markers is unknown; {diameter * 1000:.0f} mm is assumed"
-                self._note("marker diameter", what, "joint centres by some mm if the diameter differs")
+                self._note("marker diameter", what, "joint centres by a few mm if the diameter differs")
         return diameter / 2
 
     def _centre(self, joint: str, side: str, above: str, wand: str) -> Values:
@@ -192,7 +192,7 @@ class _Builder:
         if self._has(f"{joint}_medial"):
             apart = self._place(f"{joint}_lateral", side) - self._place(f"{joint}_medial", side)
             width = float(np.linalg.norm(apart)) - 2 * self._radius()
-            self._note("width", f"width of {joint}_{side} {width * 1000:.0f} mm from its two markers")
+            self._note("width", f"the width of {joint}_{side} is {width * 1000:.0f} mm between its two markers")
             return width
         raise ChannelError(
             f"a {joint} joint centre from one lateral marker needs the width of the {joint}",
@@ -260,7 +260,7 @@ class _Builder:
             )
         self.places = swap(self.places, pair)
         self.exchanged = pair
-        what = f"{wrong[1]}: exchanging {' and '.join(pair)} in the static trial corrects it"
+        what = f"{wrong[1]}: exchanging {' and '.join(pair)} in the static trial corrects this"
         self._note(
             "exchanged markers",
             what,

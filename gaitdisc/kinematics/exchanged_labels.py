@@ -24,7 +24,7 @@ EXPLAINED = 0.5  # of the misfit is gone when two labels are exchanged
 UNFIT = ("exchanged markers", "broken segment")  # kinds of findings
 MOST_PAIRS = 3  # exchanged in one trial
 FRAMES = 12  # in which each pair is tried
-SPOILS = "angles of these segments there, and cycles with them; correct the labels, or use this session's static trial"
+SPOILS = "the segments' angles and cycles in these frames; correct the labels, or use this session's static trial"
 FEWEST_FRAMES = 3  # that a pair has to explain: fewer are single frames in which a marker jumped
 
 
@@ -133,13 +133,13 @@ def exchange_findings(
         where = "this trial" if min(order)[0] <= 0 else "this trial or in the static trial"
         before = f"{1000.0 * one.before_m:.0f} mm" if np.isfinite(one.before_m) else "rotated"
         what = f"{', '.join(one.segments)}: exchanging {first} and {second} in {where} corrects {one.frames.sum()} "
-        what += f"of {len(one.frames)} frames: {1000.0 * one.after_m:.0f} mm from the static trial, not {before}"
+        what += f"of {len(one.frames)} frames, now {1000.0 * one.after_m:.0f} mm from the static trial, not {before}"
         spans = spans_s(markers.time, one.frames)
         findings.append(Finding("warning", "exchanged markers", file, what, SPOILS, f"{first}, {second}", spans=spans))
     for segment, frames in broken.items():
         if frames.any():
             what = f"{segment}: in {int(frames.sum())} of {len(frames)} frames its markers are more than "
-            what += f"{1000.0 * BROKEN_M:.0f} mm from their positions in the static trial, and no two labels explain it"
+            what += f"{1000.0 * BROKEN_M:.0f} mm from their positions in the static trial, and no exchange explains it"
             spans = spans_s(markers.time, frames)
             findings.append(Finding("warning", "broken segment", file, what, SPOILS, spans=spans))
     return findings

@@ -45,12 +45,12 @@ def functional_hips(markers: Recording, calibration: Calibration) -> tuple[dict[
         usual = calibration.points["pelvis"][f"hip_{side}"]
         found, refused = _find_hip(pelvis, placed[f"thigh_{side}"], usual)
         if found is None:
-            what = f"hip_{side} from the landmarks, not from the functional trial: {refused}"
+            what = f"hip_{side} is computed from the landmarks, not from the functional trial: {refused}"
             findings.append(Finding("warning", "functional hip", file, what, SPOILS))
             continue
         hips[f"hip_{side}"] = found.centre
-        what = f"hip_{side} from the functional trial, {_mm(_apart(found, usual))} from the centre by the landmarks; "
-        what += f"the thigh moves about it within {_mm(found.residual_m)} (rms)"
+        what = f"hip_{side} of the functional trial is {_mm(_apart(found, usual))} from that of the landmarks; "
+        what += f"the thigh moves about this centre within {_mm(found.residual_m)} (rms)"
         findings.append(Finding("note", "functional hip", file, what, ""))
     return hips, tuple(findings)
 
@@ -59,7 +59,7 @@ def _find_hip(pelvis: Pose, thigh: PlacedMarkers, usual: Values) -> tuple[Pivot 
     """Centre of one hip, or None and why."""
     whole = pelvis.known & np.isfinite(thigh.seen).all(axis=(1, 2))
     if whole.sum() < FEWEST_FRAMES:
-        return None, f"pelvis and thigh are complete in {int(whole.sum())} frames; {FEWEST_FRAMES} are needed"
+        return None, f"pelvis and thigh are complete in {int(whole.sum())} frames; {FEWEST_FRAMES} frames are needed"
     above, markers = Pose(pelvis.origin[whole], pelvis.rotation[whole]), thigh.seen[whole]
     below, places = fit_pose(thigh.body, markers).pose, above.to_segment(markers)
     found = find_fixed_point(above, below) if below.known.all() else sphere_centre(places, usual)
@@ -70,7 +70,7 @@ def _find_hip(pelvis: Pose, thigh: PlacedMarkers, usual: Values) -> tuple[Pivot 
     swing_deg = float(np.degrees(np.sqrt(max(spread[1], 0.0))))
     if swing_deg < LEAST_SWING_DEG:
         words = f"the thigh turns by {swing_deg:.1f} deg (rms) perpendicular to its largest swing"
-        return None, f"{words}; {LEAST_SWING_DEG:g} are needed"
+        return None, f"{words}; at least {LEAST_SWING_DEG:g} deg are needed"
     if found.residual_m > LARGEST_RESIDUAL_M:
         return None, f"the thigh deviates from the centre by {_mm(found.residual_m)} (rms)"
     if _apart(found, usual) > FARTHEST_M:

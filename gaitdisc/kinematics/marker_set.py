@@ -235,17 +235,17 @@ def read_marker_set(path: Path) -> MarkerSet:
 def _check_text(table: dict[str, Any], path: Path) -> MarkerSet:
     file, usual = path.name, {"title": path.stem, "citation": "", "joints": JOINTS[0]}
     known = ("title", "citation", "aliases", "landmarks", "joint_centres", "axes", "joints", "tracked")
-    _check_words(table, known, "", file)
+    _check_words(table, known, "a key of a marker set", file)
     words = {key: _of_kind("text", table.get(key, text), key, file) for key, text in usual.items()}
-    _check_words([words["joints"]], JOINTS, "joints = ", file)
+    _check_words([words["joints"]], JOINTS, "joints", file)
     parts: dict[str, dict[str, Any]] = {}
     for part, kind in TABLES.items():
         rows = _of_kind("table", table.get(part, {}), part, file)
         parts[part] = {key: _of_kind(kind, value, f"{part}.{key}", file) for key, value in rows.items()}
     for part, keys in (("landmarks", LANDMARKS), ("joint_centres", METHODS), ("axes", AXES), ("tracked", PARTS)):
-        _check_words(parts[part], tuple(keys), f"{part}.", file)
+        _check_words(parts[part], tuple(keys), f"a key of [{part}]", file)
     for key, value in parts["axes"].items():
-        _check_words([value], AXES[key], f"axes.{key} = ", file)
+        _check_words([value], AXES[key], f"axes.{key}", file)
     methods = {key: tuple(one.strip() for one in text.split("|")) for key, text in parts["joint_centres"].items()}
     _check_landmarks(parts["landmarks"], file)
     _check_methods(methods, parts["landmarks"], file)
@@ -278,7 +278,7 @@ def _find(word: str, known: Sequence[str]) -> str:
 def _check_words(words: Iterable[str], known: Sequence[str], where: str, file: str) -> None:
     for word in words:
         if word not in known:
-            needed = f"{where or 'a marker set '}takes {', '.join(known)}"
+            needed = f"{where} must be one of {', '.join(known)}"
             raise SchemaError(needed, f"{file}: {_find(word, known)}", EXAMPLE)
 
 
@@ -299,7 +299,7 @@ def _check_methods(methods: Mapping[str, tuple[str, ...]], landmarks: Mapping[st
     for joint, known in METHODS.items():
         if joint not in methods:
             raise SchemaError(f"[joint_centres] must have {', '.join(METHODS)}", f"{file} has no {joint}", EXAMPLE)
-        _check_words(methods[joint], known, f"joint_centres.{joint} = ", file)
+        _check_words(methods[joint], known, f"joint_centres.{joint}", file)
     for joint, wand in (("knee", "thigh_wand"), ("ankle", "shank_wand")):
         for method, landmark in (("midpoint", f"{joint}_medial"), ("chord", wand)):
             if method in methods[joint] and landmark not in landmarks:

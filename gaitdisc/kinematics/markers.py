@@ -166,18 +166,18 @@ def walking_frame(
     headings = _headings(origin, seen, up, rate_hz)
     if headings is None and np.linalg.norm(mean) < TRAVELS_M_PER_S:
         return WalkingFrame(
-            _frames(np.tile(faced, (len(origin), 1)), up), "forward as the pelvis faces, because it stays in place"
+            _frames(np.tile(faced, (len(origin), 1)), up), "forward is where the pelvis faces, as it stays in place"
         )
     paths = np.tile(_level(mean, up), (len(origin), 1)) if headings is None else headings
     backwards = bool(np.median(np.einsum("fi,fi->f", paths[known], facing[known])) < 0)
-    words = "forward along the path of the pelvis" + ", against it because the person walks backwards" * backwards
+    words = "forward is along the path of the pelvis" + ", reversed because the person walks backwards" * backwards
     paths = -paths if backwards else paths
     turned = float(np.degrees(np.ptp(np.unwrap(np.arctan2(paths @ np.cross(up, faced), paths @ faced)))))
     if turned < STRAIGHT_DEG:
         straight = _level(mean, up)
         paths = np.tile(-straight if backwards else straight, (len(origin), 1))
     else:
-        words += f", which turns by {turned:.0f} deg"
+        words += f"; the path turns by {turned:.0f} deg"
     return WalkingFrame(_frames(paths, up), words)
 
 

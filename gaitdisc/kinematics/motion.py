@@ -170,7 +170,7 @@ def _set_words(calibration: Calibration) -> str:
     ways = [(joint, chosen.joint_centres[joint], usual.joint_centres[joint]) for joint in ("hip", "knee", "ankle")]
     ways += [(part, chosen.tracked[part], usual.tracked[part]) for part in ("thigh", "shank", "foot")]
     other = [f"{key} by {' '.join(own)}, not {' '.join(pig)}" for key, own, pig in ways if own != pig]
-    differs = f"; unlike Plug-in Gait {'; '.join(other)}, which rotates the axes" if other else ""
+    differs = f"; unlike in Plug-in Gait, {'; '.join(other)}, which rotates the axes" if other else ""
     return f"{chosen.name}: {chosen.title}; joints {chosen.joints}{differs}".replace("{S}", "")
 
 
@@ -190,17 +190,17 @@ def _gaps_and_shape(
     findings = []
     if bridged.any():
         what = f"{segment}: a marker was missing in {int(bridged.sum())} of {frames} frames; "
-        what += "the other markers define it there"
+        what += "the other markers define the segment there"
         findings.append(Finding("note", "bridged", file, what, "", spans=spans_s(markers.time, bridged)))
     if unknown.any():
-        what = f"the pose of {segment} is unknown in {int(unknown.sum())} of {frames} frames: it has fewer than 3 "
-        what += "usable points there, or they are collinear"
-        spoils = "its joints there; fill the gaps, or add a marker off the line"
+        what = f"the pose of {segment} is unknown in {int(unknown.sum())} of {frames} frames: fewer than 3 "
+        what += "of its points can be used there, or the points are collinear"
+        spoils = "the segment's joints there; fill the gaps, or add a marker off the line"
         findings.append(Finding("warning", "gap", file, what, spoils, spans=spans_s(markers.time, unknown)))
     typical = float(np.nanmedian(residual)) if np.isfinite(residual).any() else 0.0
     if typical > ANOTHER_SHAPE_M:
         what = f"the markers of {segment} are {typical * 1000:.0f} mm from their positions in the static trial"
-        spoils = "its angles; check that the static trial is of this person and session and that no label is exchanged"
+        spoils = "these angles; check that the static trial is of this person and session and the labels are right"
         findings.append(Finding("warning", "another shape", file, what, spoils))
     return findings
 
@@ -289,8 +289,8 @@ def segment_angles(segments: Recording) -> tuple[Recording, tuple[Finding, ...]]
     counts = {segment: int((~poses[segment].known).sum()) for segment in SEGMENTS}
     for count in sorted(set(counts.values()) - {0}):
         which = ", ".join(LABELS[segment] for segment in SEGMENTS if counts[segment] == count)
-        what = f"{which}: unknown in {count} of {len(pelvis)} frames"
-        findings.append(Finding("warning", "gap", file, what, "their joints there"))
+        what = f"{which}: the pose is unknown in {count} of {len(pelvis)} frames"
+        findings.append(Finding("warning", "gap", file, what, "the segments' joints there"))
     return angles, tuple(findings)
 
 

@@ -205,15 +205,15 @@ def _foot(platform: Platform, feet: Mapping[str, FootPath]) -> tuple[str, str, s
     side = min(known, key=lambda key: known[key], default="")
     if platform.side:
         own = known.get(platform.side, 0.0)
-        whose = f"it is assigned to the foot of side {platform.side}, but its centre of pressure"
+        whose = f"the plate is assigned to the foot of side {platform.side}, but the centre of pressure"
         if own > BESIDE_FOOT_M and side != platform.side:
             return platform.side, f"{whose} follows the other foot ({side}), {100 * own:.0f} cm away", "warning"
-        reason = f"{whose} is {100 * own:.0f} cm from it" if own > BESIDE_FOOT_M else ""
+        reason = f"{whose} is {100 * own:.0f} cm from this foot" if own > BESIDE_FOOT_M else ""
         return platform.side, reason, "warning" if reason else ""
     standing = {side: _stands_s(foot, platform) for side, foot in feet.items()}
     if len(standing) == 2 and min(standing.values()) >= STANDS_S:
         both = ", ".join(f"{side} for {seconds:.2f} s" for side, seconds in standing.items())
-        return "", f"both feet are on it, {both}", "note"
+        return "", f"both feet are on the plate, {both}", "note"
     if not known:
         return "", "the markers of both feet are missing then", ""
     if known[side] > BESIDE_FOOT_M:
@@ -244,4 +244,4 @@ def _edge(foot: FootPath, platform: Platform) -> str:
             return f"{name} {100 * np.median(outside):.0f} cm beyond its edge"
     pressure = platform.pressure_centre()[platform.load_n > CLEAR_LOAD * platform.load_n.max()]
     nearest = -float(np.nanmax(platform.surface.outside(pressure)))
-    return f"its centre of pressure comes within {100 * nearest:.1f} cm of the edge" if nearest < SOLE_AROUND_M else ""
+    return f"the centre of pressure comes within {100 * nearest:.1f} cm of the edge" if nearest < SOLE_AROUND_M else ""

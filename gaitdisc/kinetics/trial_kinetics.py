@@ -49,8 +49,8 @@ class ForceBalance:
         """Return the balance as one line of text."""
         if not self.tested:
             return (
-                f"force balance: the loads of both feet are known at the same time in {self.frames} frames only; not "
-                "tested"
+                f"force balance: the loads of both feet are known at the same time in only {self.frames} frames, so "
+                "the balance is not tested"
             )
         return (
             f"force balance over {self.frames} frames: vertical rms {self.rms:.1f} % of body weight "
@@ -60,7 +60,7 @@ class ForceBalance:
     def finding(self, file: str) -> Finding:
         """Give the balance as a finding: a note, or a warning above rms 15 % or mean 12 % of body weight."""
         wrong = self.tested and (self.rms > LARGEST_RMS or abs(self.mean) > LARGEST_MEAN)
-        spoils = "joint moments: check body mass, clocks, and which foot is on which plate" if wrong else ""
+        spoils = "joint moments; check the body mass, the clocks, and which foot is on which plate" if wrong else ""
         return Finding("warning" if wrong else "note", "force balance", file, self.line(), spoils)
 
 

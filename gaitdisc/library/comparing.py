@@ -52,7 +52,7 @@ def compare(
     channels : sequence of str, or str
         Channels to compare; by default all that both have.
     cutoff_hz : float
-        Low-pass of angles and moments, -3 dB of one pass [Hz].
+        Cut-off of the low-pass of angles and moments [Hz], at -3 dB of one pass.
     detector : str
         Detector of initial contact in both: `auto`, `force`, `events`, `markers` or `angles`.
     smallest_deg : float
@@ -98,7 +98,7 @@ def paired_tests(first: pd.DataFrame, second: pd.DataFrame, alpha: float = 0.05)
     Parameters
     ----------
     first, second : DataFrame (participant, variable)
-        With the same participants in the index and the same columns, in any order; NaN where a number is missing.
+        Tables with the same participants in the index and the same columns, in any order; NaN for a missing number.
     alpha : float
         Probability of at least one false positive over all columns.
 
@@ -203,8 +203,8 @@ def permutation_clusters(
     if one.shape[1:] != other.shape[1:] or len(names) != one.shape[2] or (paired and len(one) != len(other)):
         raise ShapeError(
             "two sets of curves must have the same points and channels"
-            + (", and as many rows for pairs" if paired else ""),
-            f"found {one.shape} and {other.shape}, (unit, phase, channel), with {len(names)} names of channels",
+            + (", and the same number of rows for pairs" if paired else ""),
+            f"shapes (unit, phase, channel) are {one.shape} and {other.shape}, with {len(names)} names of channels",
             "Cut both into strides of 101 points with the same channels.",
         )
     plan = PermutationPlan(alpha, permutations, seed)
@@ -221,8 +221,8 @@ def _curves(given: Any) -> NDArray[np.float64]:
         if pd.api.types.infer_dtype(given.columns) in ("mixed", "mixed-integer"):  # 0, 1, ..., 100, participant
             name = next(label for label in given.columns if isinstance(label, str))
             raise ShapeError(
-                "every column must be one of the points of the stride",
-                f"column {name!r} occurs among {len(given.columns) - 1} others",
+                "every column must be a point of the stride",
+                f"column {name!r} is not a number",
                 f"Make it the index: table.set_index({name!r}).",
             )
     values = real_array(given)

@@ -65,7 +65,7 @@ def discover(
     Returns
     -------
     found : Discovery
-        The verdict, a sentence, the effects with their intervals, rivals, and the gap before and after.
+        The verdict, a sentence, the effects with intervals, other explanations, and the gap of both models.
     augmented : Simulation
         The model with the identified effect; `simulate` runs it. For a MuJoCo or OpenSim model, its mapping.
 

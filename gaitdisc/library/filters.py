@@ -132,7 +132,7 @@ def envelope(
     order: int = 4,
     rate_hz: float | None = None,
 ) -> Signal:
-    """Envelope of raw EMG: high-passed, rectified, low-passed.
+    """Compute the envelope of raw EMG: high-passed, rectified and low-passed.
 
     Parameters
     ----------
@@ -173,14 +173,14 @@ def envelope(
 
 
 def differentiate(signal: Signal, order: int = 1, rate_hz: float | None = None) -> Signal:
-    """First or second time derivative of every channel, by five-point central differences.
+    """Differentiate every channel once or twice, by five-point central differences.
 
     Parameters
     ----------
     signal : Recording, DataFrame, Series or array_like (time,) or (time, channel)
         Filtered signal, because differentiation amplifies noise; in the forms of `lowpass`.
     order : int
-        1 or 2.
+        Order of the derivative, 1 or 2.
     rate_hz : float, optional
         Sampling rate of a signal without times [Hz].
 

@@ -26,7 +26,7 @@ def angles(
     joints: str | None = None,
     forward: Sequence[float] | None = None,
 ) -> Recording:
-    """Joint angles of a walk from its markers.
+    """Compute the joint angles of a walk from its markers.
 
     Parameters
     ----------
@@ -38,7 +38,7 @@ def angles(
         `plug_in_gait`, `oxford_foot`, `helen_hayes`, `rajagopal`, `gait2354`, or a `.toml` file; by default recognised
         by the labels.
     joints : str, optional
-        `free`, `held` or `planar`; by default as in the marker set.
+        `free` (segments fitted apart), `held` (joined at their centres) or `planar`; by default as in the marker set.
     forward : sequence of 3 floats, optional
         Direction of walking in the laboratory's axes; by default from the pelvis.
 
@@ -73,7 +73,7 @@ def moments(
     marker_set: Path | str | None = None,
     force_cutoff_hz: float = 20.0,
 ) -> Recording:
-    """Joint moments and powers of a walk from its markers and force plates, by inverse dynamics.
+    """Compute joint moments and powers of a walk from its markers and force plates, by inverse dynamics.
 
     Parameters
     ----------
@@ -86,7 +86,7 @@ def moments(
     sex : str
         `f` or `m`, for the inertia of the segments; if empty, the mean of both.
     marker_set : str or path, optional
-        As for `angles`.
+        Marker set, as in `angles`.
     force_cutoff_hz : float
         Low-pass of the ground force [Hz]; use 6 to filter it like the markers.
 

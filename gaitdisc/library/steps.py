@@ -20,7 +20,7 @@ if TYPE_CHECKING:
 
 
 def contacts(trial: Walk, detector: str = "auto") -> dict[str, Contacts]:
-    """Initial contacts of both feet.
+    """Find the initial contacts of both feet.
 
     `auto` uses ground force, the file's events, heel markers or joint angles, in this order, but skips a detector that
     finds fewer than 80 % of the strides of another.
@@ -53,7 +53,7 @@ def contacts(trial: Walk, detector: str = "auto") -> dict[str, Contacts]:
 
 
 def contacts_by_detector(trial: Walk) -> dict[str, dict[str, Contacts]]:
-    """Initial contacts of each detector, for comparison.
+    """Find the initial contacts by each detector, for comparison.
 
     Parameters
     ----------
@@ -85,7 +85,7 @@ def cycles(
     max_s: float = 2.5,
     contacts: ArrayLike | Contacts | Mapping[str, Contacts] | None = None,
 ) -> Strides:
-    """Gait cycles of one foot, from each initial contact to the next.
+    """Cut the gait cycles of one foot, from each initial contact to the next.
 
     Parameters
     ----------

@@ -67,7 +67,7 @@ def example_walks(duration_s: float = 20.0) -> dict[str, Trial]:
     Parameters
     ----------
     duration_s : float
-        Length of each [s].
+        Length of each walk [s].
 
     Returns
     -------

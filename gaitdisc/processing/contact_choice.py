@@ -80,7 +80,7 @@ def choose_contacts(
     taken = seen[chosen] if offset_s is None else _move(seen[chosen], offset_s)
     findings = [*late, *_findings(trial, chosen, seen, refused, reference)]
     if chosen in SEEN_LATE:
-        by = "the median of the steps that " + ("a plate recorded" if reference == "force" else "the events contain")
+        by = "the median difference at steps that " + ("a plate" if reference == "force" else "an event") + " shows"
         spoils = "phase, compared with a plate, by 3 to 5 % of the stride; durations are unaffected"
         findings.append(offset_finding(trial.name, chosen, offset_s, by, spoils))
     return ContactChoice(taken, tuple(findings))
@@ -133,7 +133,7 @@ def events_on_plates(
     moved = {
         side: replace(c, foot_off=c.foot_off - late / 1e3) for side, c in _move(seen["events"], -late / 1e3).items()
     }
-    what += "; the plates are used, and all events are shifted onto them"
+    what += "; the plates are used, and all events are shifted to agree with them"
     return {**seen, "events": moved}, [Finding("warning", "events and plates", file, what, "phase; check the events")]
 
 
@@ -196,11 +196,11 @@ def _move(contacts: Mapping[str, Contacts], offset_s: float) -> dict[str, Contac
 def offset_finding(file: str, detector: str, offset_s: float | None, by: str, spoils: str) -> Finding:
     """By how much contacts were moved and by what steps, in words; or that nothing shows it, and what is early then."""
     if offset_s is None:
-        what = f"contacts come from {detector}, and no plate recorded a step: they are early by about "
-        what += f"{EARLY_MS[detector]:g} ms in walking ({EARLY_RANGE[detector]} with a plate)"
+        what = f"contacts come from {detector}, and no plate recorded a step to correct them; they are about "
+        what += f"{EARLY_MS[detector]:g} ms early in walking ({EARLY_RANGE[detector]}, compared with a plate)"
         return Finding("note", "contact offset", file, what, spoils)
     way = "later" if offset_s >= 0 else "earlier"
-    what = f"contacts from {detector} are shifted {1000.0 * abs(offset_s):.0f} ms {way}, {by} too"
+    what = f"contacts from {detector} are shifted {1000.0 * abs(offset_s):.0f} ms {way}, {by}"
     return Finding("note", "contact offset", file, what, "")
 
 
@@ -256,7 +256,7 @@ def _findings(
     taken = seen[chosen]
     counts = ", ".join(f"{len(c) - 1} {side}" for side, c in sorted(taken.items()))
     note = next(iter(taken.values())).note
-    findings = [Finding("note", "detector", trial.name, f"contacts by {chosen}: strides {counts}; {note}", "")]
+    findings = [Finding("note", "detector", trial.name, f"contacts by {chosen}; strides: {counts}; {note}", "")]
     for name, contacts in seen.items():
         if name == chosen:
             continue
@@ -269,7 +269,7 @@ def _findings(
             spoils = []
             beyond = agreement.median_ms + EARLY_MS.get(name, 0.0) - EARLY_MS.get(chosen, 0.0)
             if abs(beyond) > DISAGREEMENT_MS and name != reference:  # which the contacts were moved by
-                spoils.append(f"phase: they disagree by {DISAGREEMENT_MS:g} ms more than such detectors usually do")
+                spoils.append(f"phase: the two disagree by {DISAGREEMENT_MS:g} ms more than such detectors usually do")
             if apart.any():
                 those = "1 contact" if apart.sum() == 1 else f"{apart.sum()} contacts"
                 spoils.append(f"the strides of {those}: {DISAGREEMENT_MS:g} ms or more from the usual difference")

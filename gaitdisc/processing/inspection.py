@@ -38,13 +38,13 @@ class Inspection:
     participant, condition : str
         Names in the study; empty for a single file.
     streams : mapping of str to str
-        Stream to channels, rate and length in words.
+        Name of each stream -> its channels, rate and length in words.
     strides : mapping of str to (int, int)
-        Side to strides kept and dropped.
+        Side -> number of strides kept and number dropped.
     findings : tuple of Finding
         All findings, the most severe first.
     refusal : str
-        Why the trial cannot be used, or empty.
+        The reason why the trial cannot be used; empty if it can.
     """
 
     name: str
@@ -73,7 +73,7 @@ class Inspection:
         return "amber" if any(finding.severity != "note" for finding in self.findings) else "green"
 
     def grouped(self, notes: bool = False) -> list[str]:
-        """Findings with one line per kind: the channels, and the text of the first one.
+        """Findings, one line per kind: the channels, and the text of the first finding of that kind.
 
         Parameters
         ----------

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import base64
 import hashlib
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import fields
@@ -13,7 +12,6 @@ import numpy as np
 import pandas as pd
 
 from gaitdisc.errors import SchemaError
-from gaitdisc.report.figure import SavedFigure
 from gaitdisc.saved.provenance import code_sha256
 from gaitdisc.saved.unit_folder import file_sha256, read_sealed, seal_text
 from gaitdisc.whole_file import write_whole
@@ -42,14 +40,6 @@ def read_part(report: Path, name: str, key: str) -> Any:
         return kept["data"] if whole else None
     except (SchemaError, OSError, KeyError, AttributeError):
         return None
-
-
-def figure_again(shown: Mapping[str, Any], folder: Path, inline_bytes: int) -> SavedFigure:
-    """Figure that stands in a folder, as data in a page that may have grown; chosen as `save_figure` does."""
-    svg, png = ((folder / f"{shown['name']}.{ending}").read_bytes() for ending in ("svg", "png"))
-    kind, content = ("svg+xml", svg) if len(svg) <= max(inline_bytes, len(png)) else ("png", png)
-    data = f"data:image/{kind};base64,{base64.b64encode(content).decode('ascii')}"
-    return SavedFigure(**{**shown, "data": data})
 
 
 def keep_part(report: Path, name: str, key: str, data: Any, files: Iterable[Path]) -> None:

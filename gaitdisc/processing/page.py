@@ -2,16 +2,17 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+import base64
+from collections.abc import Mapping, Sequence
 from dataclasses import asdict, replace
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 import pandas as pd
 
 from gaitdisc.processing.curves_figure import label_curve, range_words, sides_together
-from gaitdisc.processing.kept_parts import figure_again, hash_content, keep_part, read_part
+from gaitdisc.processing.kept_parts import hash_content, keep_part, read_part
 from gaitdisc.processing.leg_curves import FEET
 from gaitdisc.processing.pooled_cycles import CYCLES, PooledCycles
 from gaitdisc.processing.tables import (
@@ -41,11 +42,11 @@ FEW = 3  # cycles of a foot below which no spread is spoken of
 METHOD = (
     "Contacts come from the file's events, otherwise from force, markers (heel farthest in front of the pelvis, each "
     "step along its own direction) or joint angles, in this order. A detector is skipped if it finds fewer than 80 % "
-    "of the strides of another. If a plate or event records a step that markers or angles also find, its time is "
-    "used. All other contacts are shifted by the median difference of the person's session.",
-    "Foot off comes from events, otherwise from force if markers agree within 0.15 s, the toe farthest behind the "
-    "pelvis, or the ankle's largest plantarflexion. With angles only, contacts are about 30 ms early and foot off "
-    "about 30 ms late, so stance is about 6 % of a stride too long.",
+    "of the strides of another. If a plate or event records a step that markers or angles also find, the time of the "
+    "plate or event is used. All other contacts are shifted by the median difference of the person's session.",
+    "Foot off comes from events, otherwise from force (if markers agree within 0.15 s), from the toe farthest behind "
+    "the pelvis, or from the ankle's largest plantarflexion. With angles only, contacts are about 30 ms early and foot "
+    "off about 30 ms late, so stance is about 6 % of a stride too long.",
     "A cycle is excluded if it is too short or too long, differs from the person's other cycles by more than 15 % "
     "and 6 robust standard deviations, does not contain exactly one contact of the other foot, or lacks an angle of "
     "its own leg. Cycles never cross trials.",
@@ -110,8 +111,8 @@ def cycles_sentences(run: StudyRun) -> list[str]:
     ]
     if few := sorted({one.subject for one in kept if min(one.counted("l"), one.counted("r")) < FEW}):
         sentences.append(
-            f"Fewer than {FEW} cycles of a foot in a session and condition: {listing(few)}. Such curves show single "
-            "steps, not how steadily a person walks."
+            f"Participants with fewer than {FEW} cycles of a foot in a session and condition: {listing(few)}. Their "
+            "curves show single steps, not how steadily a person walks."
         )
     if moved := [one for one in kept if one.contact_offset_s is not None]:
         said = [f"{one.name} {offset_words(one)}" for one in moved]
@@ -164,6 +165,14 @@ def _save(sets: Sequence[PooledCycles], name: str, folder: Path, count: int) -> 
         files = [here / f"{one.name}.{ending}" for one in figures for ending in ("svg", "png", "csv")]
         keep_part(folder, part, key, [asdict(replace(one, data="")) for one in figures], files)
     return Block(block.anchor, block.heading, block.sentences, tuple(figures), block.tables)
+
+
+def figure_again(shown: Mapping[str, Any], folder: Path, inline_bytes: int) -> SavedFigure:
+    """Figure that stands in a folder, as data in a page that may have grown; chosen as `save_figure` does."""
+    svg, png = ((folder / f"{shown['name']}.{ending}").read_bytes() for ending in ("svg", "png"))
+    kind, content = ("svg+xml", svg) if len(svg) <= max(inline_bytes, len(png)) else ("png", png)
+    data = f"data:image/{kind};base64,{base64.b64encode(content).decode('ascii')}"
+    return SavedFigure(**{**shown, "data": data})
 
 
 @in_style
@@ -227,11 +236,11 @@ def _caption(pooled: PooledCycles) -> str:
     counts = " and ".join(f"{counted(pooled.counted(side), 'cycle')} {SIDE_WORDS[side]}" for side in FEET)
     kinetic = pooled.kept[pooled.kept["kinetic"].astype(bool)]
     plates = ", ".join(f"{int((kinetic['side'] == side).sum())} {SIDE_WORDS[side]}" for side in FEET)
-    moments = f" Moments are shown only where a plate carried this foot alone: {plates}." if len(kinetic) else ""
+    moments = f" Moments are shown only for cycles with this foot alone on a plate: {plates}." if len(kinetic) else ""
     filters = dict.fromkeys(finding.what for finding in pooled.findings if finding.kind == "filter")
     return (
         f"{pooled.subject}, {pooled.where}: {counts}, pooled over {counted(pooled.trials, 'trial')}; mean ± standard "
-        f"deviation (from three cycles on) and single cycles (the first {MOST_FAINT}); left red, right blue. 0 %: "
+        f"deviation (of three or more cycles) and single cycles (the first {MOST_FAINT}); left red, right blue. 0 %: "
         f"initial contact of the channel's own foot; dotted: mean foot off.{moments}"
         + "".join(f" Filters: {words}." for words in filters)
     )

@@ -168,8 +168,8 @@ def _require(trial: Trial, key: str, names: Sequence[str]) -> Recording:
         said = "".join(f"; excluded: {one.what}" for one in trial.findings if one.kind == CONTRADICTED)
         raise ChannelError(
             f"the models need {', '.join(missing)}",
-            f"{recording.source.file or trial.name} has {len(recording.names)} channels without "
-            f"{'it' if len(missing) == 1 else 'them'}" + (said or (f"; the nearest is {nearest!r}" if nearest else "")),
+            f"none of the {len(recording.names)} channels of {recording.source.file or trial.name} is called so"
+            + (said or (f"; the nearest is {nearest!r}" if nearest else "")),
             ("Correct the file" if said else "Map the file's own label in [channels]")
             + ", or remove the name from [models].",
         )
@@ -294,5 +294,5 @@ class StudyWalks:
         if "kinematics" not in ready.streams and "markers" in ready.streams:
             why = next((one.what for one in ready.findings if one.kind == "no angles"), standing.unread)
             if self.study.kinematics and self.study.kinematics.angles == "file":
-                why = 'the study selects those of the file, angles = "file" in [kinematics]'
+                why = 'the study selects the angles of the file (angles = "file" in [kinematics])'
         return ReadWalk(ready, standing.body_weight_n(planned), why)

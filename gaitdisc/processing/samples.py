@@ -37,8 +37,8 @@ class DroppedSamples:
         reasons += [f"{count} of {channel} not usable" for channel, count in worst[:3]]
         if len(worst) > 3:
             reasons.append(f"and {len(worst) - 3} more channels")
-        what = f"{lost} of {self.total} samples excluded" + (": " + ", ".join(reasons) if reasons else "")
-        spoils = "a fifth or more of the walk; see the channels named" if lost >= 0.2 * self.total else ""
+        what = f"{lost} of {self.total} samples are excluded" + (": " + ", ".join(reasons) if reasons else "")
+        spoils = "a fifth or more of the walk; check the channels that are named" if lost >= 0.2 * self.total else ""
         return Finding("warning" if spoils else "note", "samples left away", self.walk, what, spoils)
 
 

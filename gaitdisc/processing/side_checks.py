@@ -87,7 +87,7 @@ def _plate_findings(trial: Trial, weight_n: float | None) -> list[Finding]:
     if exchanged and sum(exchanged) >= MOST * len(exchanged):
         names = " and ".join(platform.name for platform in found)
         what = f"the centre of pressure lies under the foot in {sum(as_is)} of {len(as_is)} steps, and in "
-        what += f"{sum(exchanged)} of {len(exchanged)} if the two are exchanged: {names} are exchanged"
+        what += f"{sum(exchanged)} of {len(exchanged)} if the two plates are exchanged: {names} are exchanged"
         spoils = "the assignment of feet to plates, moments and powers; exchange their channels"
         spans = tuple(step.span for step in steps)
         return [Finding("warning", "swapped plates", file, what=what, spoils=spoils, channel=names, spans=spans)]

@@ -76,8 +76,8 @@ def person_findings(static: Recording, walk: Recording, file: str) -> list[Findi
     if apart[worst[1]] < MOST_LOG_RATIO:
         return []
     said = " and ".join(
-        f"{one} to {other} {1000.0 * standing[one, other]:.0f} mm when standing, {1000.0 * walking[one, other]:.0f} "
-        "mm in the walk"
+        f"{one} to {other} is {1000.0 * standing[one, other]:.0f} mm when standing, but "
+        f"{1000.0 * walking[one, other]:.0f} mm in the walk"
         for one, other in worst
     )
     what = f"the static trial is of another person, or its markers were moved: {said}"

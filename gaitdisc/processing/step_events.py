@@ -118,7 +118,7 @@ def step_events(
         for side, at in find_exchanged_contacts(seen["events"], seen.get("markers", {})).items():
             what = f"the heel of side {side} lands at {', '.join(f'{time:.2f}' for time in at[:5])} s, when the "
             what += "file's events have the other foot: the heels seem to be exchanged; the events are used"
-            spoils = "lengths and widths of steps, excluded for this trial; correct the labels"
+            spoils = "step lengths and widths, which are excluded for this trial; correct the labels of the heels"
             findings.append(Finding("warning", "exchanged heels", trial.name, what, spoils))
     contacts = {side: one.time for side, one in seen[chosen].items()}
     off_detector, offs = _find_offs(trial, contacts, direction)

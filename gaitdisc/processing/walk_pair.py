@@ -66,7 +66,7 @@ def walk_pair(
     if len(contacts[0]) == 1:
         foot = {"r": "right", "l": "left"}[next(iter(contacts[0]))]
         spoils = "percent stride of the other leg"
-        note = replace(note, severity="warning", what=f"{what}; of the {foot} foot, for both legs", spoils=spoils)
+        note = replace(note, severity="warning", what=f"{what}; the {foot} foot is used for both legs", spoils=spoils)
     return one, replace(other, findings=(*other.findings, note))
 
 
@@ -116,8 +116,8 @@ def _contacts(trial: Trial, name: str, joints: Recording | None) -> Mapping[str,
         return contacts or choose_contacts(trial, name).contacts  # which says why there are none
     if joints is None:
         raise StrideError(
-            "contacts from angles need hip flexion of one side in both recordings",
-            "the two have no hip angle in common",
+            "both recordings must have hip flexion of the same side if contacts come from angles",
+            "they have no hip angle in common",
             "Map the columns in the study's [channels].",
         )
     sides = tuple(channel.side for channel in joints.channels if channel.name.startswith("hip_flexion"))
@@ -206,8 +206,8 @@ def repeat_stride(trial: Trial) -> Trial:
     left = sorted(set(trial.streams) - set(kept))
     what = f"one stride of {count / kinematics.rate_hz:.3f} s that ends as it began, repeated {TIMES} times"
     if left:
-        what += f"; {', '.join(left)} excluded: on another time base"
-    spread = "the spread, of which a single stride has none"
+        what += f"; {', '.join(left)} excluded, because the time base differs"
+    spread = "the spread, which a single stride does not have"
     note = Finding("note", "one stride", kinematics.source.file or trial.name, what, spread)
     return replace(trial, streams=kept, events=(), findings=(*trial.findings, note))
 
@@ -218,7 +218,7 @@ def _period(kinematics: Recording, name: str) -> int:
     needed = f"one stride of a periodic simulation must last {MIN_S:g} to {MAX_S:g} s and end as it began"
     if not MIN_S <= kinematics.duration_s <= MAX_S or len(kinematics.time) < 8:
         found = f"{name} lasts {kinematics.duration_s:.2f} s in {len(kinematics.time)} samples"
-        raise StrideError(needed, found, "Use one complete stride, or a walk of several.")
+        raise StrideError(needed, found, "Use one complete stride, or a walk of several strides.")
     x = angles.values
     reach = np.ptp(x, axis=0)
     moving = np.isfinite(reach) & (reach > 1.0)
@@ -228,7 +228,7 @@ def _period(kinematics: Recording, name: str) -> int:
     if np.median(apart) > CLOSES:
         worst = int(np.flatnonzero(moving)[np.argmax(apart)])
         found = f"in {name}, {angles.names[worst]} ends {abs(x[-1, worst] - x[0, worst]):.1f} deg from its start"
-        raise StrideError(needed, found, "Use a complete stride (two steps), or a walk of several.")
+        raise StrideError(needed, found, "Use a complete stride (two steps), or a walk of several strides.")
     step = np.abs(np.diff(x, axis=0)).mean(axis=0)[moving] / reach[moving]
     beside = np.abs(x[1] - x[-1])[moving] / reach[moving]
     closing = np.median(apart) < 0.25 * np.median(step) and np.median(beside) > np.median(apart)

@@ -27,8 +27,8 @@ MOST_PANELS = 16
 MOST_DRAWN = 4  # participants whose curves stand in the page; the numbers of all are in errors.csv and curves.csv
 NOT_MSE = (
     "The dissertation calls the norm of the error divided by the norm of the measured values “MSE” (Eq. 2.21, Table "
-    "5.2) and prints it in degrees, but it has no unit. Compare it with the relative L2 here, not with numbers in "
-    "degrees."
+    "5.2) and prints it in degrees, but it has no unit. Compare the “MSE” with the relative L2 here, not with numbers "
+    "in degrees."
 )
 FINDINGS = "Findings in the recordings, n = {}; windows on plateaus and filled gaps are used unchanged."
 
@@ -54,7 +54,7 @@ def models_table(done: Reconstruction) -> Table:
         f"Models on the test windows: mean over n = {people} [95 % interval of the mean], {_what_is_tested(done)}. "
         f"Split: {done.split}. Relative L2: norm of the error divided by norm of the measured values about zero; "
         f"{with_sensors}R²: median over reconstructed channels; coverage: share inside the 90 % interval; seconds: "
-        "processor time of a fit. * recommended: the cheapest within 2 % of the smallest error on the validation "
+        "processor time of a fit. * recommended: the cheapest model within 2 % of the smallest error on the validation "
         "windows."
     )
     return Table("models", caption, tuple(shown), rows, numbers)
@@ -70,8 +70,8 @@ def states_table(done: Reconstruction) -> Table:
         errors = [_rmse(over["rmse"][state, model], unit) for model in done.models]
         rows.append((label(state), unit, *errors, _plain(over["relative_l2"][best], 3), _plain(over["r2"][best], 3)))
     caption = (
-        f"RMSE of every state [its unit], mean over n = {counted(len(done.participants), 'participant')}; relative L2 "
-        f"and R² of {done.recommended}. errors.csv has the intervals over the strides of each participant."
+        f"RMSE of every state [unit of the state], mean over n = {counted(len(done.participants), 'participant')}; "
+        f"relative L2 and R² of {done.recommended}. errors.csv has the intervals over the strides of each participant."
     )
     columns = ("state", "unit", *done.models, "relative L2", "R²")
     return Table("states", caption, columns, tuple(rows), over.reset_index())
@@ -99,14 +99,14 @@ def reconstruction_sentences(done: Reconstruction) -> list[str]:
     sensors, kinds = listing([spoken(channel.name) for channel in done.sensors]), list(done.models)
     row = over.loc[best]
     angles = _has_angles(done)
-    rmse = f"an RMSE of {_plain(row['rmse_deg'], 2)} deg over the angles and " if angles else ""
+    rmse = f"RMSE of the angles {_plain(row['rmse_deg'], 2)} deg, " if angles else ""
     noun = "future state" if _ahead(done) else "other state"
     units = listing(list(dict.fromkeys(channel.unit for channel in done.states)))
     what = counted(len(done.states), noun) if angles else f"{counted(len(done.states), 'channel')} [{units}]"
     sentences = [
-        f"From {sensors}, {what} {'is' if len(done.states) == 1 else 'are'} reconstructed with {rmse}a relative L2 of "
-        f"{_plain(row['relative_l2'], 3)} (median R² {_plain(row['r2'], 2)}; mean of "
-        f"{counted(len(done.participants), 'participant')}) by {best}, which is recommended."
+        f"The recommended model, {best}, reconstructs {what} from {sensors}: {rmse}relative L2 "
+        f"{_plain(row['relative_l2'], 3)}, median R² {_plain(row['r2'], 2)} (mean over "
+        f"{counted(len(done.participants), 'participant')})."
     ]
     compared = [kind for kind in BESIDE if kind in kinds and kind != best]
     if compared:
@@ -131,10 +131,10 @@ def _count_wins(done: Reconstruction, best: str, measure: str) -> list[str]:
     if people < 2:
         return []
     if own == people:
-        return [f"It has the smallest error in all {people} participants."]
+        return [f"The recommended model has the smallest error in all {people} participants."]
     counts = least[least != best].value_counts(sort=False).sort_values(ascending=False, kind="stable")
     others = [f"{model} in {count}" for model, count in counts.items()]
-    return [f"It has the smallest error in {own} of {people} participants, {listing(others)}."]
+    return [f"The recommended model has the smallest error in {own} of {people} participants, {listing(others)}."]
 
 
 def _after_calibration(done: Reconstruction, best: str) -> list[str]:
@@ -143,8 +143,8 @@ def _after_calibration(done: Reconstruction, best: str) -> list[str]:
     over: Any = done.over_participants()["rmse_deg"]
     before, after = float(over[best]), float(over[CALIBRATED.format(best)])
     return [
-        f"After correction with a few strides of the person whose states are known, its error is {_plain(after, 2)} "
-        f"instead of {_plain(before, 2)} deg ({100 * (after / before - 1):+.0f} %)."
+        f"After correction with a few strides of the person whose states are known, the error is {_plain(after, 2)} "
+        f"deg instead of {_plain(before, 2)} deg ({100 * (after / before - 1):+.0f} %)."
     ]
 
 
@@ -232,7 +232,7 @@ def _figure(done: Reconstruction, participant: str, numbers: pd.DataFrame, name:
     legend(drawn, states_key(models))
     strides = int(done.summary.loc[done.summary["participant"] == participant, "strides"].iloc[0])
     caption = (
-        f"{participant}: states measured and reconstructed over the stride, test windows only, n = "
+        f"{participant}: measured and reconstructed states over the stride, test windows only, n = "
         f"{counted(strides, 'stride')}. Band: measured, mean ± standard deviation; lines: mean of the estimates of "
         f"each model from {counted(len(done.sensors), 'sensor')}. Split: {done.split}."
     )
@@ -287,7 +287,7 @@ def search_sentences(found: pd.DataFrame) -> list[str]:
         said = f"{counted(size, 'sensor').capitalize()} {'is' if size == 1 else 'are'} enough: {names}. One more "
         said += f"reduces the error of all angles by {100 * less:.0f} %"
     else:
-        said = f"The best set of {counted(size, 'sensor')} is {names}; it may not be enough, because no larger one "
+        said = f"The best set of {counted(size, 'sensor')} is {names}; it may not be enough, because no larger set "
         said += "was tried"
     cost = f"{counted(int(found['fits'].sum()), 'regression')}, {found['seconds'].sum():.1f} s"
     return [f"{said} (search: {cost})."]
@@ -322,12 +322,12 @@ def method_sentences(done: Reconstruction) -> list[str]:
     """How the numbers were made."""
     return [
         f"A window contains {done.history} (Eqs. 5.1-5.7). A window contains no missing values and only one trial.",
-        f"Windows are split by {done.split}. Scales and weights come from the training windows only. Penalties, "
+        f"Split of the windows: {done.split}. Scales and weights come from the training windows only. Penalties, "
         "widths and the epoch of the weights are chosen on the validation windows. Errors are those of the test "
         "windows, which are separated from the others by the length of a window and 0.3 s.",
         "All recordings were low-passed by a zero-lag filter, which uses future samples. A live reconstruction would "
-        "be delayed by the filter's length, or noisier.",
-        "RMSE is in the state's own unit. Its interval comes from resampled strides (1,000 times, 95 %). Angles and "
-        "positions are never averaged together.",
+        "be delayed by the filter's length, or would be noisier.",
+        "RMSE is in the unit of the state. The 95 % interval of the RMSE comes from 1,000 resamples of the strides. "
+        "Angles and positions are never averaged together.",
         *(f"{name}: {words}." for name, words in done.models.items()),
     ]

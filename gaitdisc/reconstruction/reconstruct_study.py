@@ -37,8 +37,8 @@ from gaitdisc.signals.butterworth import KINEMATICS_HZ, low_pass
 SECTION = "5.3.3, Table 5.2"
 SUBJECT, CONDITION = "subject", "condition"
 ACROSS = {
-    SUBJECT: "each person by models of the others; the next person in the list is used for validation",
-    CONDITION: "walks of one condition, by models of the person's other walks (last 15 % of each for validation)",
+    SUBJECT: "each person is reconstructed by models of the others; the next person is used for validation",
+    CONDITION: "walks of one condition by models of the person's other walks (last 15 % of each for validation)",
 }
 CALIBRATION_STRIDES = 10
 
@@ -137,7 +137,7 @@ def _result(
     rule = (RULES | ACROSS)[settings.split]
     if settings.split == SUBJECT:
         models |= {
-            CALIBRATED.format(kind): f"the same, corrected for the person with {CALIBRATION_STRIDES} strides"
+            CALIBRATED.format(kind): f"{kind}, corrected for the person with {CALIBRATION_STRIDES} strides"
             for kind in settings.kinds
         }
     if what.lags.ahead:
@@ -169,7 +169,7 @@ def search_study(study: Study, most: int, settings: ReconstructionSettings | Non
     settings = settings or ReconstructionSettings()
     if settings.targets != STATES or settings.ahead_s:
         raise SchemaError(
-            "the sensor search is available for the states at their last sample",
+            "a sensor search is possible only for the present states",
             f"{settings.targets} are to be reconstructed {settings.ahead_s:g} s ahead",
             "Search without --targets and --ahead. Then name the sensors with --sensors.",
         )

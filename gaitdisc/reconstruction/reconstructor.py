@@ -101,7 +101,7 @@ class Reconstructor(Saved, file="model.json"):
         Returns
         -------
         Reconstructor
-            Itself.
+            The fitted model itself.
 
         Raises
         ------
@@ -122,7 +122,7 @@ class Reconstructor(Saved, file="model.json"):
             _check_same_times(trial_of_x, trial_of_y, self.rate_hz)
         if len(readings) != len(states):
             raise ShapeError(
-                "a model needs as many trials of states as of readings",
+                "the numbers of trials of readings and of states must be equal",
                 f"there are {len(readings)} of readings and {len(states)} of states",
                 "Give one array of states for each array of readings.",
             )
@@ -131,7 +131,7 @@ class Reconstructor(Saved, file="model.json"):
         if both:
             raise ShapeError(
                 "a state must not be one of the sensors",
-                f"{both[0]!r} is in both",
+                f"{both[0]!r} is a sensor and a state",
                 "Remove it from the states, because it is measured.",
             )
         lags = Lags(
@@ -224,7 +224,7 @@ class Reconstructor(Saved, file="model.json"):
         Parameters
         ----------
         **settings
-            Those of the constructor.
+            Settings of the constructor.
         """
         if unknown := sorted(set(settings) - set(SETTINGS)):
             raise TrainingError(

@@ -202,7 +202,7 @@ def refuse_unknown_targets(targets: str) -> None:
     """Refuse what cannot be reconstructed."""
     if targets not in (STATES, *TARGETS):
         known = ", ".join((STATES, *TARGETS))
-        raise SchemaError("the kind of quantity is unknown", f"{targets!r} does not exist", f"Use: {known}.")
+        raise SchemaError(f"the targets must be one of {known}", f"found {targets!r}", "Use one of these.")
 
 
 def _find_targets(trial: Trial, study: Study, targets: str) -> tuple[Recording, list[Finding]]:
@@ -243,7 +243,7 @@ def _moving(walks: Sequence[SensedWalk], sensors: Sequence[str]) -> tuple[tuple[
         what = f"{channel.name} {why} of {len(walks)} walks"
         if channel.name in sensors:
             raise ChannelError("a sensor must vary in every walk", what, "Choose another sensor.")
-        findings.append(Finding("note", "left out", "the study", what, "this state is not reconstructed", channel.name))
+        findings.append(Finding("note", "left out", "the study", what, "this state, not reconstructed", channel.name))
     return tuple(kept), findings
 
 

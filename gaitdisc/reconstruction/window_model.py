@@ -27,13 +27,13 @@ KINDS = {
     "shallow decoder": "two hidden layers on the current samples (SDN)",
     "delay ridge": "ridge regression on the samples and their history",
     "fourier ridge": f"ridge regression on {FEATURES} random Fourier features of the samples and their history",
-    "shred": "recurrent network on the samples and their history, shallow decoder (SHRED)",
+    "shred": "recurrent network on the samples and their history, with a shallow decoder (SHRED)",
 }
 MASKED = "masked shred"
 ENSEMBLE, MEMBERS = "shred ensemble", 5
 OF_TEXT, TEXT_STEPS, TEXT_PATIENCE = "shred-text", 4000, 1600  # steps of 64 windows; patience is 100 epochs of 1,000
 ON_REQUEST = {
-    MASKED: "SHRED with a mask of missing samples, trained with some of them hidden",
+    MASKED: "SHRED with a mask of missing samples, trained with some samples hidden",
     ENSEMBLE: f"mean of {MEMBERS} SHRED networks with different seeds",
     OF_TEXT: "SHRED as in the dissertation's code: two LSTM layers of 64, decoder 350-400, Adam at a rate of 0.001",
 }
@@ -188,7 +188,7 @@ def fit_reconstructor(
     """
     if kind not in (*KINDS, *ON_REQUEST):
         known = ", ".join((*KINDS, *ON_REQUEST))
-        raise SchemaError("the kind of model is unknown", f"{kind!r} does not exist", f"Use: {known}.")
+        raise SchemaError(f"the kind of model must be one of {known}", f"found {kind!r}", "Use one of these.")
     device = fitting_device((kind,), device)
     fit = _find_fit(kind, len(what.sensors), seed, device)
     training, check = thin_windows(training, MOST_FITTED), thin_windows(check, MOST_FITTED)

@@ -19,9 +19,9 @@ PERSON_OUT = "leave one person out"
 SEAM_S = 0.3  # zero-lag filters look ahead and back over a border
 RANDOM = "random (leaks)"
 RULES = {
-    "temporal": "each trial: first 70 % training, next 10 % validation, last 20 % test; no window crosses a border",
-    "blocked": "each trial in ten blocks: seven training, one validation, two test; no window crosses a border",
-    RANDOM: "windows drawn at random: neighbours of test windows are in the training part; the error is far too small",
+    "temporal": "first 70 % of each trial training, next 10 % validation, last 20 % test; no window crosses a border",
+    "blocked": "ten blocks of each trial: seven training, one validation, two test; no window crosses a border",
+    RANDOM: "windows drawn at random, with neighbours of test windows in the training part: the error is far too small",
 }
 
 
@@ -167,7 +167,7 @@ def split_within(trials: Sequence[Samples], rule: str, reach_s: float, seed: int
     ([0.0, 42.0], [43.3, 48.0])
     """
     if rule not in RULES:
-        raise SchemaError("the split rule is unknown", f"{rule!r} does not exist", f"Use one of: {', '.join(RULES)}.")
+        raise SchemaError(f"the split rule must be one of {', '.join(RULES)}", f"found {rule!r}", "Use one of these.")
     rng = np.random.default_rng(seed)
     labels = [_labels(each, rule, reach_s, rng) for each in trials]
     training, check, test = (_chosen(trials, labels, part) for part in (TRAINING, CHECK, TEST))
@@ -285,7 +285,7 @@ def refuse_unknown_way(way: str) -> None:
     """Refuse what is no way to deal with missing readings."""
     if way not in WAYS:
         raise SchemaError(
-            "the treatment of missing samples is unknown", f"{way!r} does not exist", "Use none, mean or last."
+            "the treatment of missing samples must be none, mean or last", f"found {way!r}", "Use one of these."
         )
 
 

@@ -22,11 +22,11 @@ class Axis:
     Parameters
     ----------
     name : str
-        `lat`, `lon`, `x`.
+        Name of the axis, such as `lat`, `lon` or `x`.
     coordinates : ndarray (node,) [unit]
-        Increasing or decreasing throughout.
+        Coordinates, increasing or decreasing throughout.
     unit : str
-        As shown; never converted.
+        Unit of the coordinates, as shown; it is never converted.
 
     Raises
     ------
@@ -62,7 +62,7 @@ class Axis:
 
 @dataclass(frozen=True, eq=False)
 class Field:
-    """Quantities at the points of a grid over time; arrays are read-only, time is the first axis.
+    """Quantities at the points of a grid over time. The arrays are read-only, and time is their first axis.
 
     Parameters
     ----------
@@ -77,7 +77,7 @@ class Field:
     quantities, units : tuple of str
         Measured quantities and their units.
     time_unit : str
-        `month`, `week`, `s`.
+        Unit of time, such as `month`, `week` or `s`.
     source : Source
         File, hash and reader.
 
@@ -112,9 +112,9 @@ class Field:
         grid = tuple(len(axis.coordinates) for axis in self.axes)
         if mask.shape != grid or not mask.any():
             raise ShapeError(
-                f"the mask of a field must have the shape of its grid, {grid}, and contain at least one point",
-                f"the mask has shape {mask.shape} and {int(mask.sum())} points",
-                "Give one truth value for each grid node.",
+                f"the mask of a field must have the shape of its grid, {grid}, and at least one True value",
+                f"the mask has shape {mask.shape} and {int(mask.sum())} True values",
+                "Give one boolean for each grid point: True where the field has values.",
             )
         wanted = (len(time), int(mask.sum()), len(self.quantities))
         if values.shape != wanted or len(self.units) != len(self.quantities):
@@ -155,12 +155,12 @@ class Field:
 
     @property
     def points(self) -> int:
-        """Points of the grid that belong to the field."""
+        """Number of grid points that belong to the field."""
         return int(self.mask.sum())
 
     @property
     def nodes(self) -> NDArray[np.intp]:
-        """Place of every point in the grid, (point, axis), counted from 0."""
+        """Grid indices of every point of the field, shape (point, axis), counted from 0."""
         return np.argwhere(self.mask)
 
     @property
@@ -197,7 +197,7 @@ class Field:
         return replace(self, time=self.time[chosen], values=self.values[chosen])
 
     def selected(self, quantities: Sequence[str]) -> Field:
-        """Keep some quantities, in the order requested.
+        """Field of some quantities only, in the order requested.
 
         Parameters
         ----------

@@ -33,13 +33,13 @@ class Finding:
         `note` (nothing is affected), `warning` (some samples or channels are affected), `refused` (the trial is not
         used).
     kind : str
-        One word or two: `gap`, `dead`, `flat`, `clipped`, `plateau`, `late change`, ...
+        Kind of the observation in one or two words: `gap`, `dead`, `clipped`, `late change`, ...
     file : str
         Name of the file, or of the trial if there is no file.
     what : str
         The observation, with number and unit.
     spoils : str
-        What is affected, and what to do.
+        What the observation affects, and what the user can do.
     channel : str
         Name of the channel; empty for the entire file.
     spans : tuple of Span
@@ -87,7 +87,7 @@ class Source:
 
 @dataclass(frozen=True, eq=False)
 class Recording:
-    """Channels on one even time base; arrays are read-only, time is the first axis.
+    """Channels with evenly spaced times in common. The arrays are read-only, and time is their first axis.
 
     Parameters
     ----------

@@ -63,7 +63,7 @@ def fit_scale(values: Values) -> Scale:
 
 @dataclass(frozen=True, eq=False)
 class Samples:
-    """Inputs and outputs, sample by sample, in order of time.
+    """Inputs and outputs of a model, one row per sample, in order of time.
 
     Parameters
     ----------
@@ -157,7 +157,7 @@ class Samples:
         return before, last
 
     def trainable(self, least: int, missing_inputs: bool = False) -> Samples:
-        """Return the same samples, or refuse them if no model can be fitted.
+        """Return the same samples, or raise an error if no model can be fitted to them.
 
         Parameters
         ----------

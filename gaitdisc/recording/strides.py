@@ -33,7 +33,7 @@ class DroppedStride:
 
 @dataclass(frozen=True, eq=False)
 class Strides:
-    """Strides [start, end) in seconds, so that they serve every recording of the trial at its own rate.
+    """Strides [start, end) in seconds, valid for every recording of the trial at its own rate.
 
     Parameters
     ----------

@@ -47,8 +47,8 @@ def quantity_figure(run: ResponseRun) -> Figure | None:
         f"R² [1] of the second derivative, median over variables, on the held-out device walk ({run.exo}) against the "
         f"length of the training part (its {' or '.join(parts)} seconds), n = "
         f"{counted(len(run.quantities), 'participant')}; split: last {tail_words(run)} s of each walk held out for "
-        f"all lengths. Thick: median over participants. Thin: each participant. Networks only.{edge} After Fig. 4.4 "
-        "of the dissertation."
+        f"all lengths. Thick lines: median over participants. Thin lines: each participant. Networks only.{edge} After "
+        "Fig. 4.4 of the dissertation."
     )
     return Figure("quantity", caption, alt, numbers, drawn)
 
@@ -82,7 +82,7 @@ def quantity_sentences(run: ResponseRun) -> list[str]:
     lengths = sorted({length for quantity in run.quantities for length in quantity.left_away})
     if lengths:
         shown = ", ".join(f"{length:g} s" for length in lengths)
-        sentences.append(f"Lengths left out because a walk is too short or has too few samples: {shown}.")
+        sentences.append(f"These lengths are left out, because a walk is too short or has too few samples: {shown}.")
     return sentences
 
 
@@ -130,8 +130,8 @@ def length_table(run: ResponseRun) -> Table | None:
     caption = (
         "R² [1] on the same held-out device walking by training length, paired over n = "
         f"{counted(len(run.quantities), 'participant')}: exact two-sided signed rank, Holm-Sidak over the variables "
-        "of one length and comparison, alpha = 0.05. Largest shift: Hodges-Lehmann, of the variable with the largest "
-        "change, second minus first. The CSV contains every test with its interval."
+        "of one length and comparison, alpha = 0.05. Largest shift: Hodges-Lehmann shift of the variable with the "
+        "largest change, second minus first. The CSV contains every test with its interval."
     )
     return Table("lengths", caption, _COLUMNS, tuple(rows), tests, _GROUPS)
 

@@ -115,7 +115,7 @@ def _caption(response: ParticipantResponse, rows: pd.DataFrame) -> str:
     if _BANDED in held.bands:  # what the bands hold of all held-out samples, in the mean over variables
         inside = {m: 100 * np.mean((b[0] <= held.measured) & (held.measured <= b[1])) for m, b in held.bands.items()}
         said = ", ".join(f"{value:.0f} % for {MODEL_WORDS[model]}" for model, value in inside.items())
-        band = f"Pale green: 90 % band of Augmented, from refits on blocks; samples inside such a band: {said}. "
+        band = f"Pale green: 90 % band of Augmented, from refits on blocks; share of samples inside: {said}. "
     return (
         f"{response.participant}: the last {WINDOW_S:g} s of the held-out device walk, n = "
         f"{counted(len(rows), 'sample')} shown of {len(held.time)}; split: last {response.held_out_s:.4g} s held out, "
@@ -211,7 +211,7 @@ def _residual_figure(response: ParticipantResponse, numbers: pd.DataFrame, name:
         f"shaded: {100 * CONFIDENCE:.0f} % interval at each point (Student's t over strides, corrected for the "
         "correlation of neighbouring strides)"
         if len(each) >= LEAST_STRIDES
-        else f"no interval, which needs {LEAST_STRIDES} complete strides"
+        else f"no interval, because it needs {LEAST_STRIDES} complete strides"
     )
     caption = (
         f"{response.participant}: residual of the second derivative, measured minus predicted, over the stride of the "

@@ -274,7 +274,7 @@ def too_few(participants: int) -> str:
     '5 participants are too few for a test: the smallest possible p is 0.0625, not below 0.05 even if all agree'
     """
     if participants < 2:
-        return "One participant is not enough for a test" if participants else "There is no participant, and no test"
+        return "One participant is not enough for a test" if participants else "There is no participant to test"
     return (
         f"{participants} participants are too few for a test: the smallest possible p is "
         f"{smallest_p(participants):g}, not below {ALPHA:g} even if all agree"

@@ -57,7 +57,7 @@ def responder_sentences(run: ResponseRun) -> list[str]:
         return []
     sentences = [f"{run.over.responders_said}."]
     if len(run.over.responders) and not run.over.responders["group"].any():
-        sentences.append("This does not prove homogeneity: so few people show only large differences.")
+        sentences.append("This does not prove homogeneity: with so few people, only large differences are detected.")
     return sentences
 
 
@@ -68,8 +68,8 @@ def responder_table(run: ResponseRun) -> Table | None:
     groups = run.over.responders
     rows = tuple((str(group), ", ".join(map(str, people["participant"]))) for group, people in groups.groupby("group"))
     caption = (
-        "Sub-groups by the shape over the stride of the Nominal model's residual on the device walk, all outputs "
-        f"together, n = {len(groups)}."
+        "Sub-groups of participants by the shape of the Nominal model's residual over the stride, device walk, all "
+        f"outputs together, n = {len(groups)}."
     )
     return Table("responders", caption, ("group", "participants"), rows, groups)
 
@@ -100,8 +100,8 @@ def reduction_figure(run: ResponseRun) -> Figure | None:
     legend(drawn, key)
     caption = (
         "Residual (measured minus predicted second derivative) averaged over the held-out strides of the device walk "
-        f"({run.exo}): 1 − its size / its size under the Nominal model, measured from peak to peak and as root mean "
-        f"square over the stride; n = {counted(reductions['participant'].nunique(), 'participant')}; split: last "
+        f"({run.exo}): 1 − size of the residual / size for the Nominal model, measured from peak to peak and as root "
+        f"mean square over the stride; n = {counted(reductions['participant'].nunique(), 'participant')}; split: last "
         f"{tail_words(run)} s held out. Marks: participants. Values below {number(LOWEST, 0)} % are at the edge. After "
         "Fig. 4.3 of the dissertation: 52.8 %, hip, one participant; the measure is not stated."
     )

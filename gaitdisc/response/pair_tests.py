@@ -56,7 +56,7 @@ def comparison_sentences(run: ResponseRun) -> list[str]:
     every = counted(total, "test")
     return [
         *(_verdict(tests, first, second) for first, second in PAIRS[:3]),
-        "A non-significant difference does not show equality: the interval of the shift says how large it may be.",
+        "A non-significant difference does not show equality: the interval of the shift gives its possible size.",
         _floor(tests),
         _say_unexplained(tests),
         f"Differences in {every} of the three pairs, by family: {listing(differing)}. The first family is used.",
@@ -143,7 +143,7 @@ def _families_table(tests: PairTests) -> Table:
                 ", ".join(named) if named else "none",
             ))  # fmt: skip
     caption = (
-        f"The same tests with other families, n = {counted(tests.participants, 'participant')}, alpha = "
+        f"The paired tests with other families, n = {counted(tests.participants, 'participant')}, alpha = "
         f"{tests.alpha:g} in each. Level: the level at which the step-down procedure stopped, printed in the "
         "dissertation as “Sidak α = 0.013”. With eight variables per pair and four rejected it is 0.0127; with three "
         "pairs per variable no level has this value."
@@ -168,7 +168,7 @@ def _verdict(tests: PairTests, first: str, second: str) -> str:
     if not parts:
         return f"{start}: there is no significant difference in any of {counted(len(tested), 'variable')}."
     largest = tested["shift"].abs().max()
-    return f"{start}: it explains {listing(parts)}; the largest shift of R² is {number(float(largest), 3)}."
+    return f"{start}: {_WORDS[second]} explains {listing(parts)}; largest shift of R²: {number(float(largest), 3)}."
 
 
 def _floor(tests: PairTests) -> str:

@@ -47,7 +47,7 @@ def study_sentences(run: ResponseRun) -> list[str]:
     if len(ridge):
         wins = int((ridge >= MARGIN).sum())
         sentences.append(
-            "Ridge regression with phase harmonics instead of the networks gives Augmented "
+            "Ridge regression with phase harmonics instead of the networks gives the Augmented model "
             f"{_median_iqr(table['ridge_augmented_on_exo'])} and exceeds the network in {wins} of "
             f"{counted(len(ridge), 'participant')}."
         )
@@ -74,7 +74,7 @@ def participant_sentences(response: ParticipantResponse) -> list[str]:
     sentences = [
         f"In {response.participant}, the Nominal model {explains} of the device walk's variance "
         f"(R², median over {over}, held-out last {response.held_out_s:.4g} s, n = {sample_counts(response)} samples), "
-        f"the Augmented model {number(augmented)}, the Exo model {number(exo)}."
+        f"the Augmented model {number(augmented)}, and the Exo model {number(exo)}."
     ]
     if np.isfinite(middle["nominal_on_nominal"]):
         sentences.append(
@@ -106,7 +106,7 @@ def _say_closed(middle: pd.Series) -> str:
         return ""
     share = (augmented - nominal) / (exo - nominal)
     if share >= 1:
-        return ", equal to the Exo model or above it"
+        return ", to the level of the Exo model or above"
     return f", {100 * share:.0f}\u00a0% of the way from the Nominal to the Exo model"
 
 

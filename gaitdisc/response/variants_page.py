@@ -60,8 +60,8 @@ def modalities_figure(run: VariantRun) -> Figure | None:
         f"Fall of R² [1] on the held-out device walk ({run.exo}) when a family of inputs (both sides; a joint or "
         "muscle with its velocity) is left out, median over variables; n = "
         f"{counted(len(run.people), 'participant')}; split: last {held} s of the walk held out. Augmented: only the "
-        "Discrepancy model lacks the inputs. Small marks: participants. Linear within 0.01, logarithmic beyond. "
-        "Networks only. For section 6.2.2 of the dissertation."
+        "Discrepancy model lacks the inputs. Small marks: participants. The axis is linear within 0.01 and logarithmic "
+        "beyond. Networks only. For section 6.2.2 of the dissertation."
     )
     most = numbers[numbers["model"] == "augmented"].groupby("without", sort=False)["fall"].median()
     alt = f"Fall of R² without each of {len(most)} families of inputs; the largest fall is without {most.idxmax()}."
@@ -179,9 +179,9 @@ def sensitivity_table(run: VariantRun) -> Table:
         f"R² [1] on the held-out device walk ({run.exo}), medians over participants of medians over variables, n = "
         f"{counted(len(run.people), 'participant')}; one setting changed at a time. R² of two settings refer to "
         "different targets, because the filter changes the predicted signal: compare the models, and each with its "
-        "null. People: number with Nominal < Augmented in the median over variables; variables: number with a "
-        "significantly higher Augmented model (exact signed rank, Holm-Sidak over the variables of a setting, alpha "
-        "= 0.05)."
+        "null. People: number of people with Nominal < Augmented in the median over variables; variables: number of "
+        "variables with a significantly higher Augmented model (exact signed rank, Holm-Sidak over the variables of a "
+        "setting, alpha = 0.05)."
     )
     heads = (("", 1), *((group, len(HEADINGS)) for group in groups), ("Nominal < Augmented", 2))
     columns = ("setting", *(HEADINGS * len(groups)), "people", "variables")

@@ -125,9 +125,9 @@ def _caption(participant: str, numbers: pd.DataFrame) -> str:
     ]
     return (
         f"{participant}: every stride of each walk, from initial contact to the next of the same foot, n = "
-        f"{' and '.join(parts)}; entire walks, no split. Light: kept; black, taller: dropped, with the letter of its "
-        "reason in the table below. Under each strip: duration of every stride [s] over time. Red triangles: left; "
-        "blue discs: right; crosses: dropped."
+        f"{' and '.join(parts)}; entire walks, no split. Light bars: kept; black, taller bars: dropped, with the "
+        "letter of its reason in the table below. Under each strip: duration of every stride [s] over time. Red "
+        "triangles: left; blue discs: right; crosses: dropped."
     )
 
 
@@ -155,7 +155,7 @@ def walks_table(run: ResponseRun) -> Table:
         "findings",
     )  # fmt: skip
     caption = (
-        f"Processed walks, n = {len(run.walks)}. Green: nothing, or notes only; amber: warnings, some samples or "
+        f"Processed walks, n = {len(run.walks)}. Green: no findings, or notes only; amber: warnings, some samples or "
         "channels are affected; red: the trial is refused."
     )
     return Table("walks", caption, columns, tuple(rows), pd.DataFrame(records))
@@ -189,7 +189,7 @@ def fits_table(run: ResponseRun) -> Table:
     ]  # fmt: skip
     headings = ("participant", "model", "kind", "decay chosen", "epochs", "training samples", "inner samples")
     caption = (
-        f"Fits, n = {len(rows)}; decay: strength of the regularisation, chosen on inner samples, a contiguous last "
-        "part of the training samples, without held-out samples."
+        f"Fits, n = {len(rows)}; decay: strength of the regularisation, chosen on inner samples, which are the "
+        "contiguous last part of the training samples and contain no held-out samples."
     )
     return Table("fits", caption, headings, tuple(rows), numbers)

@@ -40,7 +40,7 @@ def find_lack(part: Part, data: Path | None) -> SchemaError | None:
     libraries = [name for name in part.needs if find_spec(name) is None]
     if libraries:
         words = " and ".join(libraries)
-        return SchemaError(f"{needs} {words}", "not installed here", "Run: pip install 'gaitdisc[chapter3]'.")
+        return SchemaError(f"{needs} {words}", "it is not installed", "Run: pip install 'gaitdisc[chapter3]'.")
     folder = _data_folder(data)
     if part.data and not (folder / part.data).is_dir():
         do = "Name the folder that contains it with --data or GAITDISC_DATA."
@@ -87,8 +87,8 @@ def _stands(folder: Path, begun: dict[str, Any]) -> bool:
     ):
         if held.get(key) != begun[key]:
             raise SchemaError(
-                "all results in a folder must come from one program with one setting",
-                f"{folder} was started by {words[bool(held.get(key))]}",
+                "all results in a folder must come from one version of the program, and all be quick or all be full",
+                f"{folder} contains results of {words[bool(held.get(key))]}",
                 "Choose another folder, or delete this one.",
             )
     return held["seconds"] is not None

@@ -40,7 +40,7 @@ MENTIONED = {  # a method in words -> the keys of data_schema/methods.bib
     "Holm-Sidak corrections": ("holm1979", "sidak1967"),
     "permutation test over the stride": ("nichols2002", "pataky2015"),
     "sub-groups of people": ("ward1963",),
-    "C3D files, where some were read": ("michaud2021",),
+    "reading of C3D files (if the run read any)": ("michaud2021",),
     "contacts from markers": ("zeni2008",),
     "segments from markers": ("soderkvist1993",),
     "joint angles": ("grood1983", "wu2002"),
@@ -54,7 +54,7 @@ MENTIONED = {  # a method in words -> the keys of data_schema/methods.bib
     "a term identified by regression on a library": ("brunton2016",),
     "spiked samples": ("hampel1974",),
     "SINDy": ("brunton2016",),
-    "an ensemble of SINDy": ("fasel2022",),
+    "ensemble SINDy": ("fasel2022",),
     "SINDy in weak form": ("messenger2021",),
     "exact dynamic mode decomposition": ("tu2014",),
     "optimised dynamic mode decomposition": ("askham2018",),
@@ -99,7 +99,7 @@ MORE = {  # of these parts, beside what their chapter cites
     "measurement_bias": (*BAGS, "a Kalman filter", "an unscented Kalman filter"),
     "who_names": SEARCHED,
     "further": (
-        "an ensemble of SINDy",
+        "ensemble SINDy",
         "SINDy in weak form",
         "exact dynamic mode decomposition",
         "an unscented Kalman filter",
@@ -191,7 +191,7 @@ def _of_run(run: ResponseRun) -> Iterator[str]:
 def _of_files(files: Iterable[str]) -> Iterator[str]:
     """Of files named by person and walk the ending is not kept: they may be C3D."""
     if any(name.lower().endswith(".c3d") or re.search(r", file \d+$", name) for name in files):
-        yield "C3D files, where some were read"
+        yield "reading of C3D files (if the run read any)"
 
 
 def _of_markers(findings: Iterable[Finding], hip: str | None) -> Iterator[str]:

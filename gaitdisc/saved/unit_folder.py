@@ -114,7 +114,7 @@ def damage(path: Path, what: str, do: str = AGAIN) -> DamagedError:
 
 def of_another_format(path: Path, found: object, ours: int) -> DamagedError:
     """Return the refusal of a file that another version of gaitdisc wrote."""
-    do = f"Another version wrote it. Install that version to read it, or compute it again with {__version__}."
+    do = f"Another version wrote this file. Install that version, or compute the result again with {__version__}."
     return damage(path, f"has format {str(found)[:20]}, not {ours}", do)
 
 

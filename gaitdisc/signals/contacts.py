@@ -178,7 +178,7 @@ def order_findings(right: Contacts, left: Contacts, file: str = "") -> list[Find
         if wrong:
             at = ", ".join(f"{start:.2f}" for start, _ in wrong[:5]) + (" ..." if len(wrong) > 5 else "")
             what = (
-                f"{len(wrong)} of {len(one) - 1} strides of side {one.side} without exactly one contact of side "
+                f"{len(wrong)} of {len(one) - 1} strides of side {one.side} do not contain exactly one contact of side "
                 f"{other.side}: at {at} s"
             )
             spoils = "these strides: a contact was missed, or a foot stepped on the other plate or belt"
@@ -328,7 +328,7 @@ def plate_contacts(
             side = max(place, key=lambda key: place[key])
             times[side].append(float(time))
             offs[side] += [float(t) for t in off[off > time][:1]]
-    note = f"foot identified by the leading heel, {direction.how}"
+    note = f"foot identified by the leading heel; {direction.how}"
     return {s: Contacts(np.unique(times[s]), s, "force", np.unique(offs[s]), note) for s in ("r", "l")}
 
 

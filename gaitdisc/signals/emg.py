@@ -155,15 +155,15 @@ def emg_findings(emg: Recording, range_v: float | None = None) -> list[Finding]:
         top, bottom = known.max(), known.min()  # a muscle meets each once: an input that stops before the others do
         ends = (x >= top - 1e-6 * (top - bottom)) | ((x <= bottom + 1e-6 * (top - bottom)) & (bottom < 0))
         if ends.mean() >= RAILS_SHARE > at_rail.mean():
-            at_rail, rail = ends, f"limits of this channel, {bottom:.3g} and {top:.3g} V"
-        size = f"standard deviation {1e3 * known.std():.3g} mV, {100 * share:.2g} % of the amplifier's"
+            at_rail, rail = ends, f"limits in this channel, {bottom:.3g} and {top:.3g} V"
+        size = f"the standard deviation is {1e3 * known.std():.3g} mV, {100 * share:.2g} % of the amplifier's"
         at_rails = f"{100 * at_rail.mean():.2g} % of the samples are at the amplifier's {rail}"
         clipped = at_rail.mean() >= CLIPPED_SHARE
         silent = robust_sd(known) / limit.volts
         if clipped and silent < SILENT_SHARE <= share:
             noise_mv = 1e3 * silent * limit.volts
             kind = "dead"
-            what = f"{at_rails}; between them is only noise (robust standard deviation {noise_mv:.3g} mV)"
+            what = f"{at_rails}; the others are only noise (robust standard deviation {noise_mv:.3g} mV)"
         elif share < WEAK_SHARE and (share < limit.dead_share or burst_ratio(x, emg.rate_hz) < BURST):
             least = DEAD_SHARE if share < DEAD_SHARE else WEAK_SHARE
             bursts = "" if share < limit.dead_share else " or bursts"
@@ -174,7 +174,7 @@ def emg_findings(emg: Recording, range_v: float | None = None) -> list[Finding]:
             what = f"{size} {rail}; no muscle exceeds 50 %"
         elif at_rail.mean() >= RAILS_SHARE and burst_ratio(x, emg.rate_hz) < FLAT_BURST:
             kind = "unplugged"
-            what = f"{at_rails}, without bursts between them"
+            what = f"{at_rails}, without bursts between these samples"
         elif clipped:
             kind = "clipped"
             what = at_rails

@@ -83,7 +83,7 @@ def gap_findings(recording: Recording) -> list[Finding]:
         fits = longest <= MAX_SPLINE_S + 1e-9  # at an end too: a recording that begins so much later lacks nothing
         gaps = counted(len(spans), "gap")
         what = f"{gaps}, {missing:.3f} s of {recording.duration_s:.2f} s, the longest {longest:.3f} s"
-        spoils = f"accelerations within {BESIDE_GAP_S:g} s of each gap above {MAX_SPLINE_S:g} s; these are excluded"
+        spoils = f"accelerations within {BESIDE_GAP_S:g} s of each gap above {MAX_SPLINE_S:g} s, which are excluded"
         if fits:
             spoils = "nothing: gaps are filled by a cubic spline and marked; gaps at the ends are excluded"
         name = channel.name.removesuffix(".x") if channel.quantity == "marker" else channel.name
@@ -186,10 +186,10 @@ def spike_findings(recording: Recording) -> list[Finding]:
         known, places = np.flatnonzero(np.isfinite(rest)), counted(len(runs(here)), "place")
         beside = rest[known[np.abs(known - at).argmin()]]
         what = (
-            f"{x[at]:.4g} {channel.unit} at {recording.time[at]:.2f} s (frame {at + 1}) next to {beside:.4g} "
-            f"{channel.unit}; {places} in all"
+            f"{x[at]:.4g} {channel.unit} at {recording.time[at]:.2f} s (frame {at + 1}) is next to {beside:.4g} "
+            f"{channel.unit}; spikes in {places}"
         )
-        spoils = "nothing: removed before the filter, interpolated where short, and marked"
+        spoils = "nothing: spikes are removed before the filter, interpolated if short, and marked"
         file, spans = recording.source.file, spans_s(recording.time, here)
         findings.append(Finding("warning", "spike", file, what=what, spoils=spoils, channel=channel.name, spans=spans))
     return findings

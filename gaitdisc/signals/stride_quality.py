@@ -87,8 +87,8 @@ def stride_findings(recording: Recording, strides: Strides) -> list[Finding]:
         worst = rows[np.argmax(distance[rows, column])]
         times = distance[worst, column] / np.nanmedian(distance[:, column])
         what = (
-            f"{len(rows)} of {len(strides)} strides of side {strides.side}, the worst at {strides.start[worst]:.2f} s: "
-            f"{distance[worst, column]:.3g} {channel.unit} from the median curve, {times:.1f} times the usual distance"
+            f"{len(rows)} of {len(strides)} strides of side {strides.side}; the worst, at {strides.start[worst]:.2f} "
+            f"s, is {distance[worst, column]:.3g} {channel.unit} from the median, {times:.1f} times the usual distance"
         )
         spoils = "means and models that include these strides"
         spans = tuple(Span(float(strides.start[k]), float(strides.end[k])) for k in rows)
@@ -121,7 +121,7 @@ def without_outlying(recording: Recording, strides: Strides, fewest_channels: in
         column = int(np.argmax(np.where(far[k], times, 0.0)))
         more = f" and {far[k].sum() - 1} more channels" if far[k].sum() > 1 else ""
         name = recording.names[column]
-        reason = f"outlying: {name}{more} {times[column]:.1f} times the usual distance from the median"
+        reason = f"outlying: {name}{more} at {times[column]:.1f} times the usual distance from the median"
         dropped.append(DroppedStride(float(strides.start[k]), float(strides.end[k]), reason))
     return replace(strides, start=strides.start[~out], end=strides.end[~out], dropped=(*strides.dropped, *dropped))
 

@@ -185,9 +185,9 @@ def verify_walking(
         fails.append(f"the range of motion is {found.knee_deg:.0f} deg at the knee that moves more")
     if fails:
         raise StrideError(
-            f"a walk must have at least {counted(fewest, 'stride')} over {100 * least_coverage:.0f} % of the trial, a "
-            f"stride-to-stride correlation of at least {LEAST_REGULARITY:g}, and a knee range of motion of at least "
-            f"{LEAST_KNEE_DEG:g} deg on one side",
+            f"a walk must have at least {counted(fewest, 'stride')} that cover {100 * least_coverage:.0f} % of "
+            f"the trial, a stride-to-stride correlation of at least {LEAST_REGULARITY:g}, and a knee range of motion "
+            f"of at least {LEAST_KNEE_DEG:g} deg on one side",
             f"{kinematics.source.file or 'the recording'}: {'; '.join(fails)}",
             "Remove calibration and range-of-motion trials from the study, or cut the trial to its walking part.",
         )

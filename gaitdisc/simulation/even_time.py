@@ -49,7 +49,7 @@ def on_even_time(
         if worst > 100 * EVEN:
             first = float(np.median(trial.time * rate - place))
             even, what = _resample(trial, np.asarray((place + first) / rate, np.float64), inputs)
-            what = f"trial {trial.name!r}: times deviate by up to {worst:.1f} % of a step from an even clock; {what}"
+            what = f"trial {trial.name!r}: times deviate by up to {worst:.1f} % of a step from even spacing; {what}"
             findings.append(Finding("note", "clock", source, what, "nothing at this size"))
     count = int(place[-1]) + 1
     missing = count - len(place)
@@ -70,7 +70,7 @@ def clock_findings(trials: list[TrialColumns], rate: float, source: str) -> list
     whole = all(np.array_equal(trial.time, np.rint(trial.time)) for trial in trials)
     if rate >= SLOW_HZ or not whole:
         return []
-    what = f"a step of {1 / rate:g} s, {len(trials[0].time) / rate:g} s in total"
+    what = f"the time step is {1 / rate:g} s, and the trial lasts {len(trials[0].time) / rate:g} s"
     return [Finding("warning", "clock", source, what, MILLISECONDS)]
 
 
@@ -138,7 +138,7 @@ def _resample(trial: TrialColumns, time: Values, inputs: tuple[str, ...]) -> tup
         observed=_along(trial.observed, trial.time, late_s, (False,) * trial.observed.shape[1]),
     )
     if _roughness(moved.observed, trial.observed) <= _roughness(trial.observed, trial.observed):
-        return moved, "the samples are resampled to even times"
+        return moved, "the samples are resampled to even spacing"
     return even, "the samples are evenly spaced and are used with even times"
 
 

@@ -35,7 +35,7 @@ def simulation_from_function(
     inputs: Sequence[str] | str = (),
     parameters: Mapping[str, float] | None = None,
 ) -> Simulation | PythonSimulation:
-    """Simulation of a Python function that gives the time derivative of each state.
+    """Make a simulation of a Python function that returns the time derivative of each state.
 
     The first arguments are the states, one for each derivative that the function returns. Arguments after them without
     a default are inputs, columns of the data; those with a default are parameters, and the default is their value (or a
@@ -132,7 +132,7 @@ class _Taken:
     numbers: dict[str, float]
     ports: tuple[str, ...]
     arguments: Callable[[Callable[[str], Any]], tuple[tuple, dict]]  # from what gives the value of a name
-    remedy: str = "Call it yourself with numbers, and correct it."  # where it raises whatever it is given
+    remedy: str = "Call the function yourself with numbers, and correct it."  # where it raises whatever it is given
 
     @property
     def title(self) -> str:
@@ -270,7 +270,7 @@ def _refuse_other_numbers(simulation: Simulation, taken: _Taken) -> Simulation:
         for names in ((TIME,), machine.states, machine.inputs, machine.parameters)
     )
     if not taken.gives(machine.rates(t[:, 0], x, u, values)):
-        raise NotTraced("they give numbers that differ from the function")
+        raise NotTraced("the derived equations give numbers that differ from those of the function")
     return simulation
 
 

@@ -73,7 +73,7 @@ def integrate_block(program, drive, rows, plan, past, into):
     into: states (row, sample, state), whether each row stayed finite (row,)
     """
     code, setup, _, delays, _ = program
-    rate, _, inputs, samples, wraps = drive
+    rate, _, _, samples, wraps = drive
     place, starts, _, _ = rows
     steps, substeps, lanes, read = plan
     found, ok = into
@@ -92,14 +92,14 @@ def integrate_block(program, drive, rows, plan, past, into):
     now = np.zeros(3)  # samples since the start, steps done, steps for each sample
     now[2] = substeps
     for sample in range(steps):
-        _gather(ends, inputs, place, last, sample, wraps, read)
+        _gather(ends, drive, place, last, sample, read)
         for sub in range(substeps):
             now[1] = sample * substeps + sub
             for part in range(4):
                 half = (part + 1) // 2  # 0, 1, 1, 2 half steps
                 if part != 2:
                     now[0] = sample + (2 * sub + half) / (2 * substeps)
-                    _set_inputs(registers, 1 + n, ends, wraps, now[0] - sample, width, read)
+                    _set_inputs(registers, 1 + n, ends, wraps, now[0] - sample, read)
                     if timed:
                         _set_times(registers, drive, place, now[0])
                     if delays.shape[0]:
@@ -128,8 +128,9 @@ def _fill(program, rows, signals, lanes):
 
 
 @compiled
-def _gather(ends, inputs, place, last, sample, wraps, read):
+def _gather(ends, drive, place, last, sample, read):
     """Inputs that are read, at a sample of each row, and their slope to the next, (2, input, row)."""
+    _, _, inputs, _, wraps = drive
     for r in range(last.size):
         trial, k = place[r, 0], min(place[r, 1] + sample, last[r])
         for j in read:
@@ -140,12 +141,13 @@ def _gather(ends, inputs, place, last, sample, wraps, read):
 
 
 @compiled
-def _set_inputs(registers, first, ends, wraps, share, width, read):
+def _set_inputs(registers, first, ends, wraps, share, read):
+    """Inputs that are read into their registers, a share of a sample on; of rows that a block has room for as well."""
     for j in read:
-        for r in range(width):
+        for r in range(registers.shape[1]):
             registers[first + j, r] = ends[0, j, r] + share * ends[1, j, r]
         if wraps[j]:
-            for r in range(width):
+            for r in range(registers.shape[1]):
                 registers[first + j, r] -= math.floor(registers[first + j, r])
 
 

@@ -82,7 +82,7 @@ def check_measured(
     short = [trial for trial in trials if len(trial.time) < SHORTEST]
     if 0 < len(short) < len(trials):
         listed = ", ".join(f"{trial.name!r} ({len(trial.time)})" for trial in short)
-        too_few = f"{counted(len(short), 'trial')} with fewer than {SHORTEST} samples: {listed}"
+        too_few = f"fewer than {SHORTEST} samples in {counted(len(short), 'trial')}: {listed}"
         findings = [*findings, Finding("warning", "short trial", source, too_few, "these trials, which are excluded")]
         trials = [trial for trial in trials if len(trial.time) >= SHORTEST]
     even = [on_even_time(trial, tuple(inputs), source) for trial in trials]
@@ -104,7 +104,7 @@ def check_measured(
     seen += clock_findings(trials, rates[0], source)
     seen += [*_empty(trials, channels, source), *_constant(trials, inputs, channels, source)]
     if len(trials) == 1:
-        what = f"trial {trials[0].name!r} is the only one ({len(trials[0].time)} samples)"
+        what = f"trial {trials[0].name!r} is the only trial ({len(trials[0].time)} samples)"
         spoils = "the test on other trials: only a later part of this trial can be held out; record a second one"
         seen.append(Finding("warning", "one trial", source, what, spoils))
     return Measured(drive, observed, tuple(trial.name for trial in trials), tuple(channels), tuple(seen), source)
@@ -116,7 +116,7 @@ def _together(notes: list[Finding]) -> list[Finding]:
     for note in notes:
         alike.setdefault((note.kind, note.channel), []).append(note)
     return [
-        replace(some[0], what=some[0].what + (f"; the same in {len(some) - 1} more trials" if len(some) > 1 else ""))
+        replace(some[0], what=some[0].what + (f"; also in {len(some) - 1} more trials" if len(some) > 1 else ""))
         for some in alike.values()
     ]
 
@@ -138,7 +138,7 @@ def _empty(trials: Sequence[TrialColumns], channels: Sequence[str], source: str)
         if missing[worst]:
             rows = sum(len(trial.time) for trial in trials)
             what = f"{sum(missing.values())} of {rows} samples are missing, most in trial {worst!r} ({missing[worst]})"
-            found.append(Finding("note", "empty cells", source, what, "nothing: they are excluded", name))
+            found.append(Finding("note", "empty cells", source, what, "nothing: empty cells are excluded", name))
     return found
 
 
@@ -158,7 +158,7 @@ def _constant(
                     "Remove the channel from [observations], or correct the column.",
                 )
             if still:
-                what = f"constant in {len(still)} of {len(trials)} trials (first: {still[0]!r})"
+                what = f"is constant in {len(still)} of {len(trials)} trials (first: {still[0]!r})"
                 severity = "warning" if kind == "observed" else "note"
                 found.append(Finding(severity, "constant", source, what, "the evidence from these trials", name))
     return found

@@ -82,7 +82,7 @@ def gather_recordings(recordings: Sequence[Recording], simulation: Simulation) -
             if doubtful:
                 what = f"{doubtful} of {len(values)} samples are marked as unreliable"
                 findings[f"{name} {wanted}"] = Finding(
-                    "warning", "suspect", name, what, "everything that depends on them", wanted
+                    "warning", "suspect", name, what, "everything that depends on these samples", wanted
                 )
             numbers[wanted] = values
         parts.append(_columns(name, np.array(recording.time), numbers, inputs, channels))
@@ -105,9 +105,9 @@ def _table(path: Path) -> pd.DataFrame:
     import pandas as pd
 
     if path.suffix.lower() not in ENDINGS:
-        raise ReadError(
-            "measured data must be a CSV or Parquet table", f"{path.name} ends in {path.suffix!r}", "Export it as CSV."
-        )
+        found = f"{path.name} is a folder" if path.is_dir() else f"{path.name} ends in {path.suffix!r}"
+        remedy = "Export it as CSV, with all trials in one table and a column 'trial'."
+        raise ReadError("measured data must be one CSV or Parquet table", found, remedy)
     try:
         check_regular(path, LARGEST_TEXT_BYTES)
         if path.suffix.lower() == ".parquet":
@@ -237,7 +237,7 @@ def _report_left_out(
         )
     if absent:
         what = f"not measured: {', '.join(absent)}"
-        found.append(Finding("note", "not measured", file, what, "nothing; it follows from the other states"))
+        found.append(Finding("note", "not measured", file, what, "nothing; these states follow from the others"))
     if unused:
         listed = ", ".join(unused[:10]) + (", ..." if len(unused) > 10 else "")
         found.append(Finding("note", "unused columns", file, listed, ""))

@@ -117,9 +117,8 @@ class PythonCompiled(Compiled):
 
 @dataclass(frozen=True)
 class Divergence:
-    """The last that is known of a row."""
+    """The last that is known of a row that did not stay finite."""
 
-    row: int
     trial: int
     time: float  # of its last finite sample [s]
     state: str  # that changes fastest there, relative to its size
@@ -127,25 +126,18 @@ class Divergence:
     parameter: str  # that the state's rate depends on most there; empty where it depends on none
 
 
-def divergences(
-    compiled: Compiled, drive: Drive, rows: Rows, states: Values, ok: NDArray[np.bool_]
-) -> tuple[Divergence, ...]:
-    """Where each row that did not stay finite was last seen.
-
-    states (row, step, state): from `Compiled.run`
-    ok (row,): from `Compiled.run`
-    """
-    return tuple(_divergence(compiled, drive, rows, states, int(row)) for row in np.flatnonzero(~ok))
-
-
 def refuse_divergence(compiled: Compiled, drive: Drive, rows: Rows, states: Values, ok: NDArray[np.bool_]) -> None:
-    """Refuse a run of which a row did not stay finite."""
-    if np.all(ok):
+    """Refuse a run of which a row did not stay finite.
+
+    states (row, step, state), ok (row,): from `Compiled.run`
+    """
+    lost = np.flatnonzero(~ok)
+    if not lost.size:
         return
-    first, *others = divergences(compiled, drive, rows, states, ok)
-    more = f"; so do {len(others)} more of {len(ok)} runs" if others else ""
+    first = find_divergence(compiled, drive, rows, states, int(lost[0]))
+    more = f"; so do {lost.size - 1} more of {len(ok)} runs" if lost.size > 1 else ""
     driven = f"{first.parameter!r}, which affects its rate most, and " if first.parameter else ""
-    late = " (time is in seconds, not in milliseconds)" if drive.rate < SLOW_HZ else ""
+    late = " (the time must be in seconds, not in milliseconds)" if drive.rate < SLOW_HZ else ""
     raise SimulationError(
         "every state of a simulation must stay within 1e6",
         f"{compiled.simulation.title!r} diverges in trial {first.trial + 1} after t = {first.time:.4g} s, first in "
@@ -155,10 +147,10 @@ def refuse_divergence(compiled: Compiled, drive: Drive, rows: Rows, states: Valu
     )
 
 
-def _divergence(compiled: Compiled, drive: Drive, rows: Rows, states: Values, row: int) -> Divergence:
+def find_divergence(compiled: Compiled, drive: Drive, rows: Rows, states: Values, row: int) -> Divergence:
+    """Find where a row was last seen, and what drives it; states (row, step, state): from `Compiled.run`."""
     finite = np.isfinite(states[row]).all(axis=1)
-    last = int(np.argmin(finite)) - 1 if not finite.all() else len(finite) - 1
-    last = max(last, 0)
+    last = max(int(np.argmin([*finite, False])) - 1, 0)
     trial, sample = int(rows.trial[row]), int(rows.begin[row]) + last
     x = np.nan_to_num(states[row, last])
     t = np.array([drive.time0[trial] + sample / drive.rate])
@@ -173,13 +165,12 @@ def _divergence(compiled: Compiled, drive: Drive, rows: Rows, states: Values, ro
         rates = compiled.rates(t, x[None], u, values, late)[0]
         speed = np.abs(np.nan_to_num(rates, nan=np.inf, posinf=np.inf)) / (1e-6 + np.abs(x))
     fastest = int(np.argmax(speed if speed.max() > 0 else ~np.isfinite(states[row, last])))
-    moved = np.repeat(values[None], len(values), axis=0) * (1 + _NUDGE * np.eye(len(values)))
+    parameter = ""
     if len(values):
-        alike = [np.repeat(each, len(values), axis=0) for each in (t, x[None], u, late)]
+        moved = values * (1 + _NUDGE * np.eye(len(values)))
+        times, states_there, inputs, delayed = (np.repeat(each, len(values), axis=0) for each in (t, x[None], u, late))
         with np.errstate(all="ignore"):
-            change = np.abs(compiled.rates(alike[0], alike[1], alike[2], moved, alike[3])[:, fastest] - rates[fastest])
-        change = np.nan_to_num(change, nan=0.0, posinf=0.0)
-    else:
-        change = np.zeros(1)
-    parameter = compiled.parameters[int(np.argmax(change))] if change.max() > 0 else ""
-    return Divergence(row, trial, float(t[0]), compiled.states[fastest], float(x[fastest]), parameter)
+            change = compiled.rates(times, states_there, inputs, moved, delayed)[:, fastest] - rates[fastest]
+        change = np.nan_to_num(np.abs(change), nan=0.0, posinf=0.0)
+        parameter = compiled.parameters[int(np.argmax(change))] if change.max() > 0 else ""
+    return Divergence(trial, float(t[0]), compiled.states[fastest], float(x[fastest]), parameter)

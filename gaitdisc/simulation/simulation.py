@@ -14,7 +14,7 @@ from gaitdisc.words import as_html
 
 @dataclass(frozen=True)
 class Simulation(Parts):
-    """A dynamical system as in a simulation file; immutable, and checked when it is created.
+    """A dynamical system, as a simulation file describes it. It is immutable, and checked when it is created.
 
     Parameters
     ----------
@@ -214,7 +214,7 @@ class Simulation(Parts):
         return replace(self, observations=tuple(kept.items()))
 
     def observing(self, names: Sequence[str]) -> Simulation:
-        """Simulation with some of its observations only, in the order requested.
+        """Simulation with only some of its observations, in the order requested.
 
         Parameters
         ----------

@@ -37,7 +37,7 @@ _FOLDER = Path(__file__).parent / "systems"
 
 
 def read_simulation(path: Path | str) -> Simulation:
-    r"""Simulation of a TOML file.
+    r"""Read a simulation from a TOML file.
 
     Parameters
     ----------
@@ -273,7 +273,7 @@ def list_bundled() -> tuple[str, ...]:
 
 
 def bundled(name: str) -> Simulation:
-    """Simulation that is included in the package.
+    """Return a simulation that is included in the package.
 
     Parameters
     ----------

@@ -211,14 +211,14 @@ def check_same(one: pd.Index, other: pd.Index, words: str) -> None:
     if len(unlike) or one.has_duplicates or other.has_duplicates:
         double = next((index for index in (one, other) if index.has_duplicates), one)
         found = (
-            f"{unlike[0]!r} is in only one of them"
+            f"{unlike[0]!r} is in only one of the two"
             if len(unlike)
             else f"{double[double.duplicated()][0]!r} occurs twice"
         )
         raise ShapeError(
             f"both tables must have the same {words}, each once",
             found,
-            "Remove participants who were measured only once from both tables (a missing number is NaN), and make "
+            "Remove participants who are in one table only (write NaN for a missing number), and make "
             'the participant the index: table.set_index("participant").',
         )
 

@@ -62,7 +62,7 @@ def test_frozen_channels_are_compared_only_when_asked_for():
     frozen = Finding("warning", "frozen", "a.mot", "one value for 9 s", "", "ankle_angle_r")
     walks = replace(summary("a"), findings=(frozen,)), summary("b", seed=1)
     assert [c.name for c in common_curves(walks).channels] == ["hip_flexion_r"]
-    assert "ankle_angle_r (frozen):" in common_curves(walks).findings[0].what
+    assert "ankle_angle_r (frozen);" in common_curves(walks).findings[0].what
     assert [c.name for c in common_curves(walks, ("ankle_angle_r",)).channels] == ["ankle_angle_r"]
 
 

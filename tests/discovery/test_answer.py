@@ -207,7 +207,7 @@ def test_where_only_numbers_are_a_little_off_nothing_is_named_and_they_are_corre
         assert moved[name].found.value == pytest.approx(true, rel=0.02)
         assert augmented.values()[name] == moved[name].found.value
     assert augmented.effects == ()
-    assert "Changed within their bounds" in found.sentence
+    assert "Parameters that changed within their bounds" in found.sentence
 
 
 def test_numbers_that_are_a_little_off_do_not_spoil_the_name_and_value_of_what_is_missing():

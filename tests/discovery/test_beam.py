@@ -85,7 +85,7 @@ def near_runs_of_one_length(case, scale):
     from gaitdisc.discovery.scored_model import fit_model
 
     shooting = case.cut_learned_runs(case.longest).with_noise(white_noise(scale.spread))
-    return fit_model(shooting, case.search.base, (), case.guess.starts(shooting.segments)).fit
+    return fit_model(shooting, case.search.base, (), shooting.segments.starts(case.guess)).fit
 
 
 def test_on_longer_runs_the_simulation_as_read_errs_by_the_spread_at_most():

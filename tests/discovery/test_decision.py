@@ -30,7 +30,7 @@ from gaitdisc.simulation.simulation import Term
 
 def test_what_longer_runs_have_no_use_for_is_not_named(case, as_read, cubic, labelled):
     shooting = case.shooting(case.segments(case.learned, 0.4)).with_noise(as_read.noise)
-    starts = case.guess.starts(shooting.segments)
+    starts = shooting.segments.starts(case.guess)
     read, both = (
         score(fit_model(shooting, case.search.base, parts, starts))
         for parts in ((), (Part(cubic, {"factor": -14.0}), Part(labelled["viscous_damping@load"], {"factor": 0.0})))

@@ -233,7 +233,7 @@ def test_a_spring_that_the_held_out_trial_never_reaches_is_proven_on_another_and
     assert found.effects[0].estimates["engagement"].value == pytest.approx(0.7, abs=0.03)
     assert found.held_out.after < 0.5 * found.held_out.before
     assert says(progress[0], "fitting the simulation")
-    assert any("weighing" in line and "explanations" in line for line in progress)
+    assert any("testing errors of the inputs" in line for line in progress)
     assert any(says(line, "held-out data never reach", "other data") for line in progress)
     note = next(finding for finding in found.findings if finding.kind == "held out")
     assert says(note.what, "trial 4", "trial 3")
@@ -268,7 +268,7 @@ def test_where_the_last_quarter_of_one_trial_alone_shows_a_gap_the_first_is_held
     assert _named(found) == ("wrong_parameter", [("wrong_parameter", "tau")])
     assert found.effects[0].estimates["value"].low < 400 < found.effects[0].estimates["value"].high
     note = next(finding for finding in found.findings if finding.kind == "held out")
-    assert says(note.what, "last quarter shows a gap that the rest does not show", "first quarter is held out")
+    assert says(note.what, "last quarter shows a gap that the training data do not show", "first quarter is held out")
     assert found.held_out.alpha == 0.025  # two splits share the rate of false finds
 
 

@@ -27,7 +27,7 @@ def _guess(observed, simulation=None):
 
 def test_a_measured_state_and_its_rate_are_found():
     noise = np.random.default_rng(0).normal(0, 0.01, len(T))
-    states = _guess((X + noise)[None, :, None]).states[0]
+    states = _guess((X + noise)[None, :, None])[0]
     np.testing.assert_allclose(states[:, 0], X, atol=0.05)
     np.testing.assert_allclose(states[10:-10, 1], V[10:-10], atol=0.25)
 
@@ -35,12 +35,12 @@ def test_a_measured_state_and_its_rate_are_found():
 def test_samples_that_are_missing_are_bridged():
     seen = X.copy()
     seen[100:103] = np.nan
-    np.testing.assert_allclose(_guess(seen[None, :, None]).states[0, 95:110, 0], X[95:110], atol=0.05)
+    np.testing.assert_allclose(_guess(seen[None, :, None])[0, 95:110, 0], X[95:110], atol=0.05)
 
 
 def test_beyond_the_end_of_a_trial_there_is_no_state():
     two = np.stack([X, np.where(T < 4, X, np.nan)])[..., None]
-    states = _guess(two).states
+    states = _guess(two)
     assert np.isfinite(states[1, :200]).all()
     assert np.isnan(states[1, 200:]).all()
 
@@ -50,17 +50,17 @@ def test_a_state_that_is_not_measured_follows_its_equation_where_it_forgets_its_
     text = MASS.replace("[inputs.push]", "[states.hidden]\ninitial = 0.7\n[inputs.push]")
     text = text.replace("[equations]", f'[equations]\nhidden = "{rate}"')
     text = text.replace('[observations]\nx = "x"', '[observations.x]\nexpression = "x"\nsd = 0.01')
-    states = _guess(X[None, :, None], parse_simulation(text, "three.toml")).states
+    states = _guess(X[None, :, None], parse_simulation(text, "three.toml"))
     np.testing.assert_allclose(states[0, :, 2], expected, atol=1e-6)
 
 
 def test_starts_are_the_states_at_each_first_sample_and_a_run_replaces_them():
     guess = _guess(X[None, :, None])
     segments = Segments(np.array([0, 0]), np.array([0, 50]), 50)
-    np.testing.assert_array_equal(guess.starts(segments), guess.states[0, [0, 50]])
-    better = guess.with_run(segments, np.ones((2, 50, 2)))
-    assert (better.states[0, :100] == 1).all()
-    np.testing.assert_array_equal(better.states[0, 100:], guess.states[0, 100:])
+    np.testing.assert_array_equal(segments.starts(guess), guess[0, [0, 50]])
+    better = segments.put(guess, np.ones((2, 50, 2)))
+    assert (better[0, :100] == 1).all()
+    np.testing.assert_array_equal(better[0, 100:], guess[0, 100:])
 
 
 @pytest.mark.parametrize(
@@ -77,8 +77,8 @@ def test_starts_are_the_states_at_each_first_sample_and_a_run_replaces_them():
 )
 def test_one_record_through_any_map_gives_the_same_states(text, seen):
     noisy = X + np.random.default_rng(0).normal(0, 0.01, len(T))
-    plain = _guess(noisy[None, :, None]).states
-    through = _guess(seen(noisy)[None, :, None], mass().with_observation("x", text)).states
+    plain = _guess(noisy[None, :, None])
+    through = _guess(seen(noisy)[None, :, None], mass().with_observation("x", text))
     np.testing.assert_allclose(through, plain, rtol=0, atol=1e-6)
 
 
@@ -87,7 +87,7 @@ def test_one_record_through_any_map_gives_the_same_states(text, seen):
     [("sin(x)", np.sin(X), 0.01), ("exp(2*x)", np.exp(2 * X), 0.06), ("x + 0.05*v", X + 0.05 * V, 0.04)],
 )
 def test_a_curved_map_and_one_that_sees_the_rate_beside_are_solved(text, seen, atol):
-    states = _guess(seen[None, :, None], mass().with_observation("x", text)).states[0, 10:-10]
+    states = _guess(seen[None, :, None], mass().with_observation("x", text))[0, 10:-10]
     np.testing.assert_allclose(states[:, 0], X[10:-10], atol=atol)
     np.testing.assert_allclose(states[:, 1], V[10:-10], atol=6 * atol)
 
@@ -97,13 +97,13 @@ def test_a_product_with_a_state_that_stands_still_is_bridged():
     mixed = mixed.with_observation("x", "x*gain").with_observation("y", "gain")
     drive = Drive.of([0.1 * T[:, None]], RATE)
     measured = Measured(drive, np.column_stack([3 * X, 3 + 0 * X])[None], ("1",), ("x", "y"))
-    states = guess_states(mixed, measured, PERIOD, {"x": "v"}).states[0]
+    states = guess_states(mixed, measured, PERIOD, {"x": "v"})[0]
     np.testing.assert_allclose(states[10:-10, 0], X[10:-10], atol=2e-3)
     np.testing.assert_allclose(states[10:-10, 2], 3.0, atol=1e-6)
 
 
 def test_what_the_channels_say_only_together_stays_near_where_it_began():
-    states = _guess((X + 2 * V)[None, :, None], mass().with_observation("x", "x + 2*v")).states[0]
+    states = _guess((X + 2 * V)[None, :, None], mass().with_observation("x", "x + 2*v"))[0]
     assert np.isfinite(states).all()
     np.testing.assert_allclose((states @ [1, 2])[10:-10], (X + 2 * V)[10:-10], atol=0.1)
 

@@ -112,7 +112,7 @@ def measured():
 def _fitted_mass(simulation, measured, parts=()):
     case = set_up_case(simulation, measured)
     shooting = case.shooting(case.segments(case.learned)).with_noise(white_noise(np.array([NOISE])))
-    return fit_model(shooting, simulation, parts, case.guess.starts(shooting.segments))
+    return fit_model(shooting, simulation, parts, shooting.segments.starts(case.guess))
 
 
 def test_half_the_width_is_two_standard_deviations():
@@ -154,6 +154,6 @@ def test_only_a_wrong_parameter_leaves_its_bounds(measured):
 def test_few_data_leave_a_number_where_the_file_has_it(measured):
     case = set_up_case(bounded(k=22.0, low=21.9, high=22.1), measured)
     shooting = case.shooting(case.segments((0,))).with_noise(white_noise(np.array([50.0])))
-    model = fit_model(shooting, case.search.base, (), case.guess.starts(shooting.segments))
+    model = fit_model(shooting, case.search.base, (), shooting.segments.starts(case.guess))
     assert model.fit.values[1] == pytest.approx(22.0, abs=1e-3)
     assert np.sqrt(model.fit.covariance[0, 0]) == pytest.approx(0.05, rel=0.01)

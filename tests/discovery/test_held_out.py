@@ -5,7 +5,6 @@ import pytest
 from hidden_in_a_mass import Experiment, mass, neuron, record, with_load
 
 from gaitdisc.discovery.case import set_up_case
-from gaitdisc.discovery.first_states import StateGuess
 from gaitdisc.discovery.held_out import (
     Proof,
     gap_size,
@@ -82,10 +81,10 @@ def test_the_past_of_what_comes_late_is_the_runs_own():
     shooting = case.shooting(case.segments(case.learned))
     late = next(one for one in case.search.candidates if one.pieces == ("delay(x, _d)",))
     part = Part(late, {"factor": -4.0, "d": 0.21})
-    starts = case.guess.starts(shooting.segments)
+    starts = shooting.segments.starts(case.guess)
     true = score(fit_model(shooting, case.search.base, (part,), starts))
     assert true.noise.size[0] < 0.03 * case.measured.observed.std()
-    rough = replace(case, guess=StateGuess(case.guess.states + 0.3))
+    rough = replace(case, guess=case.guess + 0.3)
     wide = case.shooting(case.segments(case.learned, 3.0)).with_noise(true.noise)
     run = run_trials(rough, true, case.held_out, replace(true, shooting=wide))
     assert run.fit.residual.std() < 1.3 * true.noise.size[0]
@@ -117,5 +116,5 @@ def test_what_is_held_out_in_place_of_what_is_noted(case):
     other = replace(case, learned=case.held_out, held_out=case.learned[:1])
     note = noted(case, other).measured.findings[-1]
     blind, instead = (case.measured.trials[one.held_out[0]] for one in (case, other))
-    assert f"trial {blind} runs alike with and without" in note.what and f"trial {instead} is held out" in note.what
-    assert f"trial {blind} runs alike with and without" in noting_alike(case).measured.findings[-1].what
+    assert f"trial {blind} has the same simulated motion" in note.what and f"trial {instead} is held out" in note.what
+    assert f"trial {blind} has the same simulated motion" in noting_alike(case).measured.findings[-1].what

@@ -38,7 +38,7 @@ def test_the_same_work_continues_where_it_was_stopped_last(tmp_path):
         raise KeyboardInterrupt  # early, with nothing done again
     results, computed, lines = fit(tmp_path, (1, 2, 7, 8))
     assert results == [1 / 3, 2 / 3, 7 / 3, 8 / 3] and computed == [8]
-    assert lines == ["continuing an earlier run: 3 fits kept"]
+    assert lines == ["continuing an earlier run: 3 fits reused"]
     assert list(tmp_path.iterdir()) == []
 
 

@@ -57,7 +57,7 @@ WRONG = {
     ),
     "inputs": (
         lambda m: with_inputs(m, np.zeros((2, 200, 3))),
-        r"needs 1 inputs: push; walk.csv has 3. Give one column for each, in this order.",
+        r"needs 1 inputs: push; walk.csv has 3. Give one column for each input, in this order.",
     ),
     "input gap": (
         gap_in_push,

@@ -102,7 +102,7 @@ def test_it_is_left_out_and_said_in_the_answer_and_the_report(cubic, tmp_path):
     assert (odd.severity, odd.channel) == ("warning", "x")
     assert says(odd.what, "'2'", "with this correction")
     assert says(found.sentence, "'2'", "push were reversed")
-    assert found.sentence.endswith("it was left out.")
+    assert found.sentence.endswith("This trial was left out.")
     assert found.runs.names == ("1", "3", "4")
     assert "odd trial" in save_discovery(found, tmp_path).read_text()
     assert says(write_discovery_report(found, tmp_path).read_text(), "push were reversed")
@@ -163,7 +163,7 @@ def test_a_trial_that_goes_with_no_explanation_of_the_others_is_left_out_and_the
     found, _ = discover(mass(), measured)
     assert [(one.name, one.place) for one in found.effects] == [("cubic_stiffness", "load")]
     assert says(found.sentence, "rial '2'", "explanation", "left out")
-    assert "it was left out" in found.sentence
+    assert "This trial was left out" in found.sentence
 
 
 def test_trials_that_were_recorded_alike_are_all_kept_after_one_search_at_most(monkeypatch):

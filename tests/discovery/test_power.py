@@ -33,7 +33,7 @@ def test_the_sentence_says_where_the_sizes_end():
     assert counted(10, 10, 10).sentence == f"{found} even with a damping of 1.0 N s/m."
     assert counted(0, 1, 9).sentence == f"{seldom} with a damping of up to 4.0 N s/m."
     assert counted(0, 0, 0, instead="gravity@load").sentence == (
-        f"{seldom} with a damping of up to 4.0 N s/m; most records with 4.0 N s/m are answered with gravity@load."
+        f"{seldom} with a damping of up to 4.0 N s/m; in most records with 4.0 N s/m the answer is gravity@load."
     )
 
 

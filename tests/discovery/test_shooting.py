@@ -17,7 +17,7 @@ def _shooting(seed=0, noise=0.02, value=24.0):
     segments = case.segments((0, 1, 2))
     shooting = case.shooting(segments)
     size = max(noise, 1e-6) * np.nanstd(case.measured.observed)
-    return shooting.with_noise(white_noise(np.array([size]))), case.guess.starts(segments)
+    return shooting.with_noise(white_noise(np.array([size]))), segments.starts(case.guess)
 
 
 def test_a_parameter_that_is_wrong_in_the_file_is_found_without_noise():
@@ -41,7 +41,7 @@ def test_a_segment_that_began_on_the_wrong_side_of_a_threshold_is_begun_elsewher
     segments = case.segments(case.learned)
     size = white_noise(0.01 * np.nanstd(case.measured.observed, axis=(0, 1)))
     shooting, machine = case.shooting(segments).with_noise(size), compile_simulation(neuron())
-    fit = shooting.fitted(machine, ("b",), machine.defaults, case.guess.starts(segments), 30)
+    fit = shooting.fitted(machine, ("b",), machine.defaults, segments.starts(case.guess), 30)
     assert (fit.misfits < 1.6 * fit.white.shape[1]).all()
     assert fit.values[machine.parameters.index("b")] == pytest.approx(1.0, abs=1e-3)
 
@@ -120,7 +120,7 @@ def _filtered(stated):
     simulation = mass().with_sensor(Sensor("x", lowpass=0.7)) if stated else mass()
     case = set_up_case(simulation, record(mass().with_values({"k": 31.0, "c": 1.4}), 5, FILTERED))
     segments = case.segments((0, 1, 2))
-    return case.shooting(segments), case.guess.starts(segments)
+    return case.shooting(segments), segments.starts(case.guess)
 
 
 @pytest.mark.parametrize("stated", [True, False])

@@ -10,7 +10,7 @@ from gaitdisc.discovery.catalogue import read_shapes
 from gaitdisc.discovery.result import Correction, Estimate, Explanation, FoundEffect, GapSize, Whereabouts
 from gaitdisc.discovery.scored_model import Part
 from gaitdisc.discovery.wording import write_sentence
-from gaitdisc.simulation.simulation_file import bundled
+from gaitdisc.simulation.simulation_file import bundled, parse_simulation
 
 SHAPE = next(one for one in read_shapes() if one.name == "one_sided_spring")
 WHERE = ("missing_physics", "port", "ankle_moment", "one_sided_spring", ("max(0, theta - _x0)",))
@@ -34,6 +34,19 @@ def test_a_coupling_says_to_what():
     part = Candidate("missing_physics", "equation", "v", "linear_coupling", ("x",), means="a linear coupling", role="x")
     said = sentence(mass(), (part,), effects=(effect,), where=())
     assert says(said, "coupling", "equation", "0.2 1/s^2 (95 % 0.1-0.3)")
+
+
+@pytest.mark.parametrize(
+    ("unit", "words"), [("cm^3/s", "a term proportional to \N{MINUS SIGN}h_2"), ("N", "a linear spring")]
+)
+def test_where_units_are_not_mechanical_an_effect_is_named_by_its_form(unit, words):
+    tank = f'[states.h_2]\nunit = "cm"\n[ports.leak]\nunit = "{unit}"\n[equations]\nh_2 = "leak"\n'
+    effect = FoundEffect("port", "leak", "linear_stiffness", "-0.9*(h_2)", {"stiffness": Estimate(0.9, 0.8, 1.0, "")})
+    part = Candidate(
+        "missing_physics", "port", "leak", "linear_stiffness", ("(h_2)",), means="a linear spring", role="h_2"
+    )
+    said = sentence(parse_simulation(tank), (part,), effects=(effect,), where=())
+    assert says(said, f"lacks {words} at the leak port: 0.9 (95 % 0.8-1.0)")
 
 
 @pytest.mark.parametrize(

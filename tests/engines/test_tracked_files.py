@@ -165,7 +165,7 @@ def test_files_that_do_not_fit_are_refused_before_a_model_is_loaded(tmp_path):
     for given, words in {
         (tmp_path / "leg.xml", tmp_path / "grf.xml"): "leg.xml.*--external-loads",
         (model, None): "Add --external-loads grf.xml",
-        (model, tmp_path / "grf.xml"): "there is none at .*grf.xml",
+        (model, tmp_path / "grf.xml"): "there is no file .*grf.xml",
         (model, tmp_path / "grf.mot"): r"grf\.mot .*\.xml",
     }.items():
         with pytest.raises(GaitdiscError, match=words):

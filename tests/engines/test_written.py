@@ -46,7 +46,7 @@ def test_a_form_that_is_not_the_expression_is_not_written(pendulum):
     wrong = term("linear_stiffness", "-4*pivot*pivot_speed**2 - pivot")
     found = write_model(model, draft(model).with_effect(wrong))
     assert found.text == PENDULUM
-    assert "would differ by" in found.notes[0]
+    assert "would change the accelerations by a fraction of" in found.notes[0]
 
 
 @pytest.mark.parametrize(("low", "high"), [(-0.7, 0.7), (-0.2, 0.5), (-1000.0, 0.5)])

@@ -73,7 +73,7 @@ def test_times_may_be_a_variable(visual3d):
         ({"RKNEE_ANGLE": "knee_angle_r @ 100 Hz"}, r"must have one column for 'knee_angle_r', .* its shape is 200 x 3"),
         ({"RHEE": "RHEE @ 100 Hz"}, r"the marker 'RHEE' of 'RHEE' must have a unit"),
         ({"RHEE(:,1)": "heel [furlong] @ 100 Hz"}, r"must be in the list of units; found 'furlong'"),
-        ({"FP1(:,3)": "ground_force_r_vy [N] @ TIME"}, r"it has 2000 samples, 'TIME' has 200 times"),
+        ({"FP1(:,3)": "ground_force_r_vy [N] @ TIME"}, r"has 2000 samples, but 'TIME' has 200 times"),
         ({"FP1(:,3)": "ground_force_r_vy [N] @ 0 Hz"}, r"must have a rate between 0.01 Hz and 1 MHz.* gives 0 Hz"),
         ({"FP1(:,3)": "ground_force_r_vy [N] @ FRAMERATE"}, "'FRAMERATE'.*the nearest is 'FRAME_RATE'"),
         ({"RKNEE_ANGLE(:,1)": "knee_angle_r [rad] @ 100 Hz"}, r"rad"),

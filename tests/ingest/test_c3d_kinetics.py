@@ -87,7 +87,7 @@ def test_a_negative_push_off_is_as_it_should_be():
 def test_somebody_who_stands_is_taken_as_plug_in_gait_and_said_so():
     (values, _), findings = house_kinetics(_kinetics(ankle=0.1), NO_PLATE, None, "a.c3d")
     np.testing.assert_array_equal(values[:, 3], -0.1 * PUSH_OFF)
-    assert says(findings[-1].what, "as in Plug-in Gait")
+    assert says(findings[-1].what, "that of Plug-in Gait")
     assert findings[-1].spoils
 
 

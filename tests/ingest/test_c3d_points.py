@@ -138,7 +138,7 @@ def test_outputs_to_which_one_model_adds_a_word_are_known_by_their_own_labels():
     assert [names[3], names[6], names[9]] == ["LAbsAnkleAngle.x", "LPelvisAngles.x", "LPelvisAngles_TOR.x"]
     assert streams["moments"][1][0].name == "knee_angle_l_moment"
     (said,) = [finding for finding in findings if finding.kind == "model suffix"]
-    assert said.severity == "note" and "LKneeAngles_M" in said.what and "_M; read as LKneeAngles" in said.what
+    assert said.severity == "note" and "LKneeAngles_M" in said.what and "_M and are read as LKneeAngles" in said.what
 
 
 @pytest.mark.parametrize("labels", [("LKneeAngles", "LKneeAngles_M"), ("LKneeAngles_M", "LHipAngles_F")])
@@ -261,7 +261,7 @@ def test_a_channel_without_a_scale_is_missing_and_named(real, reader, number):
     trial = read_trial(real, reader=reader)
     (said,) = [f for f in trial.findings if f.kind == "scale"]
     assert said.severity == "warning" and said.file == "walk.c3d"
-    assert said.what.startswith(f"ANALOG:SCALE of channel #{place + 1} ") and f"is {number:g}; treated" in said.what
+    assert said.what.startswith(f"ANALOG:SCALE of channel #{place + 1} ") and f"is {number:g}; these" in said.what
     emg, before = trial.stream("emg").values, sound.stream("emg").values
     gone = np.isnan(emg).all(axis=0)
     assert gone.sum() == 1

@@ -81,7 +81,7 @@ def test_an_unknown_unit_and_one_of_another_quantity_are_refused():
         column_in_unit("F", name_channel("ground_force_r_vy"), "Nn", "a.csv")
     with pytest.raises(UnitError, match=r"'k'.*knee_angle_r.*'mm'"):
         column_in_unit("k", name_channel("knee_angle_r"), "mm", "a.csv")
-    with pytest.raises(UnitError, match=r"'skin'.*found 'K'; temperatures must be in degC.*by an offset"):
+    with pytest.raises(UnitError, match=r"'skin'.*found 'K'; temperatures must be in degC.*have an offset"):
         column_in_unit("skin", name_channel("skin"), "K", "a.csv")
 
 

@@ -140,12 +140,12 @@ def test_a_plate_that_nobody_stepped_on():
         ({"kind": 7}, "but only types 1 to 4 are known"),
         ({"kind": 4}, "is of type 4 and has no calibration matrix"),
         ({"kind": 4, "CAL_MATRIX": np.full((6, 6, 1), np.nan)}, "has a calibration matrix that is not finite"),
-        ({"CHANNEL": np.array([[1], [2], [3], [4], [5], [60]])}, "names channels 1, 2, 3, 4, 5, 60 of 6"),
+        ({"CHANNEL": np.array([[1], [2], [3], [4], [5], [60]])}, "channels 1, 2, 3, 4, 5, 60, but the file has 6"),
         ({"CORNERS": np.zeros((3, 4, 1))}, "has corners that span no surface"),
         ({"CORNERS": np.zeros((3, 2, 1))}, "has no corners or no origin"),
         ({"ORIGIN": np.full((3, 1), np.nan)}, "has an origin that is not finite"),
         ({"units": ["ADC"] * 6}, "has channel #1 in 'ADC'"),
-        ({"units": [""] * 6}, "states no units; read as N and N mm"),
+        ({"units": [""] * 6}, "states no units; N and N mm are assumed"),
     ],
 )
 def test_what_cannot_be_used_is_reported(changes, words):

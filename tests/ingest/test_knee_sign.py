@@ -90,7 +90,7 @@ def test_speed_and_generalised_moment_go_with_the_knee():
     turned, (finding,) = with_flexion_positive(streams)
     np.testing.assert_array_equal(turned["signals"].values, -speeds.values)
     np.testing.assert_array_equal(turned["moments"].values, -moments.values)
-    assert finding.what.endswith("; with it knee_angle_r/speed, knee_angle_r_moment")
+    assert finding.what.endswith(", as are the signs of knee_angle_r/speed, knee_angle_r_moment")
     of_table = {**streams, "moments": replace(moments, source=Source(reader="csv"))}  # may be of another convention
     np.testing.assert_array_equal(with_flexion_positive(of_table)[0]["moments"].values, moments.values)
 

@@ -43,7 +43,7 @@ def test_a_folder_and_an_empty_file_are_refused(tmp_path):
         read_raw(tmp_path)
     with pytest.raises(ReadError, match=r"empty\.mot.*\(2 bytes\)"):
         read_raw(tmp_path / "empty.mot")
-    with pytest.raises(ReadError, match="no such folder"):
+    with pytest.raises(ReadError, match="folder does not exist"):
         read_raw(tmp_path / "no" / "a.mot")
 
 

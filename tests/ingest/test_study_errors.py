@@ -74,7 +74,7 @@ def test_slips_are_named(tmp_path, old, new, message):
 def test_what_else_is_wrong_is_counted(tmp_path):
     path = tmp_path / "study.toml"
     path.write_text(TEXT.replace("6.0", "-6.0").replace("auto", "x").replace('"t"', "1"))
-    with pytest.raises(SchemaError, match=r"line 1.*\(2.*correct after this"):
+    with pytest.raises(SchemaError, match=r"line 1.*\(Further settings to correct: 2"):
         load_study(path)
 
 
@@ -162,7 +162,7 @@ def test_words_and_numbers_of_visits_are_no_dates():
         ({"x": "emg_sol_r [mVs]"}, "be in the list of units; found 'mVs', the nearest is 'mV'"),
         ({"x": "emg_solr"}, r"found 'emg_solr'\. Did you mean 'emg_sol_r'\?"),
         ({"x": " [V]"}, r"the name of a channel; found ' \[V\]'"),
-        ({"x": "emg_sol_r", "y": "emg_sol_r [V]"}, "'x' and 'y' both mean 'emg_sol_r'"),
+        ({"x": "emg_sol_r", "y": "emg_sol_r [V]"}, "'x' and 'y' both name 'emg_sol_r'"),
     ],
 )
 def test_channel_maps(channels, message):

@@ -71,7 +71,7 @@ def test_a_table_of_events_gives_contacts_and_foot_offs(tmp_path, text, times):
             UnitError,
             r"column 'foo' must have a unit; neither .*\. Write 'foo \[unit\]' in the header",
         ),
-        ("time,Sol_r\n0,1\n1,2\n", UnitError, 'it seems to be emg_sol_r.*"Sol_r" = "emg_sol_r \\[unit\\]"'),
+        ("time,Sol_r\n0,1\n1,2\n", UnitError, 'the column seems to be emg_sol_r.*"Sol_r" = "emg_sol_r \\[unit\\]"'),
         ("time,foo [furlong]\n0,1\n1,2\n", UnitError, "column 'foo \\[furlong\\]' must be in the list of units"),
         ("knee_angle_r,hip\n0,1\n", ReadError, r"must have a column 'time \[s\]' .*; line 1 is 'knee_angle_r,hip'"),
         ("time [h],knee_angle_r\n0,1\n", ReadError, r"must have a column 'time \[s\]'"),
@@ -101,9 +101,9 @@ def test_radians_called_degrees_are_refused(tmp_path):
 def test_bad_parquet_is_refused(tmp_path):
     path = tmp_path / "walk.parquet"
     for frame, words in [
-        (pd.DataFrame({"time": [0.0, 1.0], "knee_angle_r": ["a", "b"]}), "column 'knee_angle_r' has others"),
+        (pd.DataFrame({"time": [0.0, 1.0], "knee_angle_r": ["a", "b"]}), "column 'knee_angle_r' contains"),
         (pd.DataFrame({"knee_angle_r": [0.0, 1.0]}), r"'time \[s\]'.*columns are knee_angle_r"),
-        (pd.DataFrame({"time": [0.0, 1.0], "knee_angle_r": [1, np.inf]}), "'knee_angle_r' contains infinite"),
+        (pd.DataFrame({"time": [0.0, 1.0], "knee_angle_r": [1, np.inf]}), "'knee_angle_r' contains infinite values"),
         (pd.DataFrame({"time": [], "knee_angle_r": []}, dtype=float), "no row"),
     ]:
         frame.to_parquet(path)

@@ -116,8 +116,8 @@ def test_a_width_is_taken_from_both_markers_where_nobody_measured_it():
     plain = with_methods("helen_hayes", knee="chord", ankle="chord")
     found = calibrate_body(static_of(HELEN_HAYES), plain, BodyMeasures(marker_diameter_m=2 * RADIUS))
     widths = [finding.what for finding in found.findings if finding.kind == "width"]
-    assert f"width of knee_r {KNEE_WIDTH * 1000:.0f} mm from its two markers" in widths
-    assert f"width of ankle_l {ANKLE_WIDTH * 1000:.0f} mm from its two markers" in widths
+    assert f"the width of knee_r is {KNEE_WIDTH * 1000:.0f} mm between its two markers" in widths
+    assert f"the width of ankle_l is {ANKLE_WIDTH * 1000:.0f} mm between its two markers" in widths
     np.testing.assert_allclose(found.points["shank_r"]["ankle_r"], [0, -SHANK, 0], atol=1e-9)
 
 
@@ -238,7 +238,7 @@ def test_known_hips_are_found_whatever_the_landmarks_say(name):
     for joint, place in true.items():
         np.testing.assert_allclose(hips[joint], place, atol=1e-5)
     assert [finding.kind for finding in findings] == ["functional hip"] * 2
-    assert says(findings[0].what, "21 mm", "by the landmarks")
+    assert says(findings[0].what, "21 mm", "of the landmarks")
 
 
 @pytest.mark.parametrize(("skin_mm", "within_mm"), [(1.0, 3.0), (5.0, 13.0)])

@@ -84,7 +84,7 @@ def test_a_file_that_is_not_there(tmp_path):
 @pytest.mark.parametrize(
     ("change", "words"),
     [
-        (('hip = "harrington"', 'hip = "bell"'), "takes harrington, davis; ours.toml: found 'bell'"),
+        (('hip = "harrington"', 'hip = "bell"'), "hip must be one of harrington, davis; ours.toml: found 'bell'"),
         (('hip = "harrington"', ""), r"hip, knee, ankle; ours\.toml has no hip"),
         (("[tracked]", "[trackd]"), "ours.toml: found 'trackd', the nearest is 'tracked'"),
         (('heel = "{side} heel"', ""), "asis,.* ours.toml has no heel"),
@@ -99,7 +99,10 @@ def test_a_file_that_is_not_there(tmp_path):
         (('"{side} heel", ', ""), r"ours\.toml has 2: ankle,"),
         (('foot = ["ankle"', 'foot = ["knee"'), r"joint centre above it \(ankle\); ours\.toml names 'knee'"),
         (('foot = ["ankle",', 'foot = ["ankle" '), r"a marker set must be a TOML file; ours\.toml: "),
-        (("[joint_centres]", '[axes]\nfoot = "tilted"\n[joint_centres]'), "takes flat, as placed; .* found 'tilted'"),
+        (
+            ("[joint_centres]", '[axes]\nfoot = "tilted"\n[joint_centres]'),
+            "foot must be one of flat, as placed; .* found 'tilted'",
+        ),
         (('shank = ["knee", "{side} shank", "{side} ankle"]', "shank = 5"), r"a list of names; ours\.toml: found 5"),
         (("[landmarks]", "aliases = 3\n[landmarks]"), r"a table; ours\.toml: found 3"),
     ],

@@ -104,7 +104,7 @@ def test_forward_is_along_a_straight_path(velocity):
     assert np.degrees(np.arccos(np.clip(frame.rotation[:, :, 0] @ forward, -1, 1))).max() < 1.0  # of sway
     np.testing.assert_allclose(frame.rotation[:, :, 2], np.cross(frame.rotation[:, :, 0], frame.rotation[:, :, 1]))
     np.testing.assert_allclose(np.linalg.det(frame.rotation), 1)
-    assert says(frame.how, "forward along the")
+    assert says(frame.how, "forward is along the")
 
 
 def test_gaps_of_the_pelvis_do_not_turn_forward():

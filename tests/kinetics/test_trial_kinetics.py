@@ -159,7 +159,7 @@ def test_a_wrong_mass_shows_as_a_mean():
         paths[side] = FootPath(side, TIME, np.add(ankle, [-0.05, -0.07, 0]), np.add(ankle, [0.13, -0.06, 0]))
     finding = force_balance(legs(poses, paths, wrong, RAW), loads, UP, wrong).finding("a.c3d")
     assert finding.severity == "warning"
-    assert "mean -20.0 %" in finding.what and "check body mass" in finding.spoils
+    assert "mean -20.0 %" in finding.what and "check the body mass" in finding.spoils
 
 
 def test_few_frames_tell_nothing():

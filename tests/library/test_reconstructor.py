@@ -52,7 +52,7 @@ def test_named_readings_are_found_by_name_and_recordings_at_their_rate():
     np.testing.assert_array_equal(model.predict(turned), model.predict(two))
     with pytest.raises(ShapeError, match=r"still; 'still'.*not.*more"):
         model.predict(turned[["a", "more"]])
-    with pytest.raises(ShapeError, match=r"'a'.*both"):
+    with pytest.raises(ShapeError, match=r"'a' is a sensor and a state"):
         gd.Reconstructor(rate_hz=50.0).fit(two, two[["a"]])
     channels = tuple(gd.Channel(name, "signal", "1") for name in two)
     np.testing.assert_array_equal(model.predict(gd.Recording(T, two.to_numpy(), channels)), model.predict(two))
@@ -76,7 +76,7 @@ def test_what_does_not_fit_is_refused():
         gd.Reconstructor().fit(X[:, 0], Y)
     with pytest.raises(ShapeError, match=r"\(2000, 1\).*\(1999, 2\)"):
         gd.Reconstructor(rate_hz=50.0).fit(X, Y[1:])
-    with pytest.raises(ShapeError, match=r"trials of states.*2.*1"):
+    with pytest.raises(ShapeError, match=r"trials of readings and of states.*2.*1"):
         gd.Reconstructor(rate_hz=50.0).fit([X, X], [Y])
     with pytest.raises(ShapeError, match=r"1 sensors.*2 columns"):
         fitted().predict(Y)
@@ -143,5 +143,5 @@ def test_complex_readings_are_refused_everywhere():
     ):
         with pytest.raises(ShapeError, match="complex"):
             work()
-    with pytest.raises(ReadError, match=r"'knee_angle_r'.*\(complex128\)"):
+    with pytest.raises(ReadError, match=r"'knee_angle_r'.*complex128"):
         gd.read(pd.DataFrame({"time": T, "knee_angle_r": X[:, 0] * 1j}))

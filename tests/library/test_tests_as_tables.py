@@ -46,7 +46,7 @@ def test_pairs_of_two_tables_belong_together_by_their_index():
 @pytest.mark.parametrize(
     ("curves", "words"),
     [
-        (pd.DataFrame(NOISE[0][:, :, 0]).assign(participant=range(12)), "column 'participant' occurs among 101"),
+        (pd.DataFrame(NOISE[0][:, :, 0]).assign(participant=range(12)), "column 'participant' is not a number"),
         (pd.DataFrame(NOISE[0][:, :, 0]).assign(participant="P01"), "column 'participant'"),
         (NOISE[0][:, :, 0].T, r"found \(101, 12\).*array.T"),
         (NOISE[0][0, :, 0], r"found \(101,\)"),

@@ -73,7 +73,7 @@ def test_angles_of_the_file_stay_unless_the_study_asks_for_markers(known, trials
     [
         ("nobody stands", "P01 natural has markers.* condition = "),
         ("no knee", "P01 natural has markers.*RLFC"),
-        ("file asked for", "no angles: the study selects those of the file"),
+        ("file asked for", "no angles: the study selects the angles of the file"),
     ],
 )
 def test_markers_without_a_static_trial_are_refused_in_words(trials, change, words):

@@ -123,7 +123,7 @@ def test_the_force_of_one_foot_is_enough_where_force_is_requested():
     np.testing.assert_allclose(walks[0].curves[:, :, knee[0]], by_both[0].curves[: len(walks[0].curves), :, knee[1]])
     note = walks[1].findings[-1]
     assert note.severity == "warning" and says(note.spoils, "percent stride", "other leg")
-    assert says(note.what, "right foot, for both")
+    assert says(note.what, "right foot is used for both")
     assert [one.detector for one in walk_pair(*one_foot)] == ["angles", "angles"]  # which see both feet
     other = replace(one_foot[1], streams={"forces": walk(2).stream("forces").selected_by(lambda one: one.side == "l")})
     with pytest.raises(StrideError, match="the same detector finds in both"):
@@ -151,7 +151,7 @@ def test_streams_on_another_base_are_left_out_and_said():
     force = Recording(np.arange(1000) / 1000, np.ones((1000, 1)), (Channel("f", "vertical_force", "N", "r"),))
     walk = repeat_stride(Trial("sim", {"kinematics": stride(), "forces": force}))
     assert set(walk.streams) == {"kinematics"}
-    assert says(walk.findings[-1].what, "forces", "another time base")
+    assert says(walk.findings[-1].what, "forces", "time base differs")
 
 
 def test_half_a_stride_and_a_long_walk_are_refused_in_words():

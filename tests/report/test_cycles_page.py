@@ -54,8 +54,8 @@ def test_the_offset_and_few_cycles_are_said():
     moved = made_cycles(detectors={"markers": 1}, contact_offset_s=0.06, offset_steps=1, each=2)
     said = " ".join(cycles_sentences(_run(moved)))
     assert says(said, "markers", "P01", "+60 ms (1")
-    assert says(said, "Fewer", "3 cycles", "P01")
-    assert "Fewer" not in " ".join(cycles_sentences(_run(made_cycles(each=4))))
+    assert says(said, "fewer", "3 cycles", "P01")
+    assert "fewer" not in " ".join(cycles_sentences(_run(made_cycles(each=4))))
     (none,) = cycles_sentences(_run(made_cycles(each=0)))
     assert says(none, "No cycle")
 

@@ -60,7 +60,7 @@ def test_the_truth_lies_apart_from_the_recordings(folder):
 
 
 def test_it_says_what_it_is(folder):
-    assert says(load_study(folder).title, "1", "embedded cohort, hidden")
+    assert says(load_study(folder).title, "1", "embedded cohort", "hidden")
 
 
 def test_an_effect_that_is_none(tmp_path):
@@ -151,7 +151,7 @@ def test_two_studies_are_written_with_all_their_files_and_what_was_planted_apart
     assert child.trials[0].speed_m_per_s == pytest.approx(1.1, abs=0.25)
     assert planted == {"P01 before": "drop foot right", "P02": "bad file", "P03": "child"}
     assert json.loads((folder / "planted.json").read_text()) == planted
-    assert "simulated, no people" in week.title and "P01 before drop foot right" in week.title
+    assert "simulated clinic week" in week.title and "P01 before drop foot right" in week.title
 
 
 def test_the_child_has_a_childs_size_and_the_dimensionless_speed_of_the_grown_person():

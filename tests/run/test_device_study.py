@@ -173,7 +173,7 @@ def test_the_models_of_chapter_4_stand_beside_in_newton_metres(walks):
 
 def test_it_is_said_what_the_moment_model_is_worth_and_that_no_mass_can_be_weighed(walks):
     said = [finding.what for finding in device_findings(walks)]
-    assert any("the ankle's moment model is" in one and "ms later" in one for one in said)
+    assert any("the ankle moment model leaves a residual of" in one and "ms later" in one for one in said)
     assert any(says(line, "not estimated", "no marker") for line in said)
     heavier = replace(walks, device=replace(walks.device, per_kg=0.5 * np.cos(walks.device.time)))
     assert any(says(finding.what, "kg", "the foot would") for finding in device_findings(heavier))
@@ -208,7 +208,7 @@ def test_the_size_of_what_is_named_at_a_hip_without_electrodes_on_its_deep_muscl
     found = Discovery("missing_physics", "a spring.", (), (own,), (), size, size, (), (), None)
     at_hip = {"joint": "hip_flexion", "muscles": ("emg_ham_r", "emg_bf_r", "emg_rf_r")}
     hip = DeviceWalks(replace(walks.nominal, **at_hip), replace(walks.device, **at_hip), walks.model)
-    assert says(with_model_error(found, hip).sentence, "size is unreliable")
+    assert says(with_model_error(found, hip).sentence, "effect is unreliable")
     assert "trusted" not in with_model_error(found, walks).sentence
 
 

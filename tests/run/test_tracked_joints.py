@@ -94,7 +94,7 @@ def test_a_joint_says_what_it_shows_and_warns_of_what_has_no_name(leg_walk):
     said = summarise_joint(walk, 2, searched(walk)[1])
     assert (
         said.severity == "note"
-        and "it would show a spring from" in said.what
+        and "visible effects: a spring of" in said.what
         and "% of its lowering muscles" in said.what
     )
     odd = 30 * np.sign(np.sin(2 * np.pi * 3.1 * walk.motion.time))

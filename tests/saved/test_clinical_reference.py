@@ -31,7 +31,7 @@ def test_a_person_is_beside_the_group_of_the_own_speed_with_scores_and_without_l
     assert grown.profile is not None and grown.profile.both.people == 83
     assert says(grown.silent, "limits", "single legs") and grown.numbers == ()
     unknown = read_beside(made_person(), reference)
-    assert says(unknown.beside[1], "“free”, 83 people; no")
+    assert says(unknown.beside[1], "“free” (83 people); no")
     slow = read_beside(replace(made_person(), leg_m=2.5), reference)
     np.testing.assert_allclose(slow.bands["hip_flexion"].mean, 0.1 * np.arange(101) - 5.0)
 
@@ -41,7 +41,7 @@ def test_a_person_is_beside_the_group_of_the_own_speed_with_scores_and_without_l
     [
         (published_table().replace(SOURCE + "\n", ""), "has no source"),
         (published_table().replace(",sd\n", ",spread\n"), "has no column sd"),
-        (published_table().replace("knee_flexion", "knee"), "slow knee: the variable must be one of pelvis_tilt"),
+        (published_table().replace("knee_flexion", "knee"), "slow: a variable must be one of pelvis_tilt"),
         (published_table(lambda row: "" if ",98," in row or ",100," in row else row), "found 49 from 0 to 96 %"),
         (published_table().replace("2.5\n", "-2.5\n"), "with mean and sd"),
     ],
@@ -52,7 +52,7 @@ def test_another_form_is_refused_with_its_place(tmp_path, text, words):
 
 
 def test_it_is_kept_as_its_table_and_saved_as_no_legs(tmp_path):
-    with pytest.raises(SchemaError, match="Keep its table"):
+    with pytest.raises(SchemaError, match="Keep this table"):
         save_reference(load_reference(written_table(tmp_path, published_table())), tmp_path / "run")
 
 

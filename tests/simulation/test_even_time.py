@@ -38,7 +38,7 @@ def test_samples_taken_by_a_shaken_clock_are_moved_to_even_times():
     before = np.abs(_x(_shaken(0.09)) - truth)[5:-5].max()
     assert np.abs(even.observed[:, 0] - truth)[5:-5].max() < 0.2 * before
     assert np.ptp(np.diff(even.time)) < 1e-9
-    assert "resampled to even times" in finding.what and finding.kind == "clock"
+    assert "resampled to even spacing" in finding.what and finding.kind == "clock"
 
 
 def test_a_phase_that_a_shaken_clock_took_is_moved_and_stays_below_one():
@@ -95,6 +95,6 @@ def test_a_gap_of_an_input_that_is_too_long_or_at_an_end_is_refused(first, rows,
 def test_whole_numbers_far_apart_are_said_to_look_like_milliseconds():
     trial = _trial(np.arange(COUNT) * 10.0)
     (finding,) = clock_findings([trial], 0.1, "walk.csv")
-    assert "divide 'time' by 1000" in finding.spoils and says(finding.what, "10 s, 4000 s")
+    assert "divide 'time' by 1000" in finding.spoils and says(finding.what, "10 s", "4000 s")
     assert clock_findings([_trial(np.arange(COUNT) / RATE)], RATE, "walk.csv") == []
     assert clock_findings([_trial(np.arange(COUNT) * 2.5)], 0.4, "walk.csv") == []

@@ -160,7 +160,7 @@ def test_a_real_walk_drives_a_knee(gait_data):
 def test_recordings_with_faults(ankle):
     with pytest.raises(UnitError, match=r"'theta'.*walk\.mot.*'N m'"):
         gather_recordings([_recording("N m")], ankle)
-    with pytest.raises(UnitError, match=r"same kind as 'K'.*walk\.mot has it in 'degC'; .* by an offset"):
+    with pytest.raises(UnitError, match=r"same kind as 'K'.*walk\.mot has it in 'degC'; .* have an offset"):
         warm = replace(ankle, states=(replace(ankle.states[0], unit="K"), *ankle.states[1:]))
         gather_recordings([_recording("degC", quantity="signal")], warm)
     with pytest.raises(ReadError, match=r"walk.mot'?.*'tau': 21 rows.*0\.07 s"):

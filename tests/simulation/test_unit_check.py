@@ -51,7 +51,7 @@ def test_units_that_fit_are_not_told():
         ({"port": "N m"}, "[equations] v: 'u' and 'force' are added but differ in unit"),
         ({"k": "N"}, "'u + force' and 'k*x' are added but differ in unit"),
         ({"k": "furlong"}, "'furlong' is not a known unit"),
-        ({"k": "K"}, "'K' is not a known unit; temperatures must be in degC, because K and degF differ from it by"),
+        ({"k": "K"}, "'K' is not a known unit; temperatures must be in degC: units are converted by a factor only"),
         ({"more": " + x*t"}, "are added but differ in unit"),
         ({"more": "*m/m*t"}, "must have the unit m/s/s"),
         ({"more": " + sin(x)"}, "'sin(x)' must be a pure number or an angle"),

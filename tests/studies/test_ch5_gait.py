@@ -81,7 +81,7 @@ def test_the_sentence_says_how_many_which_what_one_more_brings_and_the_cost(foun
 def test_a_search_that_was_too_short_says_so(found):
     [said] = search_sentences(found.iloc[:2])
     assert says(said, "best set of 2 sensors", "right hip flexion", "left knee angle", "may not be enough")
-    assert "no larger one was tried" in said and "are enough" not in said
+    assert "no larger set was tried" in said and "are enough" not in said
 
 
 def test_one_panel_a_disturbance_and_one_line_a_model():

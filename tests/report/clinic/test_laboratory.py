@@ -31,7 +31,7 @@ def test_name_logo_axes_side_and_comment_are_read_beside_the_study_file(tmp_path
     ("text", "said"),
     [
         ("laboratory = ", r"clinic.toml must be a TOML file"),
-        ('colour = "red"', r"may contain only laboratory, logo, pdf.*colour = 'red'"),
+        ('colour = "red"', r"may have only laboratory, logo, pdf.*colour = 'red'"),
         ('pdf = "yes"', r"pdf = 'yes'"),
         ('[people.P07]\naffected = "front"', r"\[people.P07\].*front.*affected is one of left, right, both"),
         ("[axes]\nknee_flexion = [75, -15]", r"the lower first.*knee_flexion = \[75, -15\]"),

@@ -150,6 +150,6 @@ def test_a_difference_is_said_with_place_p_and_counts():
     assert said.endswith("8 and 8 cycles.")
     both = {"knee_angle_l": bump / 5, "hip_flexion_l": bump / 5}  # less than matters
     slightly = read_beside(made_person(session="after", each=8, spread=0.0, seed=1, changed=both), None)
-    assert says(contrast_sentences(contrast(before, slightly))[-1], "2 stretches", "less than 5 deg")
+    assert says(contrast_sentences(contrast(before, slightly))[-1], "2 parts", "less than 5 deg")
     few = contrast_sentences(contrast(*(read_beside(made_person(session=w, each=2), None) for w in ("a", "b"))))
     assert says(few[0], "not tested; a test", "6 cycles", "there")
