@@ -19,9 +19,8 @@ from gaitdisc.ingest.trial_sets import TrialSet, trial_sets
 from gaitdisc.kinematics.exchanged_labels import UNFIT
 from gaitdisc.kinetics.plate_steps import PlateStep
 from gaitdisc.processing.contact_choice import SEEN_LATE, offset_finding
-from gaitdisc.processing.pooled_cycles import CYCLE_COLUMNS, PooledCycles
-from gaitdisc.processing.process import knees_and_hips, quality_findings
-from gaitdisc.processing.raw_emg import choose_typical, find_raw_emg
+from gaitdisc.processing.pooled_cycles import CYCLE_COLUMNS, PooledCycles, choose_typical
+from gaitdisc.processing.process import find_raw_emg, knees_and_hips, quality_findings
 from gaitdisc.processing.side_checks import side_findings
 from gaitdisc.processing.standing import Read, Standing, find_standing
 from gaitdisc.processing.step_events import StepEvents, over_ground, step_events, walking_part
@@ -281,12 +280,12 @@ def _too_few(standing: Standing, trials: TrialSet, cut: Sequence[_CutTrial], out
         for start, end in finding.spans
         if any(cycle.reason and start < cycle.end and cycle.start < end for cycle in trial.cycles)
     ]
-    found = ", ".join(f"{kept[side]} of side {side}" for side in "rl")
+    counts = ", ".join(f"{kept[side]} of side {side}" for side in "rl")
     count = "1 trial" if len(trials.trials) == 1 else f"{len(trials.trials)} trials"
     who = " ".join((standing.participant.id, trials.where))
     error = StrideError(
         f"{who} needs {needed} cycles of a foot {'over ground' if outside else 'on a treadmill'}, pooled over trials",
-        f"{count} trials of it have {found}{first}{''.join(causes[:1])}",
+        f"{count} trials of it have {counts}{first}{''.join(causes[:1])}",
         f"{'Correct the labels, add' if causes else 'Add'} trials, or lower {key} in [quality].",
     )
     return str(error)
