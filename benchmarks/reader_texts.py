@@ -34,6 +34,7 @@ FEWEST_WORDS = 4  # [words] that make a sentence or a caption; shorter texts are
 OF_A_TEXT = re.compile(
     r"\b(a|an|the|of|to|in|on|at|by|for|with|without|from|as|than|per|and|or|no|not|is|are|that|which)\b|[.,;:)%](\s|$)"
 )
+LEAST_SHARE = 1 / 11  # of such words and marks; a longer list of words has fewer
 FINDING = ("severity", "kind", "file", "what", "affects", "channel")  # its arguments in their order, as its line says
 OWNERS = (ast.Module, ast.ClassDef, ast.FunctionDef, ast.AsyncFunctionDef)
 
@@ -65,10 +66,10 @@ def list_code_texts(path: Path) -> Iterator[Text]:
                     yield Text(kind, f"{place}:{node.lineno}", text)
         elif isinstance(node, ast.Constant | ast.JoinedStr):
             text = write_template(node)
-            spoken = " " in text.strip() and "</" not in text and not re.match("<[a-z]", text)
+            spoken = " " in text.strip() and "</" not in text and not re.match(r"<[a-z]|[A-Z]\w+\(", text)
             if (
                 spoken
-                and OF_A_TEXT.search(text)
+                and LEAST_SHARE * len(text.split()) <= len(OF_A_TEXT.findall(text))
                 and len(re.findall(r"[A-Za-z]{2,}", re.sub(r"\S*_\S*", "", re.sub(r"\{[^}]*\}", "", text))))
                 >= FEWEST_WORDS
             ):

@@ -32,7 +32,7 @@ TABLES = (  # headings and cells of tables, and the words between numbers in a s
     "state", "person", "condition", "cycles L, R", "Side affected", "both", "profile score [deg]", "why",
     "green", "amber", "red", "gait profile score", "Time and distance",
     "None of {} values lies outside 2 standard deviations of the reference.", "No comparison with controls: {}.",
-    "A leg needs {} cycles to be reported; it has {}.",
+    "A leg must have {} cycles to be reported; there are {}.",
     "With {} controls the 95 % limits are wide: smaller differences may be missed.",
     *TIERS.values(),
 )  # fmt: skip

@@ -80,7 +80,7 @@ def outstanding_sentences(reading: ClinicalReading, say: Callable[[str], str] = 
         rest.append(say("None of {} values lies outside 2 standard deviations of the reference.").format(enough))
     few = [f"{leg.count} {say(SIDE_WORDS[side])}" for side, leg in reading.legs.items() if leg.count < FEW]
     if few:
-        rest.append(say("A leg needs {} cycles to be reported; it has {}.").format(FEW, ", ".join(few)))
+        rest.append(say("A leg must have {} cycles to be reported; there are {}.").format(FEW, ", ".join(few)))
     people = max((band.people for band in reading.bands.values()), default=0)
     if people < MANY:
         rest.append(say("With {} controls the 95 % limits are wide: smaller differences may be missed.").format(people))

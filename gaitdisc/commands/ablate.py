@@ -14,12 +14,12 @@ def ablate(
     study: StudyPlace,
     out: RunPlace = None,
     length: Annotated[list[float] | None, typer.Option(help="Training length [s]; may be repeated.")] = None,
-    part: Annotated[str, typer.Option(help="Seconds of the training part to use: first or last.")] = "first",
+    part: Annotated[str, typer.Option(help="Part of the training data to use: first or last.")] = "first",
     jobs: Jobs = 1,
     cluster: Cluster = "",
     quiet: Quiet = False,
 ) -> None:
-    """Fit the models to less and less data, to find how much is enough."""
+    """Fit the models to shorter and shorter training data, to find how much data is enough."""
     from gaitdisc.response.vary import LENGTHS_S
     from gaitdisc.run.vary_study import ablate_study
     from gaitdisc.run.workers import Workers

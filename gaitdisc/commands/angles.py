@@ -16,18 +16,18 @@ def angles(
         typer.Option("--static", help="Static trial of the same person (.c3d, .trc); not needed for segments."),
     ] = None,
     marker_set: Annotated[
-        str, typer.Option(help="plug_in_gait, oxford_foot, ..., or a .toml file; by default recognised by the labels.")
+        str, typer.Option(help="Marker set: plug_in_gait, ..., or a .toml file; by default recognised by the labels.")
     ] = "",
-    joints: Annotated[str, typer.Option(help="free, held or planar; by default as in the marker set.")] = "",
+    joints: Annotated[str, typer.Option(help="Joints: free, held or planar; by default those of the marker set.")] = "",
     forward: Annotated[
-        tuple[float, float, float] | None, typer.Option(help="Direction of walking in the laboratory's axes.")
+        tuple[float, float, float] | None, typer.Option(help="Direction of walking in the axes of the laboratory.")
     ] = None,
     widths: Annotated[
         tuple[float, float, float, float] | None,
         typer.Option(help="Widths of left and right knee, left and right ankle [m], if the static file has none."),
     ] = None,
 ) -> None:
-    """Joint angles from markers or segments, with the package's signs; widths come from the static C3D, if any."""
+    """Compute joint angles from markers or segments; joint widths come from the static C3D file, if it has any."""
     from dataclasses import replace
 
     from gaitdisc.ingest.c3d_parameters import read_body_measures

@@ -14,7 +14,7 @@ def apply(
     model: Annotated[Path, typer.Argument(help="Folder of a model that `gaitdisc reconstruct` saved.")],
     recording: Annotated[Path, typer.Argument(help="File with the model's sensors.")],
     calibrate: Annotated[
-        Path | None, typer.Option(help="A walk of the same person with all states, used to correct the model.")
+        Path | None, typer.Option(help="A walk of the same person that has all states, to correct the model.")
     ] = None,
     missing: Annotated[str, typer.Option(help="Replacement of a missing reading: none, mean or last.")] = "none",
     out: Annotated[

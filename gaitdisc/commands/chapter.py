@@ -21,11 +21,11 @@ def chapter(
     part: Annotated[str, typer.Option(help="Compute only this part.")] = "",
     quick: Annotated[bool, typer.Option("--quick", help="Compute a small part of each study, as in its test.")] = False,
     data: Annotated[
-        Path | None, typer.Option(help="Folder of real recordings, gait/ and fields/; by default GAITDISC_DATA.")
+        Path | None, typer.Option(help="Folder of real recordings with gait/ and fields/; by default GAITDISC_DATA.")
     ] = None,
     quiet: Quiet = False,
 ) -> None:
-    """Compute a chapter's tables."""
+    """Compute the tables of a chapter."""
     from gaitdisc.run.chapter_run import find_lack, run_part
 
     parts = list_parts(number, part)
@@ -56,7 +56,7 @@ def chapter(
 chapter.__doc__ = f"""Compute the tables and figures of chapter 3, 4 or 5 again, with the studies behind the pages.
 
 Finished parts are kept; the same command continues after an interruption. Each part writes its page or tables, and its
-output to `printed.md`. Times are approximate minutes of one core; in brackets with --quick.
+output to `printed.md`. Times are approximate minutes of one core; those in brackets with --quick.
 
 \b
 {costs()}

@@ -12,9 +12,9 @@ from gaitdisc.errors import LOG, SchemaError
 
 
 def compare(  # noqa: PLR0913, PLR0917 these are the options of a command
-    first: Annotated[Path, typer.Argument(metavar="SIM", help="A simulated walk or one condition; or a study.")],
+    first: Annotated[Path, typer.Argument(metavar="SIM", help="File of a simulated walk or a condition, or a study.")],
     second: Annotated[
-        Path | None, typer.Argument(metavar="MEASURED", help="The measured walk or the other condition.")
+        Path | None, typer.Argument(metavar="MEASURED", help="File of the measured walk or the other condition.")
     ] = None,
     out: Annotated[
         Path | None, typer.Option(help="Folder of the report; by default ./compare, or STUDY/compare.")
@@ -23,18 +23,18 @@ def compare(  # noqa: PLR0913, PLR0917 these are the options of a command
         str,
         typer.Option(help="In a study: compare the strides of this participant; by default all participants, paired."),
     ] = "",
-    channel: Annotated[list[str] | None, typer.Option(help="Only this channel; may be repeated.")] = None,
-    cutoff: Annotated[float, typer.Option(min=1.0, help="Low-pass of the angles and moments of two files [Hz].")] = 6.0,
+    channel: Annotated[list[str] | None, typer.Option(help="Compare only this channel; may be repeated.")] = None,
+    cutoff: Annotated[float, typer.Option(min=1.0, help="For two files: low-pass of angles and moments [Hz].")] = 6.0,
     detector: Annotated[
-        str, typer.Option(help="Detector of initial contact in two files: auto, force, events, markers or angles.")
+        str, typer.Option(help="Detector of contacts for two files: auto, force, events, markers or angles.")
     ] = "auto",
-    smallest_angle: Annotated[float, typer.Option(min=0.0, help="Smallest angle difference named [deg].")] = 2.0,
-    smallest_moment: Annotated[float, typer.Option(min=0.0, help="The same for moments [N m/kg].")] = 0.1,
+    smallest_angle: Annotated[float, typer.Option(min=0.0, help="Smallest angle difference to name [deg].")] = 2.0,
+    smallest_moment: Annotated[float, typer.Option(min=0.0, help="Smallest moment difference to name [N m/kg].")] = 0.1,
     smallest_share: Annotated[
-        float, typer.Option(min=0.0, help="Smallest difference of other channels, as a share of the curve's range.")
+        float, typer.Option(min=0.0, help="Smallest other difference to name, as a share of the range of the curve.")
     ] = 0.05,
     body_weight: Annotated[
-        float | None, typer.Option(min=1.0, help="Body weight [N]; for forces, the share then refers to it.")
+        float | None, typer.Option(min=1.0, help="Body weight [N], to which the share of forces refers.")
     ] = None,
 ) -> None:
     """Compare two walks over the stride: where they differ, by how much, and whether significantly."""

@@ -14,7 +14,7 @@ from gaitdisc.errors import LOG
 
 def demo(  # noqa: PLR0913, PLR0917 these are the options of a command
     folder: Annotated[Path, typer.Argument(help="Folder to create.")] = Path("demo"),
-    seconds: Annotated[float, typer.Option(min=30.0, help="Length of each walk; the dissertation's is 240.")] = 60.0,
+    seconds: Annotated[float, typer.Option(min=30.0, help="Length of each walk [s]; 240 in the dissertation.")] = 60.0,
     people: Annotated[int, typer.Option(min=1, max=12, help="Number of participants, at most twelve.")] = 12,
     hide: Annotated[
         str, typer.Option(help="Difference between the walks: spring, weak plantarflexor, stiff knee, drop foot, ...")
@@ -24,12 +24,12 @@ def demo(  # noqa: PLR0913, PLR0917 these are the options of a command
     ] = False,
     laboratory: Annotated[
         str,
-        typer.Option(help="Data of each walk: `angles`, `markers` (two belts), `overground` (short, two plates)."),
+        typer.Option(help="Data of each walk: `angles`, `markers` (two belts), `overground` (short; two plates)."),
     ] = "angles",
     jobs: Jobs = 2,
     quiet: Quiet = False,
 ) -> None:
-    """Simulate walks of the embedded cohort without and with an ankle spring, and analyse them completely."""
+    """Simulate walks of the embedded cohort without and with an ankle spring, and run the complete analysis."""
     LOG.setLevel("WARNING" if quiet else "INFO")
     if clinic:
         return _clinic(folder, jobs)
@@ -42,7 +42,7 @@ def demo(  # noqa: PLR0913, PLR0917 these are the options of a command
 
     claim_folder(folder, "study.toml", "raw", "truth")
     claim_run(folder / "run")
-    typer.echo(f"{people} of the embedded cohort walk {seconds:g} s in each condition (simulated).")
+    typer.echo(f"{people} simulated people of the embedded cohort walk {seconds:g} s in each condition.")
     write_demonstration(folder, seconds, people, hide, lambda who, _: LOG.info(f"  {who}"), laboratory)
     study = load_study(folder)
     try:

@@ -36,23 +36,23 @@ def discover(  # noqa: PLR0913, PLR0917 these are the options of a command
         ),
     ],
     measured: Annotated[
-        Path | None, typer.Argument(metavar="MEASURED", help="Measured trials (CSV, Parquet; .mot of a model).")
+        Path | None, typer.Argument(metavar="MEASURED", help="Measured trials: CSV or Parquet; .mot for a model.")
     ] = None,
     out: Annotated[Path, typer.Option(help="Folder for the results.")] = Path("found"),
     participant: Annotated[
         str,
         typer.Option(
-            help="In a study: W01, W01:knee_angle, or all. The Nominal walk calibrates; the device walk is searched."
+            help="In a study: W01, W01:knee_angle, or all. The effect is searched in the walk with the device."
         ),
     ] = "",
-    catalogue: Annotated[Path | None, typer.Option(help="Your own effects, in addition to the included ones.")] = None,
+    catalogue: Annotated[Path | None, typer.Option(help="Your own effects (TOML), added to the included ones.")] = None,
     effects: Annotated[
         str, typer.Option(help="Fit exactly these effects without a search: effect@place, separated by commas.")
     ] = "",
     alpha: Annotated[float, typer.Option(help="Maximum false-positive rate.")] = 0.05,
     twins: Annotated[
         int,
-        typer.Option(help="Number of records like yours to simulate with the effect and without it and search.", min=0),
+        typer.Option(help="Number of records like yours to simulate and search, with and without the effect.", min=0),
     ] = 0,
     plan: Annotated[
         bool, typer.Option("--plan", help="Before a measurement: report how large the effects must be to be found.")

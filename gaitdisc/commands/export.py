@@ -22,18 +22,18 @@ def export(
         ),
     ],
     rate: Annotated[float, typer.Option(min=1.0, help="Sampling rate of the result [samples per second].")] = 100.0,
-    stream: Annotated[list[str] | None, typer.Option(help="Only this stream; may be repeated.")] = None,
+    stream: Annotated[list[str] | None, typer.Option(help="Export only this stream; may be repeated.")] = None,
     labels: Annotated[
         bool, typer.Option("--labels", help="Keep labels that are not in the vocabulary; by default they are numbered.")
     ] = False,
-    parquet: Annotated[bool, typer.Option("--parquet", help="Tables of a run as Parquet instead of CSV.")] = False,
+    parquet: Annotated[bool, typer.Option("--parquet", help="Write tables of a run as Parquet, not CSV.")] = False,
     mot: Annotated[
         bool, typer.Option("--mot", help="For a run, also write the mean cycle of each foot as .mot.")
     ] = False,
 ) -> None:
     """Resample EMG, force and kinematics of one walk to one time base, with a low-pass for faster signals.
 
-    For a run with pooled cycles: cycles, curves, means and spatiotemporal values, each as one tidy table.
+    For a run with pooled cycles, write cycles, curves, means and spatiotemporal values, each as one tidy table.
     """
     from gaitdisc.own_files import claim_file
 

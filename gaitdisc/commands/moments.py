@@ -9,19 +9,19 @@ import typer
 
 
 def moments(
-    trial: Annotated[list[Path], typer.Argument(help="One .c3d, or .trc and .mot of one walk.")],
+    trial: Annotated[list[Path], typer.Argument(help="Files of one walk: a .c3d, or a .trc and a .mot.")],
     static: Annotated[Path, typer.Option("--static", help="Static trial of the same person: .c3d or .trc.")],
     out: Annotated[Path, typer.Option("--out", help="File to write: .csv, .tsv, .parquet, .mot, .sto.")],
     mass: Annotated[float | None, typer.Option(help="Body mass [kg], if the static C3D has none.")] = None,
-    sex: Annotated[str, typer.Option(help="f or m, for the segments' inertia; by default the mean of both.")] = "",
+    sex: Annotated[str, typer.Option(help="Sex for the segments' inertia, f or m; by default the mean of both.")] = "",
     marker_set: Annotated[
-        str, typer.Option(help="plug_in_gait, oxford_foot, ..., or a .toml file; by default recognised by the labels.")
+        str, typer.Option(help="Marker set: plug_in_gait, ..., or a .toml file; by default recognised by the labels.")
     ] = "",
     force_hz: Annotated[
-        float, typer.Option(help="Low-pass of the ground force [Hz]; use 6 to filter it like the markers.")
+        float, typer.Option(help="Low-pass cut-off of the ground force [Hz]; that of the markers is 6 Hz.")
     ] = 20.0,
 ) -> None:
-    """Joint moments [N m/kg] and powers [W/kg], internal; frames without a known load of the foot are empty."""
+    """Compute internal joint moments [N m/kg] and powers [W/kg]; frames with unknown load of the foot are empty."""
     from gaitdisc.ingest.c3d_parameters import read_body_measures
     from gaitdisc.ingest.reading import read_trial, write_recording
     from gaitdisc.kinematics.motion import move_body

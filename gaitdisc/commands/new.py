@@ -21,14 +21,14 @@ def new(
     degrees: Annotated[bool, typer.Option("--degrees", help="For a model: angles were recorded in degrees.")] = False,
     external_loads: Annotated[
         Path | None,
-        typer.Option(help="For a walk with an .osim model: its recorded ground forces (.xml, ExternalLoads)."),
+        typer.Option(help="For an .osim model: recorded ground forces (.xml, ExternalLoads)."),
     ] = None,
-    forces: Annotated[Path | None, typer.Option(help="For such a walk: forces or net moments (.sto).")] = None,
+    forces: Annotated[Path | None, typer.Option(help="For an .osim model: forces or net moments (.sto).")] = None,
     actuators: Annotated[
-        Path | None, typer.Option(help="Reserve and residual actuators of these forces (.xml).")
+        Path | None, typer.Option(help="For an .osim model: reserve and residual actuators of the forces (.xml).")
     ] = None,
 ) -> None:
-    """Write a study file from the recordings found in a folder, or a model's mapping file."""
+    """Write a study file from the recordings in a folder, or the mapping file of a model."""
     from gaitdisc.simulation.simulation_file import is_model
 
     if external_loads or forces or actuators:
@@ -75,7 +75,7 @@ def _write_mapping(file: Path, model: Path, degrees: bool) -> None:
     columns = [name for name, _ in mapping.observations] + [one.name for one in mapping.inputs]
     typer.echo(f"{file} written: columns {', '.join(columns)}. Read it, then run: gaitdisc discover {model} MEASURED")
     if model.suffix.lower() == ".osim":
-        typer.echo("For a walk with recorded ground forces add --external-loads grf.xml, --forces, --actuators.")
+        typer.echo("For a walk with recorded ground forces, add --external-loads, --forces and --actuators.")
 
 
 def _write_tracked(file: Path, model: Path, loads: Path | None, forces: Path | None, actuators: Path | None) -> None:
@@ -86,10 +86,10 @@ def _write_tracked(file: Path, model: Path, loads: Path | None, forces: Path | N
     _claim_mapping(file, model)
     tracked, engine, columns = draft_tracked(model, loads, forces, actuators)
     write_tracked_mapping(tracked, file)
-    given = f"forces in {counted(len(columns), 'column')}" if tracked.forces else "no forces of muscles"
+    given = f"forces in {counted(len(columns), 'column')}" if tracked.forces else "no muscle forces"
     typer.echo(
         f"{file} written: {engine.mass_kg:.1f} kg, {counted(len(engine.coordinates), 'free coordinate')}, {given}. "
         f"Read it, then run: gaitdisc discover {file} KINEMATICS.mot"
     )
     if not tracked.forces:
-        typer.echo("Without --forces (static optimisation, computed muscle control) only residuals can be reported.")
+        typer.echo("Without --forces (static optimisation, computed muscle control), only residuals can be reported.")

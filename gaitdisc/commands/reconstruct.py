@@ -15,27 +15,27 @@ from gaitdisc.errors import LOG
 def reconstruct(  # noqa: PLR0913, PLR0917 these are the options of a command
     study: Annotated[Path, typer.Argument(help="The study file or its folder.")],
     sensors: Annotated[
-        list[str] | None, typer.Option("--sensors", "-s", help="Channels used as sensors: a,b,c or repeated.")
+        list[str] | None, typer.Option("--sensors", "-s", help="Channels used as sensors: a,b,c, or one per option.")
     ] = None,
     search: Annotated[
         int,
         typer.Option(
-            help="Search the best sets of up to this many sensors; without --sensors, use the smallest sufficient one."
+            help="Search the best sets of up to this many sensors; without --sensors, use the smallest sufficient set."
         ),
     ] = 0,
     split: Annotated[
-        str, typer.Option(help='temporal, blocked, subject, condition (each by the others), or "random (leaks)".')
+        str, typer.Option(help='Split of the data: temporal, blocked, subject, condition or "random (leaks)".')
     ] = "temporal",
     condition: Annotated[
-        str, typer.Option(help="Use walks of this condition only; with --split condition, those of the test part.")
+        str, typer.Option(help="Use walks of this condition only; with --split condition, test on these walks.")
     ] = "",
     targets: Annotated[str, typer.Option(help="Quantity to reconstruct: states, emg, forces or moments.")] = "states",
     ahead: Annotated[float, typer.Option(min=0.0, help="Forecast the states this many seconds ahead.")] = 0.0,
     spacing: Annotated[
-        float, typer.Option(min=0.001, help="Time between two samples of a window, which extends back one second [s].")
+        float, typer.Option(min=0.001, help="Sampling interval in a window [s]; a window covers the last second.")
     ] = 0.04,
     kinds: Annotated[
-        str, typer.Option(help='For example "delay ridge,masked shred"; by default five kinds of model.')
+        str, typer.Option(help='Kinds of model, such as "delay ridge,masked shred"; by default five kinds.')
     ] = "",
     device: Annotated[
         str, typer.Option(help="Device for the networks: cpu, cuda, or auto, which uses a GPU if there is one.")
@@ -43,7 +43,7 @@ def reconstruct(  # noqa: PLR0913, PLR0917 these are the options of a command
     out: Annotated[Path | None, typer.Option(help="Folder of the report; by default STUDY/reconstruct.")] = None,
     quiet: Quiet = False,
 ) -> None:
-    """Fit models of all states from a few sensors, by SHRED and simpler models, and test them on held-out walking.
+    """Fit SHRED and simpler models that estimate all states from a few sensors, and test them on held-out walking.
 
     Each participant's recommended model is saved; `gaitdisc apply` reconstructs a recording with it.
     """

@@ -15,10 +15,10 @@ def report(
         Path, typer.Argument(help="Folder of a result: run, modalities, sensitivity, discover, compare or reconstruct.")
     ],
     person: Annotated[str, typer.Option(help="In a clinic's run: write only the page of this person.")] = "",
-    before: Annotated[str, typer.Option(help="With --after: a session or condition of the person.")] = "",
+    before: Annotated[str, typer.Option(help="Session or condition of the person, to compare with --after.")] = "",
     after: Annotated[str, typer.Option(help="Session or condition that is compared with --before.")] = "",
     pdf: Annotated[bool, typer.Option("--pdf", help="Write pages of people as PDF as well.")] = False,
-    reference: Annotated[Path | None, typer.Option(help="Folder of `gaitdisc reference`: bands, scores.")] = None,
+    reference: Annotated[Path | None, typer.Option(help="Folder of `gaitdisc reference` for bands and scores.")] = None,
     language: Annotated[
         str,
         typer.Option(
@@ -26,7 +26,7 @@ def report(
         ),
     ] = "",
 ) -> None:
-    """Draw the page of a saved result again, without fitting; for a run also those of modalities and sensitivity."""
+    """Draw the page of a saved result again, without fitting; for a run, also those of modalities and sensitivity."""
     from gaitdisc.clinic.run_pages import keep_words, write_english
     from gaitdisc.own_files import claim_folder
     from gaitdisc.report.saved_page import draw_saved

@@ -17,9 +17,9 @@ if TYPE_CHECKING:
 
 
 def watch(
-    study: Annotated[Path, typer.Argument(help="The study file or its folder; drafted if it does not exist.")],
+    study: Annotated[Path, typer.Argument(help="The study file or its folder; a draft is written if there is none.")],
     recordings: Annotated[Path, typer.Option("--from", help="Folder of recordings; it is not changed.")],
-    reference: Annotated[Path | None, typer.Option(help="Folder of `gaitdisc reference`: bands, scores.")] = None,
+    reference: Annotated[Path | None, typer.Option(help="Folder of `gaitdisc reference` for bands and scores.")] = None,
     still: Annotated[float, typer.Option(min=0.1, help="Time without a change before a file is used [s].")] = 5.0,
     jobs: Jobs = 1,
     quiet: Quiet = False,

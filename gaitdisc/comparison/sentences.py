@@ -80,7 +80,7 @@ def alignment_sentences(mismatch: Mismatch) -> list[str]:
         sizes = abs(float(row["largest_gap"])), found.otherwise[mismatch.names.index(name)]
         moved, unmoved = map(amount, sizes if found.applied else sizes[::-1])
         unmoved = with_unit(unmoved, str(row["unit"]))
-        said += f" With the shift the largest gap of {spoken(name)} is {moved} instead of {unmoved}."
+        said += f" With the shift, the largest gap of {spoken(name)} is {moved} instead of {unmoved}."
     return [said]
 
 
@@ -113,8 +113,8 @@ def method_sentences(mismatch: Mismatch) -> list[str]:
     all_of = "all possible ones" if done.exact else "drawn at random"
     if done.unit == "participant":
         units = (
-            f"Participants are the units, paired (n = {done.first}): under the null hypothesis the sign of each mean "
-            "difference is random."
+            f"The units are pairs of walks of one participant (n = {done.first}). Under the null hypothesis the sign "
+            "of each mean difference is random."
         )
         about = "p applies to people like these."
     else:
@@ -144,7 +144,7 @@ def method_sentences(mismatch: Mismatch) -> list[str]:
         f"{counted(len(mismatch.channels), 'channel')} in {done.permutations} permutations ({all_of}). The gap is "
         f"shaded beyond |t| = {done.threshold:.2f}, which {100 * done.alpha:g} % of the permutations exceed at some "
         f"point. The p-value of a region is that of its integral above this threshold. {smallest_p_sentence(mismatch)}",
-        f"A difference is named if its gap reaches {named_from}; differences are sorted by the multiple of that "
+        f"A difference is named if its gap reaches {named_from}; differences are sorted by the ratio of gap to "
         "limit. A shift along the stride that most channels share is removed before the test.",
         f"The band of the gap contains {band} for all points and channels together, and is wider if successive "
         "strides are correlated.",

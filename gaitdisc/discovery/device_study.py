@@ -158,7 +158,7 @@ def check_kinetics(trial: Trial) -> None:
         )
     for key, word, mend in (
         ("emg", "EMG", "Add the file with the EMG, or name its channels in [channels]."),
-        ("moments", "joint moments", "Add force plates, a static trial and mass_kg, or a .sto of moments."),
+        ("moments", "joint moments", "Add force plates, a static trial and mass_kg, or a .sto file of moments."),
     ):
         if key not in trial.streams:
             why = next((f": {finding.what}" for finding in trial.findings if finding.kind == "no moments"), "")

@@ -46,7 +46,7 @@ BETWEEN = (
     (
         REMEMBERING,
         SPRINGS,
-        "a step that is then held still: an effect with memory relaxes or stays deflected, a spring does neither",
+        "a step that is then held still: an effect with memory relaxes or stays deflected, but a spring does neither",
     ),
     (REMEMBERING, LOSSES, "slow and fast movement of several amplitudes, reversed half-way"),
     (SPRINGS, LOSSES, "slow movement through the entire range, in which only a spring acts"),

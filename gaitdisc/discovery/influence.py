@@ -34,8 +34,8 @@ class Idle:
         """One for each kind."""
         idle = (
             ("warning", kind, self.places, "a search there: an effect without influence cannot be identified"),
-            ("note", "parameter", self.parameters, "nothing; these data cannot determine its value"),
-            ("note", "state", self.states, "nothing; these data cannot determine its initial value"),
+            ("note", "parameter", self.parameters, "nothing; these data do not determine the value"),
+            ("note", "state", self.states, "nothing; these data do not determine the initial value"),
         )
         found = []
         for severity, part, names, spoils in idle:

@@ -143,7 +143,7 @@ def where_table(discovery: Discovery) -> Table:
         rows.append((at_place(one.kind, one.place), _percent(one.share_of_gap), phase, one.region or NONE))
         begin, end = one.phase or (math.nan, math.nan)
         records.append((one.kind, one.place, one.share_of_gap, begin, end, one.region))
-    caption = "Where the gap arises. Share: of the mean squared gap that an effect at this place removes."
+    caption = "Places at which the gap arises. Share: part of the mean squared gap that an effect at the place removes."
     headings = ("place", "share of the gap", "stride", "region")
     if not any(place.phase for place in discovery.where):  # a machine has no stride
         headings, rows = (*headings[:2], headings[3]), [(*row[:2], row[3]) for row in rows]

@@ -22,9 +22,9 @@ ALPHA = 0.05  # the greatest rate of false finds, unless a user sets another
 VERDICTS = {
     "no_gap": "no gap: nothing is added to the simulation",
     "missing_physics": "missing physics: a term is missing in the dynamics",
-    "wrong_parameter": "wrong parameter: the structure is correct, the value of a parameter is not",
+    "wrong_parameter": "wrong parameter: the structure is correct, but the value of a parameter is not",
     "input_error": "input error: a driving signal is late or scaled",
-    "sensor_error": "sensor error: the state is correct, its measurement is not",
+    "sensor_error": "sensor error: the state is correct, but its measurement is not",
     "wrong_initial_condition": "wrong initial condition: only the initial state is wrong",
     "process_noise": "process noise: a random input acts on the system",
     "unnamed": "unnamed: a deterministic term is missing, and no known effect explains it",

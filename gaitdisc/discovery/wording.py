@@ -40,7 +40,7 @@ OTHER_UNITS = (  # gains of a sensor that another convention makes
     (1e3, ", as if its unit were wrong by a factor of 1000, such as mm read as m"),
     (1e-3, ", as if its unit were wrong by a factor of 1000, such as m read as mm"),
 )
-SATURATED = {"limit": "beyond {} to either side", "upper_limit": "above {}", "lower_limit": "below {}"}
+SATURATED = {"limit": "beyond {} in both directions", "upper_limit": "above {}", "lower_limit": "below {}"}
 DIRECTIONS = re.compile(
     r"\b(dorsiflexion|plantarflexion|flexion|extension|abduction|adduction|inversion|eversion|pronation|supination|"
     r"internal rotation|external rotation|tilt|obliquity)\b"
@@ -91,7 +91,7 @@ def _say_given(discovery: Discovery) -> str:
     bear = "support it" if discovery.given == "proven" else "do not support it"
     said = f"The effect was given, not searched: the held-out data {bear} ({_chance(discovery.held_out)})."
     idle = [named_at(effect) for effect in discovery.effects if effect.small]
-    return f"{said} They do not need {' or '.join(idle)} in addition to the others." if idle else said
+    return f"{said} The other effects suffice without {' or '.join(idle)}." if idle else said
 
 
 def _nothing(discovery: Discovery) -> str:

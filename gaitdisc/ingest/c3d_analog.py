@@ -153,7 +153,7 @@ def _doubts(emg: list[AnalogLabel], others: list[AnalogLabel], file: str) -> lis
     unknown = [signal for signal in (*emg, *others) if parse_unit(signal.unit) is None]
     if unknown:
         what = (
-            f"{len(unknown)} analog channels have no known unit ({_list_labels(unknown)}); their numbers are unchanged"
+            f"{len(unknown)} analog channels have no known unit ({_list_labels(unknown)}); their values are unchanged"
         )
         findings.append(Finding("note", "unit", file, what, "these channels' amplitudes; correct ANALOG:UNITS"))
     muscles = [signal.muscle.name for signal in emg if signal.muscle is not None]

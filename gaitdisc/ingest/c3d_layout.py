@@ -82,7 +82,7 @@ def find_layout(header: C3DHeader, parameters: C3DParameters) -> tuple[C3DLayout
             "contradictory header",
             header.file,
             f"header and parameters give {what} as {' and '.join(map(str, values))}; read as {taken}, {how}",
-            "the whole trial if this is wrong; compare its length with your notes",
+            "the entire trial if this is wrong; compare its length with your notes",
         )
         for what, values, taken in contradicted
         if len(values) > 1

@@ -258,7 +258,7 @@ def _units(plate: ForcePlate, parameters: C3DParameters, length_unit: str) -> tu
         found.append(unit)
     if not any(texts[column].strip() for column in plate.columns):
         what = f"force plate {plate.number} states no units; {usual[0]} and {usual[-1]} are assumed"
-        return tuple(found), [Finding("warning", "unit", file, what, "its forces if this is wrong; set ANALOG:UNITS")]
+        return tuple(found), [Finding("warning", "unit", file, what, "the forces if this is wrong; set ANALOG:UNITS")]
     return tuple(found), []
 
 

@@ -94,7 +94,7 @@ class StrideRules(StudyPart):
     def _check(self) -> StrideRules:
         if self.min_s >= self.max_s:
             found = f"min_s is {self.min_s:g}, max_s {self.max_s:g}"
-            refuse(("min_s",), "be shorter than max_s", found, "Exchange or widen them.")
+            refuse(("min_s",), "be shorter than max_s", found, "Exchange the two, or widen the range.")
         return self
 
 

@@ -206,7 +206,7 @@ def sensitivity_sentences(run: VariantRun) -> tuple[str, ...]:
     low = medians[medians["augmented"] <= medians["null"]]
     if len(low):
         where = ", ".join(f"{row.variant} ({row.variables})" for row in low.itertuples())
-        sentences.append(f"The Augmented model does not exceed the noise null with the same filters in: {where}.")
+        sentences.append(f"The Augmented model does not exceed band-limited noise with the same filters in: {where}.")
     lost = sorted({name for person in run.people for name in person.left_away})
     for name in lost:
         people = [person for person in run.people if name in person.left_away]

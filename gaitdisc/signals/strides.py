@@ -180,7 +180,7 @@ def verify_walking(
     if found.coverage < least_coverage:
         fails.append(f"strides cover {100 * found.coverage:.0f} % of {kinematics.duration_s:.1f} s")
     if found.regularity < LEAST_REGULARITY:
-        fails.append(f"hips and knees repeat with a correlation of {found.regularity:.2f}")
+        fails.append(f"hip and knee angles repeat with a correlation of {found.regularity:.2f}")
     if found.knee_deg < LEAST_KNEE_DEG:
         fails.append(f"the range of motion is {found.knee_deg:.0f} deg at the knee that moves more")
     if fails:

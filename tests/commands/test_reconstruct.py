@@ -14,7 +14,7 @@ def test_a_study_gives_a_sentence_a_table_and_a_report(study, tmp_path, called):
     assert says(done.stdout, "From right hip flexion", "right")
     page = (tmp_path / "report.html").read_text(encoding="utf-8")
     assert "Relative L2" in page and "MSE (" not in page
-    assert page.index('<h2 id="answer">') < page.index("<figure>") < page.index("How the numbers were made")
+    assert page.index('<h2 id="answer">') < page.index("<figure>") < page.index("How the numbers were computed")
     assert "http" not in page.split("</head>")[1] and "<script" not in page
     assert (tmp_path / "errors.csv").is_file()
 

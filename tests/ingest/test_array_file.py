@@ -93,7 +93,7 @@ def test_paths_of_both_versions(mat, path, part, expected):
     [
         ("dato.knee", r"'dato.knee' must name a variable of numbers; it has .*, the nearest is 'data'"),
         ("data.knees", r"the struct has .*knee.*. Correct the path"),
-        ("RKNEE", r"it holds 2 elements. Write part = \"1\" to \"2\""),
+        ("RKNEE", r"it holds 2 elements. Write part = \"1\" \(up to \"2\""),
         ("RKNEE{3}", r"it has 2 elements and no element 3. Elements are counted from 1"),
         ("data", r"it is a struct of "),
         ("data.name", r"it is text"),
@@ -101,7 +101,7 @@ def test_paths_of_both_versions(mat, path, part, expected):
         ("data.knee(2,2)", r"it is 4 x 3. Columns are counted from 1"),
         ("data.knee.x", r"'x' follows an array of 4 x 3, which is not a struct"),
         ("data..knee", r"'..knee' is not a path"),
-        ("wrong", r"it is complex numbers, which a recording cannot contain"),
+        ("wrong", r"it is an array of complex numbers, which a recording cannot contain"),
         ("lost", r"it contains 1 infinite numbers"),
     ],
 )

@@ -67,7 +67,7 @@ def test_emg_in_counts_of_a_converter_is_left_and_named():
     kept, (finding,) = without_impossible({"emg": counts})
     np.testing.assert_array_equal(kept["emg"].values, counts.values)
     assert (finding.severity, finding.kind, finding.channel) == ("warning", "unit", "emg_ta_r")
-    assert says(finding.what, "2047 V; EMG", "15", "mV")
+    assert says(finding.what, "2047 V, but EMG", "15", "mV")
 
 
 def test_the_table_of_ranges_uses_known_words_and_covers_the_vocabulary():

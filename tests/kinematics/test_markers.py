@@ -122,7 +122,7 @@ def test_forward_turns_with_the_path():
     frame = walking_frame(origin, along, UP, 100.0)
     inside = slice(50, -50)
     np.testing.assert_allclose(frame.rotation[inside, :, 0], along[inside], atol=1e-9)
-    assert "which turns by" in frame.how
+    assert "the path turns by" in frame.how
 
 
 def test_on_a_treadmill_forward_is_where_the_pelvis_faces():

@@ -100,7 +100,7 @@ def test_hips_come_from_a_trial_of_circled_legs_unless_the_study_names_others(tr
         read.read = lambda one: own["walk" if one is WALK else one.condition]
         said = [finding for finding in read.read_walk(WALK).trial.findings if finding.kind == "functional hip"]
         assert len(said) == 2 * by_function
-        assert all("hip_" in one.what and says(one.what, "0.0 mm from the centre") for one in said)
+        assert all("hip_" in one.what and says(one.what, "0.0 mm from that of") for one in said)
 
 
 def test_the_weight_comes_from_the_study(trials):

@@ -85,7 +85,7 @@ def test_the_page_answers_first_and_needs_nothing_but_itself(mismatch, tmp_path)
     page = write_mismatch_report(mismatch, tmp_path)
     text = page.read_text(encoding="utf-8")
     HTMLParser().feed(text)
-    assert text.index("In A free the right") < text.index("<figure>") < text.index("How the numbers were made")
+    assert text.index("In A free the right") < text.index("<figure>") < text.index("How the numbers were computed")
     assert "http" not in text.split("</head>")[1]
     assert "<script" not in text
     assert (tmp_path / "channels" / "ankle_angle_r.csv").read_text().startswith("percent,first,second,")

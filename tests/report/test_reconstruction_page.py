@@ -120,7 +120,7 @@ def test_the_page_answers_first_and_needs_nothing_but_itself(reconstruction, tmp
     page = write_reconstruction_report(reconstruction, tmp_path)
     text = page.read_text(encoding="utf-8")
     HTMLParser().feed(text)
-    parts = ("reconstructs 1 other state from a", "<figure>", "How the numbers were made")
+    parts = ("reconstructs 1 other state from a", "<figure>", "How the numbers were computed")
     assert sorted(parts, key=text.index) == list(parts)
     assert "http" not in text.split("</head>")[1]
     assert {file.name for file in (tmp_path / "tables").iterdir()} >= {"models.csv", "states.csv", "participants.csv"}

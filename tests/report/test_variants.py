@@ -154,7 +154,7 @@ def test_the_sentences_say_where_the_order_fails():
     assert says(said[0], "fails", "2 of 4 cases", "4 Hz", "4 Hz (EMG)")
     assert says(said[-1], "EMG 4 Hz", "left", "P00, P01")
     assert said[-1].endswith("too short; found 3 s")
-    assert "exceed the noise null" in sensitivity_sentences(variant_run_sensitivity(four_hz=0.4))[1]
+    assert "exceed band-limited noise" in sensitivity_sentences(variant_run_sensitivity(four_hz=0.4))[1]
 
 
 NO_TESTS = pd.DataFrame(columns=pd.Index(VARIANT_TEST_COLUMNS))

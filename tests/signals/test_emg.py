@@ -69,7 +69,7 @@ def test_bursts_of_a_converter_of_12_bits_are_a_muscle():
 def test_the_words_say_how_much_of_what_range():
     (finding,) = emg_findings(emg(ta=noise(5e-4, 1)), 2.5)
     assert finding.severity == "refused"
-    assert finding.what.startswith("standard deviation 0.5")
+    assert finding.what.startswith("the standard deviation is 0.5")
     assert says(finding.what, "0.02 %", "2.5 V", "0.1 %")
 
 

@@ -35,7 +35,7 @@ def test_trials_that_are_too_short_are_left_out_with_a_finding():
     assert measured.trials == whole.trials == ("a", "b")
     np.testing.assert_array_equal(measured.observed, whole.observed)
     (finding,) = measured.findings
-    assert finding.what == "2 trials with fewer than 20 samples: 'c' (12), 'd' (19)"
+    assert finding.what == "fewer than 20 samples in 2 trials: 'c' (12), 'd' (19)"
     assert [one.kind for one in alone.findings] == ["short trial", "one trial"] and alone.trials == ("b",)
     with pytest.raises(SamplingError, match=r"needs 20 samples; walk\.csv, trial 'a' has 19"):
         _measured(_trial("a", 19), _trial("b", 12))
