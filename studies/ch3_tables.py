@@ -55,7 +55,8 @@ def rankings(table: pd.DataFrame) -> str:
                 if len(found):
                     values = factor * found.pivot_table(index=by, columns="method", values=column)[list(FOUR)]
                     counts.add(len(values))
-                    begun = "its own" if by == "seed" else f"{len(values)} others, {found['seed'].nunique()} seeds each"
+                    each = f"{(seeds := found['seed'].nunique())} seed{'s' * (seeds > 1)} each"
+                    begun = "its own" if by == "seed" else f"{len(values)} others, {each}"
                     said = [f"{value:.1f}" for value in values.median()]
                     rows.append(
                         (words, f"{noise:.1%}", begun, START_WORDS[part], len(values), *said, differing(values))

@@ -64,9 +64,9 @@ class Job(NamedTuple):
     pages: bool = True
 
 
-def people(half: str, others: Path, shared: Path = SHARED) -> dict[str, Files]:
+def people(half: str, others: Path) -> dict[str, Files]:
     """Recordings of the people of a half."""
-    gait, found = shared / "gait", {}
+    gait, found = SHARED / "gait", {}
     for who in SHARED_HALVES[half]:
         own = gait / "young_straight_and_turn" / who
         static = [*own.glob("static/*.c3d"), *(gait / "young_static" / who).glob("*.c3d")]

@@ -18,7 +18,9 @@ def angles(
     marker_set: Annotated[
         str, typer.Option(help="Marker set: plug_in_gait, ..., or a .toml file; by default recognised by the labels.")
     ] = "",
-    joints: Annotated[str, typer.Option(help="Joints: free, held or planar; by default those of the marker set.")] = "",
+    joints: Annotated[
+        str, typer.Option(help="Joints: free, held (at joint centres) or planar; by default those of the marker set.")
+    ] = "",
     forward: Annotated[
         tuple[float, float, float] | None, typer.Option(help="Direction of walking in the axes of the laboratory.")
     ] = None,

@@ -26,7 +26,7 @@ def compare(  # noqa: PLR0913, PLR0917 these are the options of a command
     channel: Annotated[list[str] | None, typer.Option(help="Compare only this channel; may be repeated.")] = None,
     cutoff: Annotated[float, typer.Option(min=1.0, help="For two files: low-pass of angles and moments [Hz].")] = 6.0,
     detector: Annotated[
-        str, typer.Option(help="Detector of contacts for two files: auto, force, events, markers or angles.")
+        str, typer.Option(help="For two files: detector of contacts (auto, force, events, markers or angles).")
     ] = "auto",
     smallest_angle: Annotated[float, typer.Option(min=0.0, help="Smallest angle difference to name [deg].")] = 2.0,
     smallest_moment: Annotated[float, typer.Option(min=0.0, help="Smallest moment difference to name [N m/kg].")] = 0.1,

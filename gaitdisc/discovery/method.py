@@ -60,9 +60,9 @@ ALONG_A_WALK = (
     "explanation.",
     "Evidence is the reduction of twice the log likelihood under that noise, minus the logarithm of the number of "
     "samples for each fitted parameter, and minus a penalty for the choice among all explanations at all joints.",
-    "Each block of time was predicted with parameters from the other blocks, excluding data within half a period of "
-    "the low-pass; “after” is the residual of this prediction. An effect is named if its evidence is at least 10 and "
-    "it closes 30 % of the squared residual moment. Of two effects with equal predictions the simpler one is named. "
+    "Each block of time was predicted with parameters fitted to the other blocks, without samples closer to the block "
+    "than half a period of the low-pass. “After” is the residual of this prediction. An effect is named if its "
+    "evidence is at least 10 and it removes 30 % of the squared residual. Of equal predictions, the simpler is named. "
     "This is evidence from one walk, often from one stride; a second walk may differ.",
     "The noise floor of a moment is the noise of the angles, propagated by inverse dynamics, and 1 % of the moment's "
     "spread.",

@@ -45,9 +45,9 @@ class OpensimModel:
         described = self._query("described")
         if described["others"]:
             raise SchemaError(
-                "each actuator must be a muscle, or act on a coordinate without a state",
+                "each actuator must be a muscle, or a coordinate actuator without states",
                 f"{self.path.name}: {described['others'][0]!r} has states and is not a muscle",
-                "Drive the model by muscles or by coordinate actuators.",
+                "Drive the model by muscles, or by coordinate actuators without states.",
             )
         if described["dependent"]:
             raise SchemaError(

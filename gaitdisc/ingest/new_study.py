@@ -373,7 +373,7 @@ def _models(found: Sequence[FoundTrial], notes: list[str]) -> Models:
     more = [name for name in shared if name not in angles]
     named = [name for name in more if name in vocabulary().by_name]
     others = [f"{len(more) - len(named)} from the files"] if len(more) > len(named) else []
-    _note(notes, "angles that the response models do not use (add them to angles if needed): ", [*named, *others])
+    _note(notes, "angles that the response models do not use (add them to [models] if needed): ", [*named, *others])
     if not angles:
         notes.append("the trials share no joint angle that varies; the draft names the usual angles")
         return Models()

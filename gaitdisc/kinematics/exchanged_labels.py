@@ -131,9 +131,9 @@ def exchange_findings(
         first, second = (names[name] for name in one.pair)
         order = landmark_order(calibration.marker_set, swap(calibration.places, one.pair), up)
         where = "this trial" if min(order)[0] <= 0 else "this trial or in the static trial"
-        before = f"{1000.0 * one.before_m:.0f} mm" if np.isfinite(one.before_m) else "rotated"
+        before = f"{1000.0 * one.before_m:.0f} mm" if np.isfinite(one.before_m) else "a reversed axis"
         what = f"{', '.join(one.segments)}: exchanging {first} and {second} in {where} corrects {one.frames.sum()} "
-        what += f"of {len(one.frames)} frames, now {1000.0 * one.after_m:.0f} mm from the static trial, not {before}"
+        what += f"of {len(one.frames)} frames: from {before} to {1000.0 * one.after_m:.0f} mm off the static trial"
         spans = spans_s(markers.time, one.frames)
         findings.append(Finding("warning", "exchanged markers", file, what, SPOILS, f"{first}, {second}", spans=spans))
     for segment, frames in broken.items():

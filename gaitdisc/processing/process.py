@@ -122,9 +122,9 @@ def processed(trial: Trial, study: Study, body_weight_n: float | None = None) ->
     late = next((f for f in findings if f.kind == "late change" and f.severity == "warning"), None)
     if late is not None and study.quality.late_change == "refuse":
         raise StrideError(
-            f"trial {trial.name}: the gait must not change late, or the held-out part differs from the training part",
+            f"trial {trial.name}: the gait must not change towards the end, which is held out to test the models",
             late.what,
-            'Inspect the strides. Set late_change = "report" in [quality] to use the trial nevertheless, or crop it.',
+            'Crop the trial, or set late_change = "report" in [quality] to use it nevertheless.',
         )
     return Walk(trial, state, strides, trajectory(state, strides[side]), tuple(findings), side)
 
@@ -168,7 +168,7 @@ def _require(trial: Trial, key: str, names: Sequence[str]) -> Recording:
         excluded = "".join(f"; excluded: {finding.what}" for finding in trial.findings if finding.kind == CONTRADICTED)
         raise ChannelError(
             f"the models need {', '.join(missing)}",
-            f"none of the {len(recording.names)} channels of {recording.source.file or trial.name} is called so"
+            f"{recording.source.file or trial.name} has {len(recording.names)} channels, none of this name"
             + (excluded or (f"; the nearest is {nearest!r}" if nearest else "")),
             ("Correct the file" if excluded else "Map the file's own label in [channels]")
             + ", or remove the name from [models].",

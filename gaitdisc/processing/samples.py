@@ -19,7 +19,7 @@ class DroppedSamples:
     """Samples of a trajectory that no model sees, and why.
 
     >>> DroppedSamples(100, 80, 15, {"knee_angle_r": 5}, "P01 exo").finding().what
-    '20 of 100 samples excluded: 15 outside strides, 5 of knee_angle_r not usable'
+    '20 of 100 samples are excluded: 15 outside strides, 5 of knee_angle_r not usable'
     """
 
     total: int  # samples there are

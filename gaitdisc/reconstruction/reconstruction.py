@@ -75,7 +75,7 @@ class Reconstruction(Saved, file="reconstruction.json"):
 
     @property
     def participants(self) -> tuple[str, ...]:
-        """Pseudonyms of those in the tables, in order."""
+        """Pseudonyms of the participants in the tables, in their order."""
         return tuple(dict.fromkeys(str(name) for name in self.summary["participant"]))
 
     @property

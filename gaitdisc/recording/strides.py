@@ -141,7 +141,7 @@ class Strides:
         Parameters
         ----------
         recording : Recording or DataFrame
-            On the trial's clock, at any rate; a DataFrame has times [s] in a column `time` or an index of that name.
+            Channels with times on the trial's clock; a DataFrame has times [s] in a column `time` or such an index.
         """
         if not isinstance(recording, Recording):
             table: Any = recording

@@ -115,7 +115,7 @@ def _caption(response: ParticipantResponse, rows: pd.DataFrame) -> str:
     if _BANDED in held.bands:  # what the bands hold of all held-out samples, in the mean over variables
         inside = {m: 100 * np.mean((b[0] <= held.measured) & (held.measured <= b[1])) for m, b in held.bands.items()}
         said = ", ".join(f"{value:.0f} % for {MODEL_WORDS[model]}" for model, value in inside.items())
-        band = f"Pale green: 90 % band of Augmented, from refits on blocks; share of samples inside: {said}. "
+        band = f"Pale green: 90 % band of Augmented, from refits on blocks; share of samples in such a band: {said}. "
     return (
         f"{response.participant}: the last {WINDOW_S:g} s of the held-out device walk, n = "
         f"{counted(len(rows), 'sample')} shown of {len(held.time)}; split: last {response.held_out_s:.4g} s held out, "

@@ -53,7 +53,7 @@ def vary_study(
         result also lies in a folder of that name in the run's
     """
     if question not in QUESTIONS:
-        raise SchemaError(f"questions are {', '.join(QUESTIONS)}", f"found {question!r}", "Use one of these.")
+        raise SchemaError(f"the question must be {' or '.join(QUESTIONS)}", f"found {question!r}", "Use one of these.")
     compute = partial(compute_variants, study, folder=folder.absolute(), question=question)
     with _vary(study, folder, compute, workers, progress) as (run, people):
         lengths = [response.held_out_s for response in run.responses] or [0.0]

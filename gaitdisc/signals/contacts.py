@@ -165,7 +165,7 @@ def order_findings(right: Contacts, left: Contacts, file: str = "") -> list[Find
 
     >>> r = Contacts(np.array([0.0, 1.0, 2.0, 3.0]), "r", "force")
     >>> print(order_findings(r, Contacts(np.array([0.5, 2.5]), "l", "force"))[0].what)
-    1 of 3 strides of side r without exactly one contact of side l: at 1.00 s
+    1 of 3 strides of side r do not contain exactly one contact of side l: at 1.00 s
     """
     findings = []
     for one, other in ((right, left), (left, right)):

@@ -231,9 +231,9 @@ def _report_left_out(
     unused = [column for column in columns if column not in wanted]
     if absent and unused:
         raise ChannelError(
-            "each column must be an input or an observation if a state has no column",
-            f"{file}: no column is named {', '.join(absent)}, and {', '.join(unused[:10])} are not used",
-            "Rename or remove the column, or list the measured channels under [observations].",
+            "every column must be used if an observation has no column, because its name may be misspelt",
+            f"{file} has no column {', '.join(absent)}, and these are not used: {', '.join(unused[:10])}",
+            "Rename or remove these columns, or list the measured channels under [observations].",
         )
     if absent:
         what = f"not measured: {', '.join(absent)}"
@@ -260,7 +260,7 @@ def _convert(
             if to
             else f"{channel.unit!r} is used unchanged"
         )
-        findings[name] = Finding("note", "unit", file, what, "nothing if both are the same unit", name)
+        findings[name] = Finding("note", "unit", file, what, "nothing if file and simulation use the same unit", name)
         return recording[name]
     if np.isnan(factor):
         raise UnitError(

@@ -170,9 +170,12 @@ def test_the_answer_stands_before_its_twins_are_searched(lab, tmp_path, monkeypa
     words = (lab / "good.toml", lab / "good.csv", "--out", tmp_path, "--twins", "20", "-q")
     sentence, report, said, again = called("discover", *words, ends=0).stdout.splitlines()
     assert before[0]["sentence"] == sentence and "twins" not in before[0] and report == again
-    assert said == "In simulated records like these, the search names an effect in 1 of 20 in which nothing is missing."
+    assert (
+        said
+        == "In simulated records like these, the search names an effect in 1 of 20 records in which nothing is missing."
+    )
     found, page = load_discovery(tmp_path), (tmp_path / "report.html").read_text(encoding="utf-8")
-    assert found.twins == twins and said in page and "How often this answer returns" in page
+    assert found.twins == twins and said in page and "How often the search finds this answer" in page
 
 
 def test_twins_are_refused_where_an_engine_runs_the_model(lab, tmp_path, called):

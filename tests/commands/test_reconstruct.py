@@ -11,7 +11,7 @@ FAST = ("--kinds", "linear,delay ridge")  # no network, where none is asked abou
 
 def test_a_study_gives_a_sentence_a_table_and_a_report(study, tmp_path, called):
     done = called("reconstruct", study, "-s", "hip_flexion_r,knee_angle_r", "--out", tmp_path, "-q", ends=0)
-    assert says(done.stdout, "From right hip flexion", "right")
+    assert says(done.stdout, "from right hip flexion and right knee angle")
     page = (tmp_path / "report.html").read_text(encoding="utf-8")
     assert "Relative L2" in page and "MSE (" not in page
     assert page.index('<h2 id="answer">') < page.index("<figure>") < page.index("How the numbers were computed")

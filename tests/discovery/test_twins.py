@@ -65,8 +65,8 @@ def test_what_was_planted_returns_and_nothing_is_invented(searched):
     assert found.to_json()["twins"]["with_effects"] == {"cubic_stiffness@load": 2}
     assert before.twins is None and before.sentence == found.sentence and augmented.effects
     assert found.twins.sentence == (
-        "In simulated records like these, the search gives the same answer in 2 of 2 with the effect, and names an "
-        "effect in 0 of 2 in which nothing is missing."
+        "In simulated records like these, the search gives the same answer in 2 of 2 records with the effect, and "
+        "names an effect in 0 of 2 records in which nothing is missing."
     )
 
 

@@ -216,5 +216,5 @@ def test_what_clearly_moved_within_its_bounds_is_said():
 
 def test_where_names_explain_too_little_it_is_not_said_that_the_data_do_not_bear_them_out():
     said = not_named(0.001, 14)
-    assert says(said, "No effect", "equation", "omega", "most")
+    assert says(said, "No effect", "equation", "omega", "less than half")
     assert "bear it out" not in said

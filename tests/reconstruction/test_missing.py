@@ -39,7 +39,7 @@ def test_what_stands_for_a_missing_reading():
     assert fill_readings(r, ["a", "b"], "mean", means).values.tolist() == [[10, 1], [2, 20], [10, 20], [3, 4]]
     assert fill_readings(r, ["a", "b"], "last", means).values.tolist() == [[10, 1], [2, 1], [2, 1], [3, 4]]
     np.testing.assert_array_equal(fill_readings(r, ["a", "b"], "none", means).values, r.values)
-    with pytest.raises(SchemaError, match=r"treatment of missing samples is unknown; 'zero'"):
+    with pytest.raises(SchemaError, match=r"treatment of missing samples must be none, mean or last; found 'zero'"):
         fill_readings(r, ["a"], "zero", means[:1])
 
 

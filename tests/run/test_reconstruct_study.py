@@ -35,7 +35,7 @@ def test_every_participant_is_reconstructed_from_own_walks(study):
     rmse = done.over_participants()["rmse_deg"]
     assert rmse["delay ridge"] < rmse["linear"]
     assert "knee_angle_r" not in set(done.errors["state"])
-    assert says(done.split, "temporal: each trial", "70 %")
+    assert says(done.split, "temporal: first 70 % of each trial")
     assert len(done.provenance.files) == 4
     assert people[0].fitted[1].reconstructor.sensing.lags.count == 25
 
@@ -97,7 +97,7 @@ def test_states_ahead_of_the_last_reading(study):
     assert {"persistence", "phase average"} < set(done.models)
     assert says(done.history, "the states 0.10 s")
     assert people[0].fitted[0].reconstructor.sensing.lags.ahead == 10
-    assert "future states are reconstructed" in reconstruction_sentences(done)[0]
+    assert "reconstructs 5 future states" in reconstruction_sentences(done)[0]
 
 
 def test_sensors_are_searched_for_all_participants_together(study):
@@ -117,7 +117,9 @@ def test_sensors_are_searched_for_all_participants_together(study):
     ],
 )
 def test_no_search_for_what_is_not_a_present_state(study, settings, found):
-    with pytest.raises(SchemaError, match=rf"available for the states.*{found}.*name the sensors with --sensors"):
+    with pytest.raises(
+        SchemaError, match=rf"possible only for the present states.*{found}.*name the sensors with --sensors"
+    ):
         search_study(study, 2, settings)
 
 
@@ -178,7 +180,7 @@ def test_missing_readings_are_bridged_on_request(model, recordings, tmp_path):
     assert np.isnan(done["none"].states.values).any()
     assert np.isfinite(done["last"].states.values).all()
     assert np.isfinite(list(done["last"].rmse.values())).all()
-    with pytest.raises(SchemaError, match=r"treatment of missing samples is unknown; 'zero'"):
+    with pytest.raises(SchemaError, match=r"treatment of missing samples must be none, mean or last; found 'zero'"):
         reconstruct_recording(tmp_path / "gap.mot", model, tmp_path / "zero.mot", missing="zero")
 
 

@@ -33,7 +33,7 @@ def test_name_logo_axes_side_and_comment_are_read_beside_the_study_file(tmp_path
         ("laboratory = ", r"clinic.toml must be a TOML file"),
         ('colour = "red"', r"may have only laboratory, logo, pdf.*colour = 'red'"),
         ('pdf = "yes"', r"pdf = 'yes'"),
-        ('[people.P07]\naffected = "front"', r"\[people.P07\].*front.*affected is one of left, right, both"),
+        ('[people.P07]\naffected = "front"', r"\[people.P07\].*front.*Words for affected: left, right, both"),
         ("[axes]\nknee_flexion = [75, -15]", r"the lower first.*knee_flexion = \[75, -15\]"),
         ("[axes]\nelbow = [0, 90]", r"\[axes\]: elbow"),
         ('logo = "other.png"', r"a logo must be a PNG or JPEG.*512 KiB.*other.png"),

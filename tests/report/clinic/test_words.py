@@ -80,7 +80,7 @@ def test_every_word_of_rules_is_in_the_table_and_a_filled_one_comes_back(tmp_pat
     ("text", "said"),
     [
         ("knee,Knie\n", "de.csv begins with knee, Knie"),
-        ("English,other\n\nelbow,Ellbogen\n", "de.csv, line 3: 'elbow' is not"),
+        ("English,other\n\nelbow,Ellbogen\n", "de.csv, line 3: 'elbow' does not"),
         (
             "English,other\nNone of {} values lies outside 2 standard deviations of the reference.,Nichts.\n",
             "as often as in",
