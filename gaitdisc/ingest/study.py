@@ -199,6 +199,11 @@ class Study(StudyPart):
         return self._folder / file
 
     @property
+    def walking_direction(self) -> str:
+        """Direction of walking in the laboratory's axes, as on the treadmill; empty where it is inferred."""
+        return self.treadmill.direction if self.treadmill else ""
+
+    @property
     def public_title(self) -> str:
         """Title of pages; without one the conditions, never the name of the folder."""
         conditions = self.conditions

@@ -23,6 +23,11 @@ class TrialSet:
     condition: str  # word of the study
     trials: tuple[PlannedTrial, ...]
 
+    @property
+    def where(self) -> str:
+        """Session and condition."""
+        return " ".join(word for word in (self.session, self.condition) if word)
+
 
 def is_static(study: Study, planned: PlannedTrial) -> bool:
     """Whether somebody stands in a trial, unless the study's conditions use that very word for a way of walking."""

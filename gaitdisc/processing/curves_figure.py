@@ -13,16 +13,25 @@ from gaitdisc.processing.pooled_cycles import WALK, WalkSummary, mean_curve, sta
 from gaitdisc.recording import Recording
 from gaitdisc.recording.arrays import Values
 from gaitdisc.report.figure import Figure
-from gaitdisc.report.panels import RECONSTRUCTED, SIDES, WITHOUT_DEVICE, Room, in_style, legend, panels_for, sheets
+from gaitdisc.report.panels import (
+    RECONSTRUCTED,
+    SIDES,
+    WITHOUT_DEVICE,
+    Room,
+    in_style,
+    legend,
+    legend_lines,
+    panels_for,
+    sheets,
+)
 from gaitdisc.saved.study_run import StudyRun
 from gaitdisc.words import counted, label, sideless, unit_text, upwards
 
 if TYPE_CHECKING:
+    from matplotlib.artist import Artist
     from matplotlib.axes import Axes
-    from matplotlib.lines import Line2D
 
 WALKS = ("nominal", "exo")
-LOOKS = tuple(RECONSTRUCTED.values())
 BINS = np.arange(0.0, 101.0, 2.0)
 LATENT = "latent state of SHRED"
 
@@ -98,10 +107,9 @@ def _figure(run: StudyRun, participant: str, numbers: pd.DataFrame, name: str) -
     low, high = (numbers["mean"] - spread).groupby(joint).min(), (numbers["mean"] + spread).groupby(joint).max()
     room = 0.06 * (high - low).clip(lower=1e-9)
     for axes, (channel, curves) in zip(cells, groups, strict=True):
-        draw_walks(axes, curves, SIDES[find_side(str(channel))].colour)
-        axes.set_title(
-            label(str(channel)).replace("EMG ", ""), color=SIDES[find_side(str(channel))].colour, fontsize=7.4
-        )
+        colour = SIDES[find_side(str(channel))].colour
+        draw_walks(axes, curves, colour)
+        axes.set_title(label(str(channel)).replace("EMG ", ""), color=colour, fontsize=7.4)
         label_curve(axes, str(channel), str(curves["unit"].iloc[0]))
         key = sideless(str(channel))
         axes.set_ylim(*((low[key] - room[key], high[key] + room[key]) if np.isfinite(low[key]) else (0.0, 1.0)))
@@ -126,16 +134,9 @@ def _figure(run: StudyRun, participant: str, numbers: pd.DataFrame, name: str) -
     return Figure(name, caption, alt, numbers, drawn)
 
 
-def walks_key(run: StudyRun) -> list[Line2D]:
+def walks_key(run: StudyRun) -> list[Artist]:
     """Handles of the legend of both walks."""
-    from matplotlib.lines import Line2D
-
-    without = {"color": WITHOUT_DEVICE.colour, "linestyle": WITHOUT_DEVICE.line}
-    return [
-        Line2D([], [], **without, label=run.nominal),
-        Line2D([], [], color=SIDES["l"].colour, label=f"{run.exo}, left"),
-        Line2D([], [], color=SIDES["r"].colour, label=f"{run.exo}, right"),
-    ]
+    return legend_lines({run.nominal: WITHOUT_DEVICE, f"{run.exo}, left": SIDES["l"], f"{run.exo}, right": SIDES["r"]})
 
 
 def range_words(numbers: pd.DataFrame) -> str:
@@ -176,7 +177,7 @@ def course_numbers(phi: Values, components: Values) -> pd.DataFrame:
 
 def draw_course(axes: Axes, numbers: pd.DataFrame) -> None:
     """Draw each component's mean over the stride, and its standard deviation shaded."""
-    for (k, rows), look in zip(numbers.groupby("component"), LOOKS, strict=False):
+    for (k, rows), look in zip(numbers.groupby("component"), RECONSTRUCTED.values(), strict=False):
         axes.fill_between(rows["percent"], rows["mean"] - rows["sd"], rows["mean"] + rows["sd"],
                           color=look.colour, alpha=0.2, linewidth=0)  # fmt: skip
         axes.plot(rows["percent"], rows["mean"], color=look.colour, linestyle=look.line, label=f"component {k}")

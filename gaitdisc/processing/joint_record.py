@@ -74,9 +74,7 @@ def joint_record(trial: Trial, study: Study, joint: str, mass_kg: float | None) 
     moment = _moment(trial, name, mass_kg, raw.time)
     envelopes, muscles, dead = _envelopes(trial, study, side, raw.time)
     weight = None if mass_kg is None else mass_kg * GRAVITY
-    choice = choose_contacts(
-        trial, study.strides.detector, study.treadmill.direction if study.treadmill else "", weight
-    )
+    choice = choose_contacts(trial, study.strides.detector, study.walking_direction, weight)
     strides = cut_strides(choice.contacts[side], raw, study.strides.min_s, study.strides.max_s)
     return JointRecord(
         joint,

@@ -28,7 +28,7 @@ from gaitdisc.recording import PERCENT
 from gaitdisc.recording.arrays import Values
 from gaitdisc.report.figure import Figure, SavedFigure, file_names, largest_inline, save_figures
 from gaitdisc.report.page import Block, draw_side_by_side, save_block, write_page
-from gaitdisc.report.panels import SIDES, Room, in_style, legend, panels_for, sheets
+from gaitdisc.report.panels import SIDES, Room, in_style, legend, legend_lines, panels_for, sheets
 from gaitdisc.report.table import findings_table, provenance_tables, refusals_table, save_table, save_tables
 from gaitdisc.saved.provenance import Provenance
 from gaitdisc.saved.study_run import StudyRun
@@ -66,7 +66,7 @@ MOST_FAINT = 25  # cycles that are drawn one by one
 
 def write_cycles_page(run: StudyRun, folder: Path) -> Path:
     """Write the report of a run that pooled cycles and fitted no models: `report.html`, `figures/` and `tables/`."""
-    computed = any(finding.kind == "residual" for one in run.of(CYCLES) for finding in one.findings)
+    computed = any(finding.kind == "residual" for pooled in run.of(CYCLES) for finding in pooled.findings)
     tables = {"refusals": refusals_table(run), "findings": findings_table(run), **provenance_tables(run.provenance)}
     save_tables(tables.values(), folder)
     shown = {
@@ -80,11 +80,11 @@ def write_cycles_page(run: StudyRun, folder: Path) -> Path:
     return write_page("cycles", shown, folder)
 
 
-def write_lone_cycles(one: PooledCycles, folder: Path) -> Path:
+def write_lone_cycles(pooled: PooledCycles, folder: Path) -> Path:
     """Write the page of cycles that stand alone, as a run of nothing else has it."""
     created = "in the original run, whose run.json contains settings and date,"
-    made = Provenance({}, 0, one.files, {"gaitdisc": "of the version named there"}, "gait cycles", created)
-    return write_cycles_page(StudyRun(one.name, "", "", one.refusals, made, {CYCLES.file: (one,)}), folder)
+    made = Provenance({}, 0, pooled.files, {"gaitdisc": "of the version named there"}, "gait cycles", created)
+    return write_cycles_page(StudyRun(pooled.name, "", "", pooled.refusals, made, {CYCLES.file: (pooled,)}), folder)
 
 
 def save_cycle_tables(run: StudyRun, folder: Path) -> None:
@@ -92,31 +92,31 @@ def save_cycle_tables(run: StudyRun, folder: Path) -> None:
     cycles, tables = run.of(CYCLES), folder / "tables"
     for name, table in (("cycles", all_cycles), ("spatiotemporal", all_spatiotemporal)):
         save_table(table(cycles), tables / f"{name}.csv")
-    means = (all_means([one]) for one in cycles if len(one.kept))  # of 500 people, two million rows
+    means = (all_means([pooled]) for pooled in cycles if len(pooled.kept))  # of 500 people, two million rows
     save_table(next(means, all_means(())), tables / "means.csv", means)
 
 
 def cycles_sentences(run: StudyRun) -> list[str]:
     """Who is reported, with how many cycles; who is not, and what the numbers do not carry."""
-    kept = [one for one in run.of(CYCLES) if len(one.kept)]
+    kept = [pooled for pooled in run.of(CYCLES) if len(pooled.kept)]
     if not kept:
         return ["No cycle could be kept; see “Left out”."]
-    people = list(dict.fromkeys(one.subject for one in kept))
-    left = sum(one.counted("l") for one in kept)
-    right = sum(one.counted("r") for one in kept)
-    out = sum(len(one.left_out) for one in run.of(CYCLES))
+    people = list(dict.fromkeys(pooled.subject for pooled in kept))
+    left = sum(pooled.counted("l") for pooled in kept)
+    right = sum(pooled.counted("r") for pooled in kept)
+    out = sum(len(pooled.left_out) for pooled in run.of(CYCLES))
     sentences = [
         f"{counted(len(people), 'participant')}: {counted(left, 'left cycle')} and {counted(right, 'right cycle')} of "
-        f"{counted(sum(one.trials for one in kept), 'trial')} are kept; {out} are left out, each with its reason."
+        f"{counted(sum(pooled.trials for pooled in kept), 'trial')} are kept; {out} are left out, each with its reason."
     ]
-    if few := sorted({one.subject for one in kept if min(one.counted("l"), one.counted("r")) < FEW}):
+    if few := sorted({pooled.subject for pooled in kept if min(pooled.counted("l"), pooled.counted("r")) < FEW}):
         sentences.append(
             f"Participants with fewer than {FEW} cycles of a foot in a session and condition: {listing(few)}. Their "
             "curves show single steps, not how steadily a person walks."
         )
-    if moved := [one for one in kept if one.contact_offset_s is not None]:
-        said = [f"{one.name} {offset_words(one)}" for one in moved]
-        sentences.append(f"Contacts from markers or angles were shifted: {'; '.join(said)}.")
+    if moved := [pooled for pooled in kept if pooled.contact_offset_s is not None]:
+        shifts = [f"{pooled.name} {offset_words(pooled)}" for pooled in moved]
+        sentences.append(f"Contacts from markers or angles were shifted: {'; '.join(shifts)}.")
     return sentences
 
 
@@ -124,30 +124,32 @@ def save_cycle_blocks(run: StudyRun, folder: Path) -> list[Block[SavedFigure]]:
     """Part of the page for everybody together, then one for each person, with figures and tables written."""
     if not run.of(CYCLES):
         return []
-    unfitted = tuple(f"No models are fitted to {one.participant}: {one.reason}" for one in run.unfitted)
+    unfitted = tuple(f"No models are fitted to {refusal.participant}: {refusal.reason}" for refusal in run.unfitted)
     device = "" if run.exo else " The study does not compare a device, so no models are fitted."
     windows = f"Every cycle lies within one trial; cycles are not joined across trials.{device}"
     first = Block("cycles", "Cycles", (windows, *unfitted), (), (overview_table(run.of(CYCLES)),))
-    people = list(dict.fromkeys(one.subject for one in run.of(CYCLES)))
+    people = list(dict.fromkeys(pooled.subject for pooled in run.of(CYCLES)))
     names, count = file_names(people), len(run.of(CYCLES))
-    each = [([one for one in run.of(CYCLES) if one.subject == who], names[who], folder, count) for who in people]
-    draw_side_by_side(_save, [one for one in each if read_part(folder, *_part(*one)) is None], MOST_HERE)
-    return [save_block(first, folder), *(_save(*one) for one in each)]  # all stand by now
+    sets = {who: [pooled for pooled in run.of(CYCLES) if pooled.subject == who] for who in people}
+    parts = [(of_person, names[who], folder, count) for who, of_person in sets.items()]
+    draw_side_by_side(_save, [part for part in parts if read_part(folder, *_part(*part)) is None], MOST_HERE)
+    return [save_block(first, folder), *(_save(*part) for part in parts)]  # all stand by now
 
 
 def person_block(sets: Sequence[PooledCycles], name: str, drawn: bool = True) -> Block:
     """Part of the page for one person: counts, figures of each session and condition unless they stand, and tables."""
-    kept = [one for one in sets if len(one.kept)]
+    kept = [pooled for pooled in sets if len(pooled.kept)]
     left_out = tabulate_left_out(sets, name)
-    places = file_names([one.where for one in kept])
-    figures = [one for own in kept if drawn for one in cycles_figures(own, f"{name}-{places[own.where]}")]
+    places = file_names([pooled.where for pooled in kept])
+    shown = {f"{name}-{places[pooled.where]}": pooled for pooled in kept if drawn}
+    figures = [figure for sheet, pooled in shown.items() for figure in cycles_figures(pooled, sheet)]
     tables = [*([spatiotemporal_table(kept, name)] if kept else []), *([left_out] if left_out is not None else [])]
     parts = []
-    for one in sets:
-        counts = " and ".join(f"{one.counted(side)} {SIDE_WORDS[side]}" for side in FEET)
-        ground = "over ground" if one.over_ground else "on a treadmill"
-        words = f"{counts} cycles of {counted(one.trials, 'trial')} {ground}"
-        parts.append(f"{one.where}: {words if len(one.kept) else 'no cycle, see “Left out”'}")
+    for pooled in sets:
+        counts = " and ".join(f"{pooled.counted(side)} {SIDE_WORDS[side]}" for side in FEET)
+        ground = "over ground" if pooled.over_ground else "on a treadmill"
+        words = f"{counts} cycles of {counted(pooled.trials, 'trial')} {ground}"
+        parts.append(f"{pooled.where}: {words if len(pooled.kept) else 'no cycle, see “Left out”'}")
     return Block(f"cycles-{name}", sets[0].subject, (f"{'; '.join(parts)}.",), tuple(figures), tuple(tables))
 
 
@@ -160,10 +162,10 @@ def _save(sets: Sequence[PooledCycles], name: str, folder: Path, count: int) -> 
     block = person_block(sets, name, (kept := read_part(folder, part, key)) is None)
     save_tables(block.tables, folder)
     here, most = folder / "figures", largest_inline(count)
-    figures = [figure_again(one, here, most) for one in kept or ()] or save_figures(block.figures, folder, most)
+    figures = [figure_again(shown, here, most) for shown in kept or ()] or save_figures(block.figures, folder, most)
     if kept is None:
-        files = [here / f"{one.name}.{ending}" for one in figures for ending in ("svg", "png", "csv")]
-        keep_part(folder, part, key, [asdict(replace(one, data="")) for one in figures], files)
+        files = [here / f"{figure.name}.{ending}" for figure in figures for ending in ("svg", "png", "csv")]
+        keep_part(folder, part, key, [asdict(replace(figure, data="")) for figure in figures], files)
     return Block(block.anchor, block.heading, block.sentences, tuple(figures), block.tables)
 
 
@@ -190,9 +192,7 @@ def cycles_figures(pooled: PooledCycles, name: str) -> list[Figure]:
 
 
 def _figure(pooled: PooledCycles, numbers: pd.DataFrame, joints: list[str], name: str) -> Figure:
-    from matplotlib.lines import Line2D
-
-    columns, curves = [one.name for one in pooled.channels], pooled.curves  # read from the disk once
+    columns, curves = [channel.name for channel in pooled.channels], pooled.curves  # read from the disk once
     drawn, cells = panels_for(len(joints), COLUMNS, 1.15, Room(left=0.6, across=0.64, down=0.46))
     stems = {channel: sideless(channel) for channel in numbers["channel"].unique()}
     shown = numbers[numbers["channel"].map(stems).isin(joints)].reset_index(drop=True)
@@ -213,10 +213,10 @@ def _figure(pooled: PooledCycles, numbers: pd.DataFrame, joints: list[str], name
         label_curve(axes, str(own["channel"].iloc[0]), str(own["unit"].iloc[0]))
     for axes in cells[-COLUMNS:]:
         axes.set_xlabel("cycle [%]", labelpad=1)
-    key = [Line2D([], [], color=SIDES[side].colour, label=SIDE_WORDS[side]) for side in FEET]
-    key.append(Line2D([], [], color="#666666", linewidth=0.5, label="single cycles"))
-    key.append(Line2D([], [], color="#666666", linestyle=(0, (1.5, 1.5)), linewidth=0.9, label="foot off"))
-    legend(drawn, key)
+    cycle = {"color": "#666666", "linewidth": 0.5}
+    foot_off = {"color": "#666666", "linestyle": (0, (1.5, 1.5)), "linewidth": 0.9}
+    sides = {SIDE_WORDS[side]: SIDES[side] for side in FEET}
+    legend(drawn, legend_lines({**sides, "single cycles": cycle, "foot off": foot_off}))
     alt = f"Mean cycles of {pooled.subject}, {pooled.where}: {range_words(shown)}."
     return Figure(name, _caption(pooled), alt, shown, drawn)
 

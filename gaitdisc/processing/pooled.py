@@ -19,9 +19,8 @@ from gaitdisc.ingest.trial_sets import TrialSet, trial_sets
 from gaitdisc.kinematics.exchanged_labels import UNFIT
 from gaitdisc.kinetics.plate_steps import PlateStep
 from gaitdisc.processing.contact_choice import SEEN_LATE, offset_finding
-from gaitdisc.processing.pooled_cycles import CYCLE_COLUMNS, PooledCycles
-from gaitdisc.processing.process import knees_and_hips, quality_findings
-from gaitdisc.processing.raw_emg import choose_typical, find_raw_emg
+from gaitdisc.processing.pooled_cycles import CYCLE_COLUMNS, PooledCycles, choose_typical
+from gaitdisc.processing.process import find_raw_emg, knees_and_hips, quality_findings
 from gaitdisc.processing.side_checks import side_findings
 from gaitdisc.processing.standing import Read, Standing, find_standing
 from gaitdisc.processing.step_events import StepEvents, over_ground, step_events, walking_part
@@ -71,6 +70,21 @@ class _Seen:
     plate_steps: tuple[PlateStep, ...] | None = None  # where moments were computed from markers
 
 
+@dataclass(frozen=True, eq=False)
+class _CutTrial:
+    """The cycles of a trial."""
+
+    seen: _Seen
+    cycles: list[Cycle]
+    places: list[Places]  # of the feet, one a cycle
+    unknown: list[Finding]  # cycles that the study leaves out and that are not there
+
+    @property
+    def kept(self) -> list[Cycle]:
+        """Cycles that nothing speaks against."""
+        return [cycle for cycle in self.cycles if not cycle.reason]
+
+
 def pool_cycles(study: Study, participant: Participant, read: Read) -> tuple[PooledCycles, ...]:
     """Cycles of a participant by session and condition, pooled over trials.
 
@@ -81,34 +95,29 @@ def pool_cycles(study: Study, participant: Participant, read: Read) -> tuple[Poo
     returns: one for each session and condition; those without a kept cycle say why in `refusals`
     """
     sets = trial_sets(study, participant)
-    found: list[PooledCycles] = []
+    pooled: list[PooledCycles] = []
     prints: dict[str, PlannedTrial] = {}  # of the samples of each trial that was read
-    for session in dict.fromkeys(one.session for one in sets):
+    for session in dict.fromkeys(trials.session for trials in sets):
         standing = find_standing(study, participant, session, read)
-        seen: dict[str, list[_Seen]] = {}
-        lost: dict[str, list[Refusal]] = {}
+        of_session = [trials for trials in sets if trials.session == session]
         with tempfile.TemporaryDirectory(prefix="gaitdisc_", ignore_cleanup_errors=True) as folder:
-            for one in (own for own in sets if own.session == session):
-                seen[one.condition], lost[one.condition] = _read_trials(standing, one, read, Path(folder), prints)
+            ready = [(trials, *_read_trials(standing, trials, read, Path(folder), prints)) for trials in of_session]
             times: dict[tuple[str, str], list[Values]] = {}
-            for trial in (trial for trials in seen.values() for trial in trials):
+            for trial in (trial for _, seen, _ in ready for trial in seen):
                 for kind, detector in (("contacts", trial.steps.detector), ("foot_offs", trial.steps.off_detector)):
                     times.setdefault((kind, detector), []).append(trial.steps.later_s(kind))
             later = {of: np.concatenate(parts) for of, parts in times.items()}
-            found += [
-                _pool(standing, one, seen[one.condition], lost[one.condition], later)
-                for one in sets
-                if one.session == session
-            ]
-    return tuple(found)
+            pooled += [_pool(standing, trials, seen, lost, later) for trials, seen, lost in ready]
+    return tuple(pooled)
 
 
 def _read_trials(
-    standing: Standing, one: TrialSet, read: Read, folder: Path, prints: dict[str, PlannedTrial]
+    standing: Standing, trials: TrialSet, read: Read, folder: Path, prints: dict[str, PlannedTrial]
 ) -> tuple[list[_Seen], list[Refusal]]:
+    """What each trial of a set shows, and why others are lost."""
     participant = standing.participant
     seen, lost = [], []
-    for number, planned in enumerate(one.trials, 1):
+    for number, planned in enumerate(trials.trials, 1):
         try:
             trial = read(planned)
             whole = hashlib.sha256()  # equal for two files of one recording, whatever their headers and formats
@@ -133,9 +142,8 @@ def _show_trial(standing: Standing, planned: PlannedTrial, number: int, read: Tr
     study = standing.study
     computed = standing.computed(planned, walking_part(read))
     trial, plate_steps = computed.trial, computed.steps
-    direction = study.treadmill.direction if study.treadmill else ""
     weight_n = standing.body_weight_n(planned)
-    steps = step_events(trial, study.strides.detector, direction, weight_n)
+    steps = step_events(trial, study.strides.detector, study.walking_direction, weight_n)
     outside = study.strides.ground == "overground" or (study.strides.ground == "auto" and over_ground(trial))
     legs, states, lost = cycle_channels(trial, study.filters, computed.from_markers)
     strides = {}  # between the contacts as they were seen, without what is too short, too long, or is two
@@ -158,19 +166,19 @@ def _show_trial(standing: Standing, planned: PlannedTrial, number: int, read: Tr
     findings += standing.findings(trial, legs is not None)
     files = {s.source.file: s.source.sha256 for s in trial.streams.values() if s.source.sha256}
     plates = plate_loadings(trial, find_rise(weight_n))
-    feet = None if any(one.kind == "exchanged heels" for one in steps.findings) else heel_paths(trial, direction)
-    kept = tuple(put_away(one, folder) for one in states)
-    raw = find_raw_emg(trial, states)
-    raw_emg = None if raw is None else put_away(raw, folder)
+    exchanged = any(finding.kind == "exchanged heels" for finding in steps.findings)
+    feet = None if exchanged else heel_paths(trial, study.walking_direction)
+    kept = tuple(put_away(state, folder) for state in states)
+    raw_emg = put_away(raw, folder) if (raw := find_raw_emg(trial, states)) is not None else None
     return _Seen(planned, number, steps, outside, plates, feet, legs, kept, findings, files, raw_emg, plate_steps)
 
 
-def _verify(trial: Trial, found: Mapping[str, Strides], outside: bool) -> None:
+def _verify(trial: Trial, strides_of: Mapping[str, Strides], outside: bool) -> None:
     """Refuse swapped sides; on a treadmill, and where angles alone show the steps, what is no walking."""
     if "kinematics" not in trial.streams:
         return
     legs = knees_and_hips(trial)
-    for side, strides in found.items():
+    for side, strides in strides_of.items():
         if not outside or strides.detector == "angles":
             verify_walking(legs, strides, 1, LEAST_COVERAGE if strides.detector == "angles" and not outside else 0.0)
         if f"knee_angle_{side}" in legs.names:
@@ -183,44 +191,40 @@ def _offset_s(later: Later, kind: str, detector: str) -> float | None:
 
 
 def _pool(
-    standing: Standing, one: TrialSet, seen: Sequence[_Seen], lost: Sequence[Refusal], later: Later
+    standing: Standing, trials: TrialSet, seen: Sequence[_Seen], lost: Sequence[Refusal], later: Later
 ) -> PooledCycles:
     study, participant = standing.study, standing.participant
-    cut = [_cut(study, trial, later) for trial in seen]
-    stated = [
-        without_stated(cycles, trial.planned.leave_out_cycles, participant.trial_name(trial.planned))
-        for trial, (cycles, _) in zip(seen, cut, strict=True)
-    ]
+    cut = [_cut(standing, trial, later) for trial in seen]
     # durations are checked over all trials together
-    durations = np.array([cycle.duration_s for cycles, _ in cut for cycle in cycles])
+    durations = np.array([cycle.duration_s for trial in cut for cycle in trial.cycles])
     reasons = iter(duration_reasons(durations, study.strides.min_s, study.strides.max_s))
-    checked = [[replace(cycle, reason=next(reasons) or cycle.reason) for cycle in cycles] for cycles, _ in stated]
-    outside = bool(seen) and all(trial.over_ground for trial in seen)
-    too_few = _too_few(study, participant, one, seen, checked)
-    where = " ".join(part for part in (one.session, one.condition) if part)
-    rows = [
-        _row(trial.number, cycle, place, too_few)
-        for trial, cycles, (_, places) in zip(seen, checked, cut, strict=True)
-        for cycle, place in zip(cycles, places, strict=True)
+    cut = [
+        replace(trial, cycles=[replace(cycle, reason=next(reasons) or cycle.reason) for cycle in trial.cycles])
+        for trial in cut
     ]
-    table = pd.DataFrame(rows, columns=pd.Index(CYCLE_COLUMNS))
-    channels, curves = ((), np.empty((0, len(PERCENT), 0))) if too_few else _curves(seen, checked)
-    raw_emg = {} if too_few else _raw_emg(seen, checked, channels, curves)
+    outside = bool(seen) and all(trial.over_ground for trial in seen)
+    too_few = _too_few(standing, trials, cut, outside)
+    rows = [
+        _row(trial.seen.number, cycle, place, too_few)
+        for trial in cut
+        for cycle, place in zip(trial.cycles, trial.places, strict=True)
+    ]
+    channels, curves = ((), np.empty((0, len(PERCENT), 0))) if too_few else _curves(cut)
     late = next((trial.steps.detector for trial in seen if trial.steps.detector in SEEN_LATE), "")
     off_late = next((trial.steps.off_detector for trial in seen), "")
     offset_s, steps = _offset_s(later, "contacts", late), len(later.get(("contacts", late), ()))
     findings = [finding for trial in seen for finding in trial.findings]
-    findings += [finding for _, unknown in stated for finding in unknown]
+    findings += [finding for trial in cut for finding in trial.unknown]
     if late:
         by = "the difference at one step" if steps == 1 else f"the median difference at {steps} steps"
-        by, spoils = (f"{by} that a plate or an event also shows", "phase and stance, by 3 to 5 % of the cycle")
-        findings.append(offset_finding(where, late, offset_s, by, spoils))
-    refusals = [*lost, *([Refusal(participant.id, where, too_few)] if too_few and (seen or not lost) else [])]
+        by += " that a plate or an event also shows"
+        findings.append(offset_finding(trials.where, late, offset_s, by, "phase and stance, by 3 to 5 % of the cycle"))
+    refusals = [*lost, *([Refusal(participant.id, trials.where, too_few)] if too_few and (seen or not lost) else [])]
     return PooledCycles(
         subject=participant.id,
         group=participant.group,
-        session=one.session,
-        condition=one.condition,
+        session=trials.session,
+        condition=trials.condition,
         trials=len(seen),
         detectors=dict(sorted(Counter(trial.steps.detector for trial in seen).items())),
         contact_offset_s=offset_s,
@@ -229,58 +233,59 @@ def _pool(
         over_ground=outside,
         channels=channels,
         curves=curves,
-        cycles=table,
+        cycles=pd.DataFrame(rows, columns=pd.Index(CYCLE_COLUMNS)),
         findings=tuple(findings),
         refusals=tuple(refusals),
         files={file: sha for trial in seen for file, sha in trial.files.items()},
         leg_m=next((leg_m for trial in seen if (leg_m := standing.leg_m(trial.planned)) is not None), None),
         age_years=participant.age_years,
-        raw_emg=raw_emg,
+        raw_emg={} if too_few else _raw_emg(cut, channels, curves),
     )
 
 
-def can_pool(found: Sequence[PooledCycles]) -> bool:
+def can_pool(pooled: Sequence[PooledCycles]) -> bool:
     """Whether pooled cycles stand in for a comparison that was refused: all walks are over ground, and give cycles."""
-    return bool(found) and all(one.over_ground and len(one.kept) for one in found)
+    return bool(pooled) and all(cycles.over_ground and len(cycles.kept) for cycles in pooled)
 
 
-def _cut(study: Study, seen: _Seen, later: Later) -> tuple[list[Cycle], list[Places]]:
-    belt = study.treadmill.speed_m_per_s if study.treadmill and not seen.over_ground else 0.0
-    belt = seen.planned.speed_m_per_s or belt if not seen.over_ground else 0.0
+def _cut(standing: Standing, seen: _Seen, later: Later) -> _CutTrial:
+    treadmill, participant = standing.study.treadmill, standing.participant
+    belt = seen.planned.speed_m_per_s or (treadmill.speed_m_per_s if treadmill else 0.0)
     contact_s = _offset_s(later, "contacts", seen.steps.detector) or 0.0
     off_s = _offset_s(later, "foot_offs", seen.steps.off_detector) or 0.0
     cycles = cut_cycles(seen.steps.corrected("contacts", contact_s), seen.steps.corrected("foot_offs", off_s))
     alone = seen.plate_steps
     cycles = with_plates(cycles, seen.plates) if alone is None else with_plate_steps(cycles, alone)
-    cycles = without_doubted(cycles, [span for one in seen.findings if one.kind in DOUBTED for span in one.spans])
-    return with_gaps(cycles, seen.legs), feet_in(cycles, seen.feet, belt)
+    doubted = [span for finding in seen.findings if finding.kind in DOUBTED for span in finding.spans]
+    cycles = with_gaps(without_doubted(cycles, doubted), seen.legs)
+    places = feet_in(cycles, seen.feet, 0.0 if seen.over_ground else belt)
+    cycles, unknown = without_stated(cycles, seen.planned.leave_out_cycles, participant.trial_name(seen.planned))
+    return _CutTrial(seen, cycles, places, unknown)
 
 
-def _too_few(
-    study: Study, participant: Participant, one: TrialSet, seen: Sequence[_Seen], cycles: Sequence[list[Cycle]]
-) -> str:
+def _too_few(standing: Standing, trials: TrialSet, cut: Sequence[_CutTrial], outside: bool) -> str:
     """Why the cycles that are left do not do, and which labels spoiled those that are not; empty where they do."""
-    outside = bool(seen) and all(trial.over_ground for trial in seen)
-    kept = Counter(cycle.side for own in cycles for cycle in own if not cycle.reason)
-    needed, key = (study.quality.min_cycles, "min_cycles") if outside else (study.quality.min_strides, "min_strides")
+    quality = standing.study.quality
+    kept = Counter(cycle.side for trial in cut for cycle in trial.kept)
+    needed, key = (quality.min_cycles, "min_cycles") if outside else (quality.min_strides, "min_strides")
     if max(kept.values(), default=0) >= needed:
         return ""
-    left_out = [cycle.reason for own in cycles for cycle in own if cycle.reason]
-    first = f"; {len(left_out)} excluded, the first: {left_out[0]}" if left_out else ""
+    reasons = [cycle.reason for trial in cut for cycle in trial.cycles if cycle.reason]
+    first = f"; {len(reasons)} excluded, the first: {reasons[0]}" if reasons else ""
     causes = [
         f"; from {start:.2f} to {end:.2f} s {finding.what}"
-        for trial, own in zip(seen, cycles, strict=True)
-        for finding in trial.findings
+        for trial in cut
+        for finding in trial.seen.findings
         if finding.kind in UNFIT
         for start, end in finding.spans
-        if any(cycle.reason and start < cycle.end and cycle.start < end for cycle in own)
+        if any(cycle.reason and start < cycle.end and cycle.start < end for cycle in trial.cycles)
     ]
-    found = ", ".join(f"{kept[side]} of side {side}" for side in "rl")
-    where = " ".join(part for part in (participant.id, one.session, one.condition) if part)
-    trials = "1 trial" if len(one.trials) == 1 else f"{len(one.trials)} trials"
+    counts = ", ".join(f"{kept[side]} of side {side}" for side in "rl")
+    count = "1 trial" if len(trials.trials) == 1 else f"{len(trials.trials)} trials"
+    who = " ".join((standing.participant.id, trials.where))
     error = StrideError(
-        f"{where} needs {needed} cycles of a foot {'over ground' if outside else 'on a treadmill'}, pooled over trials",
-        f"{trials} trials of it have {found}{first}{''.join(causes[:1])}",
+        f"{who} needs {needed} cycles of a foot {'over ground' if outside else 'on a treadmill'}, pooled over trials",
+        f"{count} trials of it have {counts}{first}{''.join(causes[:1])}",
         f"{'Correct the labels, add' if causes else 'Add'} trials, or lower {key} in [quality].",
     )
     return str(error)
@@ -298,48 +303,44 @@ def _row(number: int, cycle: Cycle, place: Places, too_few: str) -> tuple[object
     )  # fmt: skip
 
 
-def _curves(seen: Sequence[_Seen], cycles: Sequence[list[Cycle]]) -> tuple[tuple[Channel, ...], Values]:
+def _curves(cut: Sequence[_CutTrial]) -> tuple[tuple[Channel, ...], Values]:
     """Kept cycles of all trials on 101 points; a channel that a trial lacks is missing in its cycles."""
     by_name: dict[str, Channel] = {}
-    for trial in seen:
-        for shelved in trial.states:
-            for channel in shelved.kept.channels:
-                by_name.setdefault(channel.name, channel)
+    for shelved in (shelved for trial in cut for shelved in trial.seen.states):
+        for channel in shelved.kept.channels:
+            by_name.setdefault(channel.name, channel)
     names = list(by_name)
-    kept = [[cycle for cycle in own if not cycle.reason] for own in cycles]
-    whole = np.full((sum(map(len, kept)), len(PERCENT), len(names)), np.nan)
+    whole = np.full((sum(len(trial.kept) for trial in cut), len(PERCENT), len(names)), np.nan)
     row = 0
-    for trial, own in zip(seen, kept, strict=True):
-        for shelved in trial.states:  # the first unit counts
+    for trial in cut:
+        for shelved in trial.seen.states:  # the first unit counts
             chosen = shelved.recording().selected_by(lambda channel: channel.unit == by_name[channel.name].unit)
             columns = [names.index(name) for name in chosen.names]
-            for place, cycle in enumerate(own, row):
-                strides = Strides(np.array([cycle.start]), np.array([cycle.end]), cycle.side, trial.steps.detector)
-                values = strides.normalised(chosen)[0]
+            for place, cycle in enumerate(trial.kept, row):
+                ends = np.array([cycle.start]), np.array([cycle.end])
+                values = Strides(*ends, cycle.side, trial.seen.steps.detector).normalised(chosen)[0]
                 bare = [not cycle.kinetic and channel.quantity in KINETIC for channel in chosen.channels]
                 values[:, bare] = np.nan
                 whole[place][:, columns] = values
-        row += len(own)
+        row += len(trial.kept)
     return tuple(by_name.values()), whole
 
 
-def _raw_emg(
-    seen: Sequence[_Seen], cycles: Sequence[list[Cycle]], channels: Sequence[Channel], curves: Values
-) -> dict[str, Values]:
+def _raw_emg(cut: Sequence[_CutTrial], channels: Sequence[Channel], curves: Values) -> dict[str, Values]:
     """Raw EMG of each leg's most typical cycle (sample, channel of that leg), from contact to contact."""
-    kept = [(trial, one) for trial, own in zip(seen, cycles, strict=True) for one in own if not one.reason]
-    sides, found = pd.DataFrame({"side": [one.side for _, one in kept]}), {}
+    kept = [(trial.seen.raw_emg, cycle) for trial in cut for cycle in trial.kept]
+    sides, typical = pd.DataFrame({"side": [cycle.side for _, cycle in kept]}), {}
     for side in "lr":
         row = choose_typical(curves, sides, channels, side)
-        trial, cycle = kept[row] if row is not None else (None, None)
-        if trial is None or cycle is None or trial.raw_emg is None:
+        shelved, cycle = kept[row] if row is not None else (None, None)
+        if shelved is None or cycle is None:
             continue
-        raw = trial.raw_emg.recording()
-        names = [one.name for one in channels if one.quantity == "emg" and one.side == side]
+        raw = shelved.recording()
+        names = [channel.name for channel in channels if channel.quantity == "emg" and channel.side == side]
         if set(names) <= set(raw.names):
             first, last = np.searchsorted(raw.time, (cycle.start, cycle.end))
-            found[side] = raw.selected(names).values[first : last + 1]
-    return found
+            typical[side] = raw.selected(names).values[first : last + 1]
+    return typical
 
 
 @dataclass(frozen=True, eq=False)
@@ -357,12 +358,13 @@ class Shelved:
             return replace(self.kept, **{name: held[name] for name in ("time", "values", "suspect")})
 
 
-def put_away(one: Recording, folder: Path) -> Shelved:
+def put_away(recording: Recording, folder: Path) -> Shelved:
     """Put the samples of a recording into a file of a folder."""
-    samples = {"time": one.time, "values": one.values, "suspect": np.asarray(one.suspect)}
+    samples = {name: getattr(recording, name) for name in ("time", "values", "suspect")}
     try:
         with tempfile.NamedTemporaryFile(suffix=".npz", dir=folder, delete=False) as file:
             np.savez(file, **samples)
     except OSError:  # no room on disk
-        return Shelved(one)
-    return Shelved(replace(one, **{name: each[:1].copy() for name, each in samples.items()}), Path(file.name))
+        return Shelved(recording)
+    first = {name: values[:1].copy() for name, values in samples.items()}
+    return Shelved(replace(recording, **first), Path(file.name))

@@ -180,9 +180,9 @@ class PooledCycles(Saved, file="cycles.json"):
         means = []
         for column, channel in enumerate(self.channels):
             for side in (channel.side,) if channel.side else ("l", "r"):
-                own = curves[feet == side, :, column]
-                if np.isfinite(own).any():
-                    means.append(mean_curve(own, channel=channel.name, unit=channel.unit, side=side))
+                of_foot = curves[feet == side, :, column]
+                if np.isfinite(of_foot).any():
+                    means.append(mean_curve(of_foot, channel=channel.name, unit=channel.unit, side=side))
         return stack_means(means, "side")
 
 
@@ -202,6 +202,26 @@ def mean_curve(curves: Values, **words: str) -> dict[str, np.ndarray]:
         spread = np.where(count > 1, np.sqrt(square / (count - 1)), np.nan)
     said = {name: np.full(len(PERCENT), word) for name, word in words.items()}
     return {**said, "percent": PERCENT, "n": count, "mean": mean, "sd": spread}
+
+
+def choose_typical(curves: Values, kept: pd.DataFrame, channels: Sequence[Channel], side: str) -> int | None:
+    """Row of the leg's cycle whose envelopes differ least from their means; None where no cycle has all of them.
+
+    curves (cycle, phase, channel) [channel's unit]
+
+    >>> both = (Channel("emg_ta_l", "emg", "V", "l"),) * 2
+    >>> curves = np.array([1.0, 2.0, 9.0])[:, None, None] * np.ones((3, 101, 2))
+    >>> choose_typical(curves, pd.DataFrame({"side": ["l", "l", "l"]}), both, "l")
+    1
+    """
+    columns = [k for k, channel in enumerate(channels) if (channel.quantity, channel.side) == ("emg", side)]
+    envelopes = curves[:, :, columns]
+    rows = np.flatnonzero((kept["side"] == side).to_numpy() & np.isfinite(envelopes).all(axis=(1, 2)))
+    if not len(rows) or not columns:
+        return None
+    mean = envelopes[rows].mean(axis=0)
+    apart = (envelopes[rows] - mean) / np.maximum(mean.max(axis=0), 1e-12)
+    return int(rows[np.argmin((apart**2).sum(axis=(1, 2)))])
 
 
 def cycles_name(subject: str, session: str, condition: str) -> str:
@@ -281,8 +301,8 @@ def pooled_walk(pooled: PooledCycles, follow: str) -> WalkSummary:
     feet = pooled.kept["side"].to_numpy()
     curves = np.full((max(pooled.counted("l"), pooled.counted("r")), len(PERCENT), len(pooled.channels)), np.nan)
     for column, channel in enumerate(pooled.channels):
-        own = pooled.curves[feet == (channel.side or follow), :, column]
-        curves[: len(own), :, column] = own
+        of_foot = pooled.curves[feet == (channel.side or follow), :, column]
+        curves[: len(of_foot), :, column] = of_foot
     return WalkSummary(
         pooled.subject,
         pooled.condition,

@@ -57,7 +57,7 @@ def walk_summary(
     rows = []
     for side, cut in sorted(strides.items()):
         kept = [(side, start, end, True, "") for start, end in zip(cut.start, cut.end, strict=True)]
-        dropped = [(side, one.start, one.end, False, one.reason) for one in cut.dropped]
+        dropped = [(side, stride.start, stride.end, False, stride.reason) for stride in cut.dropped]
         rows += sorted([*kept, *dropped], key=itemgetter(1))
     return WalkSummary(
         trial.subject,
@@ -69,7 +69,7 @@ def walk_summary(
         curves=stride_curves(states, strides, follow),
         strides=pd.DataFrame(rows, columns=pd.Index(STRIDE_COLUMNS)),
         findings=tuple(findings),
-        files={one.source.file: one.source.sha256 for one in trial.streams.values() if one.source.sha256},
+        files={r.source.file: r.source.sha256 for r in trial.streams.values() if r.source.sha256},
     )
 
 
@@ -77,9 +77,9 @@ def stride_curves(states: Sequence[Recording], strides: Mapping[str, Strides], f
     """Strides (stride, phase, channel) by the own foot's contacts, else the followed foot's; NaN behind the fewer."""
     columns: list[Values] = []
     for state in states:
-        own = [channel.side if channel.side in strides else follow for channel in state.channels]
-        by_side = {side: strides[side].normalised(state) for side in set(own)}
-        columns += [by_side[side][:, :, column] for column, side in enumerate(own)]
+        feet = [channel.side if channel.side in strides else follow for channel in state.channels]
+        by_side = {side: strides[side].normalised(state) for side in set(feet)}
+        columns += [by_side[side][:, :, column] for column, side in enumerate(feet)]
     curves = np.full((max(map(len, columns), default=0), len(PERCENT), len(columns)), np.nan)
     for column, values in enumerate(columns):
         curves[: len(values), :, column] = values
@@ -99,8 +99,7 @@ def processed(trial: Trial, study: Study, body_weight_n: float | None = None) ->
     body_weight_n: mass x 9.81, by which a plate counts as loaded; 50 N without it
     """
     raw = without_spikes(plateau_marked(_require(trial, "kinematics", study.models.angles)))
-    direction = study.treadmill.direction if study.treadmill else ""
-    choice = choose_contacts(trial, study.strides.detector, direction, body_weight_n)
+    choice = choose_contacts(trial, study.strides.detector, study.walking_direction, body_weight_n)
     limits = (study.strides.min_s, study.strides.max_s)
     side = study.strides.side
     if side not in choice.contacts:
@@ -111,7 +110,7 @@ def processed(trial: Trial, study: Study, body_weight_n: float | None = None) ->
         )
     gap_s = study.filters.gap_s
     raw = fill_gaps(raw, cut_strides(choice.contacts[side], None, *limits), gap_s, TEMPLATE_TIMES * gap_s)
-    strides = {side: cut_strides(found, raw, *limits) for side, found in sorted(choice.contacts.items())}
+    strides = {side: cut_strides(contacts, raw, *limits) for side, contacts in sorted(choice.contacts.items())}
     findings = [*trial.findings, *quality_findings(trial, study.models.angles, study.models.emg), *choice.findings]
     if set(choice.contacts) == {"r", "l"}:
         findings += order_findings(choice.contacts["r"], choice.contacts["l"], trial.name)
@@ -166,12 +165,12 @@ def _require(trial: Trial, key: str, names: Sequence[str]) -> Recording:
     missing = [name for name in names if name not in recording.names]
     if missing:
         nearest = nearest_word(missing[0], recording.names)
-        said = "".join(f"; excluded: {one.what}" for one in trial.findings if one.kind == CONTRADICTED)
+        excluded = "".join(f"; excluded: {finding.what}" for finding in trial.findings if finding.kind == CONTRADICTED)
         raise ChannelError(
             f"the models need {', '.join(missing)}",
             f"{recording.source.file or trial.name} has {len(recording.names)} channels, none of this name"
-            + (said or (f"; the nearest is {nearest!r}" if nearest else "")),
-            ("Correct the file" if said else "Map the file's own label in [channels]")
+            + (excluded or (f"; the nearest is {nearest!r}" if nearest else "")),
+            ("Correct the file" if excluded else "Map the file's own label in [channels]")
             + ", or remove the name from [models].",
         )
     return recording.selected(names)
@@ -229,6 +228,15 @@ def is_raw(emg: Recording) -> bool:
     """Distinguish raw EMG, which swings about zero, from an envelope, which does not fall below it."""
     known = emg.values[np.isfinite(emg.values)]
     return len(known) > 0 and bool(np.min(known) < 0)
+
+
+def find_raw_emg(trial: Trial, states: Sequence[Recording]) -> Recording | None:
+    """Raw EMG of a trial, of the channels whose envelopes cycles are cut of; None where the file has envelopes."""
+    if "emg" not in trial.streams or not is_raw(trial.stream("emg")):
+        return None
+    raw = trial.stream("emg")
+    names = [name for state in states for name in state.names if name in raw.names]
+    return raw.selected(names) if names else None
 
 
 def on_one_base(trial: Trial, rate_hz: float, keys: tuple[str, ...] | None = None) -> Recording:
@@ -293,7 +301,7 @@ class StudyWalks:
         ready = replace(computed, findings=(*computed.findings, *findings))
         why = ""
         if "kinematics" not in ready.streams and "markers" in ready.streams:
-            why = next((one.what for one in ready.findings if one.kind == "no angles"), standing.unread)
+            why = next((finding.what for finding in ready.findings if finding.kind == "no angles"), standing.unread)
             if self.study.kinematics and self.study.kinematics.angles == "file":
                 why = 'the study selects the angles of the file (angles = "file" in [kinematics])'
         return ReadWalk(ready, standing.body_weight_n(planned), why)

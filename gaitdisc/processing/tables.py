@@ -31,13 +31,13 @@ VALUES = {  # column -> words, unit, digits
 
 def all_cycles(cycles: Sequence[PooledCycles]) -> pd.DataFrame:
     """Every cycle of everybody, kept or left out, one row each."""
-    return _stack([_name_rows(one, one.cycles) for one in cycles if len(one.cycles)], CYCLE_COLUMNS)
+    return _stack([_name_rows(pooled, pooled.cycles) for pooled in cycles if len(pooled.cycles)], CYCLE_COLUMNS)
 
 
 def all_means(cycles: Sequence[PooledCycles]) -> pd.DataFrame:
     """Mean curves of everybody, one row a channel, side and percent."""
     columns = ("channel", "unit", "side", "percent", "n", "mean", "sd")
-    return _stack([_name_rows(one, one.mean_curves()) for one in cycles if len(one.kept)], columns)
+    return _stack([_name_rows(pooled, pooled.mean_curves()) for pooled in cycles if len(pooled.kept)], columns)
 
 
 def mean_recordings(cycles: Sequence[PooledCycles]) -> dict[str, Recording]:
@@ -47,19 +47,19 @@ def mean_recordings(cycles: Sequence[PooledCycles]) -> dict[str, Recording]:
     cycles of the foot; one that is not known over the whole cycle is left out.
     """
     found = {}
-    for one in cycles:
-        means = one.mean_curves()
-        known = {channel.name: channel for channel in one.channels}
+    for pooled in cycles:
+        means = pooled.mean_curves()
+        known = {channel.name: channel for channel in pooled.channels}
         for side in sorted(set(means["side"])):
             own = means[means["side"] == side].pivot_table("mean", "percent", "channel")
             own = own[[name for name in known if name in own and bool(np.isfinite(own[name]).all())]]
-            duration_s = float(one.kept.loc[one.kept["side"] == side, "stride_s"].mean())
+            duration_s = float(pooled.kept.loc[pooled.kept["side"] == side, "stride_s"].mean())
             if own.empty or not len(own.columns):
                 continue
-            words = [word.replace(" ", "-") for word in (one.subject, one.session, one.condition, side) if word]
+            words = (pooled.subject, pooled.session, pooled.condition, side)
             time, channels = own.index.to_numpy(float) / 100.0 * duration_s, [known[str(name)] for name in own.columns]
-            mean = Recording(time, own.to_numpy(float), tuple(channels), one.subject, one.condition)
-            found["_".join(words)] = mean
+            mean = Recording(time, own.to_numpy(float), tuple(channels), pooled.subject, pooled.condition)
+            found["_".join(word.replace(" ", "-") for word in words if word)] = mean
     return found
 
 
@@ -67,38 +67,38 @@ def all_curves(cycles: Sequence[PooledCycles]) -> pd.DataFrame:
     """Every kept cycle of everybody, one row a cycle, channel and percent; channels without a value are not there."""
     columns = ("trial", "side", "start_s", "channel", "unit", "percent", "value")
     tables = []
-    for one in cycles:
-        curves = one.curves
-        for row, cycle in enumerate(one.kept.itertuples(index=False)):
-            for column, channel in enumerate(one.channels):
+    for pooled in cycles:
+        curves = pooled.curves
+        for row, cycle in enumerate(pooled.kept.itertuples(index=False)):
+            for column, channel in enumerate(pooled.channels):
                 values = curves[row, :, column]
                 if np.isfinite(values).any():
                     words = (cycle.trial, cycle.side, cycle.start_s, channel.name, channel.unit, PERCENT, values)
-                    tables.append(_name_rows(one, pd.DataFrame(dict(zip(columns, words, strict=True)))))
+                    tables.append(_name_rows(pooled, pd.DataFrame(dict(zip(columns, words, strict=True)))))
     return _stack(tables, columns)
 
 
 def all_spatiotemporal(cycles: Sequence[PooledCycles]) -> pd.DataFrame:
     """Spatiotemporal values of everybody: n, mean and standard deviation over kept cycles, by side."""
     rows = []
-    for one in cycles:
+    for pooled in cycles:
         for side in FEET:
-            own = one.kept[one.kept["side"] == side]
+            own = pooled.kept[pooled.kept["side"] == side]
             for value in SPATIOTEMPORAL:
                 known = own[value].dropna()
                 spread = float(known.std()) if len(known) > 1 else np.nan
                 mean = float(known.mean()) if len(known) else np.nan
-                rows.append((*_who(one).values(), value, side, len(known), mean, spread))
+                rows.append((*_who(pooled).values(), value, side, len(known), mean, spread))
     return pd.DataFrame(rows, columns=pd.Index([*WHO, "value", "side", "n", "mean", "sd"]))
 
 
-def _who(one: PooledCycles) -> dict[str, str]:
-    return dict(zip(WHO, (one.subject, one.group, one.session, one.condition), strict=True))
+def _who(pooled: PooledCycles) -> dict[str, str]:
+    return dict(zip(WHO, (pooled.subject, pooled.group, pooled.session, pooled.condition), strict=True))
 
 
-def _name_rows(one: PooledCycles, table: pd.DataFrame) -> pd.DataFrame:
+def _name_rows(pooled: PooledCycles, table: pd.DataFrame) -> pd.DataFrame:
     """Table behind the columns that say whose it is."""
-    return table.assign(**_who(one))[[*WHO, *table.columns]]
+    return table.assign(**_who(pooled))[[*WHO, *table.columns]]
 
 
 def _stack(tables: Sequence[pd.DataFrame], columns: Sequence[str]) -> pd.DataFrame:
@@ -109,24 +109,25 @@ def _stack(tables: Sequence[pd.DataFrame], columns: Sequence[str]) -> pd.DataFra
 def overview_table(cycles: Sequence[PooledCycles]) -> Table:
     """Who has how many cycles of which foot, from how many trials, and what placed the contacts."""
     rows, records = [], []
-    for one in cycles:
-        kinetic = one.kept[one.kept["kinetic"].astype(bool)]
-        muscles = emg_counts(one)
-        by = ", ".join(f"{name} ({count})" if len(one.detectors) > 1 else name for name, count in one.detectors.items())
+    for pooled in cycles:
+        kinetic = pooled.kept[pooled.kept["kinetic"].astype(bool)]
+        muscles = emg_counts(pooled)
+        several = len(pooled.detectors) > 1
+        by = ", ".join(f"{name} ({count})" if several else name for name, count in pooled.detectors.items())
         record = {
-            **_who(one), "trials": one.trials, **{f"kept_{side}": one.counted(side) for side in FEET},
-            **{f"left_out_{side}": int((one.left_out["side"] == side).sum()) for side in FEET},
+            **_who(pooled), "trials": pooled.trials, **{f"kept_{side}": pooled.counted(side) for side in FEET},
+            **{f"left_out_{side}": int((pooled.left_out["side"] == side).sum()) for side in FEET},
             **{f"kinetic_{side}": int((kinetic["side"] == side).sum()) for side in FEET},
             "emg_channels": len(muscles), "emg_cycles": sum(muscles.values()), "detectors": by,
-            "contact_offset_s": one.contact_offset_s, "foot_off_offset_s": one.foot_off_offset_s,
-            "offset_steps": one.offset_steps, "over_ground": one.over_ground,
+            "contact_offset_s": pooled.contact_offset_s, "foot_off_offset_s": pooled.foot_off_offset_s,
+            "offset_steps": pooled.offset_steps, "over_ground": pooled.over_ground,
         }  # fmt: skip
         live = sum(count > 0 for count in muscles.values())
         rows.append((
-            one.subject, one.group or NONE, one.where, str(one.trials),
+            pooled.subject, pooled.group or NONE, pooled.where, str(pooled.trials),
             *(f"{record[f'kept_{side}']} / {record[f'left_out_{side}']}" for side in FEET),
             f"{record['kinetic_l']}, {record['kinetic_r']}",
-            f"{live} usable, {record['emg_cycles']} cycles" if live else NONE, by or NONE, offset_words(one),
+            f"{live} usable, {record['emg_cycles']} cycles" if live else NONE, by or NONE, offset_words(pooled),
         ))  # fmt: skip
         records.append(record)
     columns = (
@@ -140,28 +141,28 @@ def overview_table(cycles: Sequence[PooledCycles]) -> Table:
     return Table("cycle_counts", caption, columns, tuple(rows), pd.DataFrame(records))
 
 
-def emg_counts(one: PooledCycles) -> dict[str, int]:
+def emg_counts(pooled: PooledCycles) -> dict[str, int]:
     """Kept cycles of its own foot in which each EMG channel is live."""
-    feet = one.kept["side"].to_numpy()
-    columns = {column: c for column, c in enumerate(one.channels) if c.quantity == "emg"}
+    feet = pooled.kept["side"].to_numpy()
+    columns = {column: c for column, c in enumerate(pooled.channels) if c.quantity == "emg"}
     if not columns:
         return {}
-    curves = one.curves
+    curves = pooled.curves
     return {
         channel.name: int(np.isfinite(curves[feet == channel.side, :, column]).all(axis=1).sum())
         for column, channel in columns.items()
     }
 
 
-def offset_words(one: PooledCycles) -> str:
+def offset_words(pooled: PooledCycles) -> str:
     """By how much contacts of markers or angles were moved, and on how many steps that rests."""
-    late = [name for name in one.detectors if name in ("markers", "angles")]
+    late = [name for name in pooled.detectors if name in ("markers", "angles")]
     if not late:
         return NONE
-    if one.contact_offset_s is None:
+    if pooled.contact_offset_s is None:
         return "not shifted: no plate recorded a step"
-    steps = counted(one.offset_steps, "step")
-    return f"{1000.0 * one.contact_offset_s:+.0f} ms ({steps} that a plate or an event also recorded)"
+    steps = counted(pooled.offset_steps, "step")
+    return f"{1000.0 * pooled.contact_offset_s:+.0f} ms ({steps} that a plate or an event also recorded)"
 
 
 def spatiotemporal_table(sets: Sequence[PooledCycles], name: str) -> Table:
@@ -171,21 +172,21 @@ def spatiotemporal_table(sets: Sequence[PooledCycles], name: str) -> Table:
     rows = []
     for value, (words, unit, digits) in VALUES.items():
         cells = []
-        for one in sets:
+        for pooled in sets:
             for side in FEET:
-                own = known[value, side, one.session, one.condition]
+                own = known[value, side, pooled.session, pooled.condition]
                 cells.append(mean_cell(float(own["mean"]), float(own["sd"]), int(own["n"]), digits))
         if set(cells) != {NONE}:
             rows.append((f"{words} [{unit}]", *cells))
     columns = ("value", *(f"{SIDE_WORDS[side]}" for _ in sets for side in FEET))
-    groups = (("", 1), *((one.where, 2) for one in sets))
+    groups = (("", 1), *((pooled.where, 2) for pooled in sets))
     caption = f"{sets[0].subject}: spatiotemporal values, mean ± standard deviation (number of cycles)."
     return Table(f"spatiotemporal-{name}", caption, columns, tuple(rows), numbers, groups)
 
 
 def tabulate_left_out(sets: Sequence[PooledCycles], name: str) -> Table | None:
     """Cycles of one person that are left out, each with its reason; None where there are none."""
-    numbers = all_cycles([one for one in sets if len(one.left_out)])
+    numbers = all_cycles([pooled for pooled in sets if len(pooled.left_out)])
     numbers = numbers[~numbers["kept"].astype(bool)].reset_index(drop=True) if len(numbers) else numbers
     if not len(numbers):
         return None

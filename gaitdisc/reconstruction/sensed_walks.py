@@ -176,7 +176,7 @@ def target_walk(
     read = trial.stream(stream).selected(sensors)  # refuses, and names the nearest
     read = low_pass(read, filters.kinematics_hz, filters.order, filters.gap_s)
     wanted, findings = _find_targets(trial, study, targets)
-    choice = choose_contacts(trial, study.strides.detector, study.treadmill.direction if study.treadmill else "")
+    choice = choose_contacts(trial, study.strides.detector, study.walking_direction)
     side = study.strides.side if study.strides.side in choice.contacts else next(iter(choice.contacts))
     strides = cut_strides(choice.contacts[side], None, study.strides.min_s, study.strides.max_s)
     values = interpolate(wanted.time, wanted.values, read.time)

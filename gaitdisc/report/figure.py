@@ -14,7 +14,7 @@ import pandas as pd
 
 from gaitdisc.report.panels import in_style
 from gaitdisc.report.table import save_table
-from gaitdisc.whole_file import whole_file
+from gaitdisc.whole_file import write_whole
 
 if TYPE_CHECKING:
     import matplotlib.figure
@@ -60,8 +60,7 @@ def save_figure(figure: Figure, folder: Path, inline_bytes: int = LARGEST_INLINE
                 axis.set_label_coords(0.5, 0.0)
     svg, png = _svg(figure.drawn), _png(figure.drawn)
     for ending, content in (("svg", svg), ("png", png)):
-        with whole_file(folder / f"{figure.name}.{ending}") as part:
-            part.write_bytes(content)
+        write_whole(folder / f"{figure.name}.{ending}", content)
     save_table(figure.numbers, folder / f"{figure.name}.csv")
     kind, content = ("svg+xml", svg) if len(svg) <= max(inline_bytes, len(png)) else ("png", png)
     data = f"data:image/{kind};base64,{base64.b64encode(content).decode('ascii')}"

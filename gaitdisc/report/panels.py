@@ -100,11 +100,12 @@ def legend(drawn: matplotlib.figure.Figure, handles: Sequence[Artist], down: flo
     drawn.legend(handles=list(handles), loc="upper center", ncols=len(handles), bbox_to_anchor=top)
 
 
-def legend_lines(looks: Mapping[str, Look]) -> list[Artist]:
-    """Handles of a legend that explains lines."""
+def legend_lines(looks: Mapping[str, Look | Mapping[str, Any]]) -> list[Artist]:
+    """Handles of a legend that explains lines by their look, or lines and marks by the style that each is drawn in."""
     from matplotlib.lines import Line2D
 
-    return [Line2D([], [], color=look.colour, linestyle=look.line, label=words) for words, look in looks.items()]
+    plain = {w: {"color": k.colour, "linestyle": k.line} if isinstance(k, Look) else k for w, k in looks.items()}
+    return [Line2D([], [], label=words, **style) for words, style in plain.items()]
 
 
 def decades(axes: Axes) -> None:

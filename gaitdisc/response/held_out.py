@@ -176,37 +176,18 @@ def _residual_figure(response: ParticipantResponse, numbers: pd.DataFrame, name:
     drawn, grid = panels(len(names), len(models), 0.95, Room(across=0.25, down=0.33, top=0.5))
     each = [column for column in numbers.columns if column.startswith("stride_")]
     as_pixels = len(numbers) * len(each) > MOST_VECTOR_POINTS
-    for row, (variable, of_variable) in enumerate(numbers.groupby("variable", sort=False)):
-        values = of_variable[["mean", *each]].to_numpy()
-        values = values[np.isfinite(values)]
-        reach = 1.05 * float(np.max(np.abs(values))) if len(values) else 1.0
-        for column, (model, curves) in enumerate(of_variable.groupby("model", sort=False)):
-            axes = grid[row][column]
-            _draw_residual(axes, curves, each, str(model), as_pixels)
-            axes.set_ylim(-(reach or 1.0), reach or 1.0)
-            axes.set_xlim(0, 100)
-            axes.set_xticks([0, 25, 50, 75, 100])
-            axes.tick_params(labelleft=column == 0)
-            if row == len(names) - 1:
+    for row, (variable, of_variable) in zip(grid, numbers.groupby("variable", sort=False), strict=True):
+        _draw_residuals(row, str(variable), of_variable, each, as_pixels)
+        for axes in row:
+            if row is grid[-1]:
                 axes.set_xlabel("stride [%]")
             else:
                 axes.tick_params(labelbottom=False)
-        grid[row][0].set_ylabel(f"[{unit_text(str(of_variable['unit'].iloc[0]))}]")
-        up = f" (up: towards {towards})" if (towards := upwards(str(variable))) else ""
-        title = f"{label(str(variable))}{up}"
-        grid[row][0].set_title(title, loc="left", color=SIDES[find_side(str(variable))].colour)
-    for column, model in enumerate(models):
-        x = grid[0][column].get_position()
-        drawn.text(
-            (x.x0 + x.x1) / 2,
-            1 - 0.05 / drawn.get_figheight(),
-            f"measured − {MODEL_WORDS[model]}",
-            ha="center",
-            va="top",
-            fontsize=9,
-            fontweight="bold",
-            color=MODELS[model].colour,
-        )
+    for axes, model in zip(grid[0], models, strict=True):
+        place = axes.get_position()
+        centre, top = (place.x0 + place.x1) / 2, 1 - 0.05 / drawn.get_figheight()
+        style = {"ha": "center", "va": "top", "fontsize": 9, "fontweight": "bold", "color": MODELS[model].colour}
+        drawn.text(centre, top, f"measured − {MODEL_WORDS[model]}", **style)
     interval = (
         f"shaded: {100 * CONFIDENCE:.0f} % interval at each point (Student's t over strides, corrected for the "
         "correlation of neighbouring strides)"
@@ -230,6 +211,24 @@ def _residual_figure(response: ParticipantResponse, numbers: pd.DataFrame, name:
         f"{shares if numbers['low'].notna().any() else few}"
     )
     return Figure(name, caption, alt, numbers, drawn)
+
+
+def _draw_residuals(
+    row: list[Axes], variable: str, of_variable: pd.DataFrame, each: list[str], as_pixels: bool
+) -> None:
+    """Draw what every model leaves of one variable, a panel a model, on one scale."""
+    values = of_variable[["mean", *each]].to_numpy()
+    values = values[np.isfinite(values)]
+    reach = (1.05 * float(np.max(np.abs(values))) if len(values) else 1.0) or 1.0
+    for axes, (model, curves) in zip(row, of_variable.groupby("model", sort=False), strict=True):
+        _draw_residual(axes, curves, each, str(model), as_pixels)
+        axes.set_ylim(-reach, reach)
+        axes.set_xlim(0, 100)
+        axes.set_xticks([0, 25, 50, 75, 100])
+        axes.tick_params(labelleft=axes is row[0])
+    row[0].set_ylabel(f"[{unit_text(str(of_variable['unit'].iloc[0]))}]")
+    up = f" (up: towards {towards})" if (towards := upwards(variable)) else ""
+    row[0].set_title(f"{label(variable)}{up}", loc="left", color=SIDES[find_side(variable)].colour)
 
 
 def _draw_residual(axes: Axes, curves: pd.DataFrame, each: list[str], model: str, as_pixels: bool) -> None:

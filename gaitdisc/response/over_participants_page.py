@@ -11,7 +11,7 @@ import pandas as pd
 
 from gaitdisc.report.figure import Figure
 from gaitdisc.report.page import Block
-from gaitdisc.report.panels import MODELS, Room, in_style, legend, panels
+from gaitdisc.report.panels import MODELS, Room, in_style, legend, legend_lines, panels
 from gaitdisc.report.table import Table
 from gaitdisc.response.data_quantity_page import length_sentences, length_table, quantity_figure, quantity_sentences
 from gaitdisc.response.pair_tests import direction_found
@@ -80,8 +80,6 @@ def reduction_figure(run: ResponseRun) -> Figure | None:
     if run.over is None or not run.over.reductions["rms_reduction"].notna().any():
         return None
     reductions, tests = run.over.reductions, run.over.reduction_tests
-    from matplotlib.lines import Line2D
-
     names = list(dict.fromkeys(reductions["variable"]))
     drawn, [row] = panels(1, 2, 0.34 * len(names) + 0.2, Room(left=1.75, across=0.3, top=0.6))
     for axes, (measure, words) in zip(row, MEASURES.items(), strict=True):
@@ -98,7 +96,7 @@ def reduction_figure(run: ResponseRun) -> Figure | None:
     key = models_key(tuple(OFFSETS), linestyle="", ms=4, mew=0)
     if len(tests):
         bar = {"marker": "|", "color": "#111111", "ms": 8, "mew": 1.6, "linewidth": 1.4}
-        key.append(Line2D([], [], **bar, label="estimate, 95 % interval"))
+        key += legend_lines({"estimate, 95 % interval": bar})
     legend(drawn, key)
     caption = (
         "Residual (measured minus predicted second derivative) averaged over the held-out strides of the device walk "

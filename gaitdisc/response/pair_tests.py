@@ -11,7 +11,7 @@ import numpy as np
 import pandas as pd
 
 from gaitdisc.report.figure import Figure
-from gaitdisc.report.panels import MODELS, Room, draw_box, in_style, legend, panels, sheets
+from gaitdisc.report.panels import MODELS, Room, draw_box, in_style, legend, legend_lines, panels, sheets
 from gaitdisc.report.table import Table
 from gaitdisc.response.participant_response import ResponseRun
 from gaitdisc.response.participants_result import FAMILIES, PAIRS, PairTests
@@ -219,8 +219,6 @@ def comparison_figures(run: ResponseRun) -> list[Figure]:
 
 
 def _figure(run: ResponseRun, tests: PairTests, numbers: pd.DataFrame, name: str) -> Figure:
-    from matplotlib.lines import Line2D
-
     names = list(dict.fromkeys(numbers["variable"]))
     drawn, [[axes]] = panels(1, 1, HEIGHT, Room(left=0.6, bottom=0.75))
     low = lowest_drawn(numbers)
@@ -248,8 +246,8 @@ def _figure(run: ResponseRun, tests: PairTests, numbers: pd.DataFrame, name: str
     axes.set_ylabel("R² on the held-out device walk [1]")
     for edge in np.arange(len(names) - 1) + 0.5:
         axes.axvline(edge, color="#e4e4e4", linewidth=0.6, zorder=0)
-    bar = Line2D([], [], color="#111111", linewidth=0.9, label="different")
-    legend(drawn, [*models_key(linestyle="-", ms=4, mew=0), bar])
+    bar = legend_lines({"different": {"color": "#111111", "linewidth": 0.9}})
+    legend(drawn, [*models_key(linestyle="-", ms=4, mew=0), *bar])
     hidden = int((numbers["r2"] < low).sum())
     below = f" {counted(hidden, 'value')} below {number(low)} {'is' if hidden == 1 else 'are'} cut off."
     caption = (

@@ -10,14 +10,14 @@ import numpy as np
 import pandas as pd
 
 from gaitdisc.report.figure import Figure
-from gaitdisc.report.panels import MODELS, NULL, Room, draw_box, in_style, legend, panels, sheets
+from gaitdisc.report.panels import MODELS, NULL, Room, draw_box, in_style, legend, legend_lines, panels, sheets
 from gaitdisc.report.table import Table
 from gaitdisc.response.participant_response import ParticipantResponse, ResponseRun
 from gaitdisc.words import MODEL_WORDS, counted, label, number, unit_text
 
 if TYPE_CHECKING:
+    from matplotlib.artist import Artist
     from matplotlib.axes import Axes
-    from matplotlib.lines import Line2D
 
 _TESTED = (("nominal", "nominal"), ("nominal", "exo"), ("augmented", "exo"), ("exo", "exo"))
 LOWEST = -0.25  # R2 below this is drawn at the edge of the axis, with its value
@@ -179,29 +179,19 @@ def _draw_variable(axes: Axes, rows: pd.DataFrame, row: int, low: float) -> None
             axes.annotate(f"◂ {below}", (low, y), (5, 0), textcoords="offset points", va="center", fontsize=6)
 
 
-def models_key(models: Sequence[str] = tuple(MODELS), **style: Any) -> list[Line2D]:
+def models_key(models: Sequence[str] = tuple(MODELS), **style: Any) -> list[Artist]:
     """Handles of a legend that explains models; without a style of its own each has its line."""
-    from matplotlib.lines import Line2D
-
-    return [
-        Line2D(
-            [], [], color=look.colour, marker=look.mark, label=MODEL_WORDS[model], **{"linestyle": look.line} | style
-        )
-        for model, look in MODELS.items()
-        if model in models
-    ]
+    looks = {MODEL_WORDS[model]: look for model, look in MODELS.items() if model in models}
+    return legend_lines(
+        {w: {"color": k.colour, "marker": k.mark, "linestyle": k.line} | style for w, k in looks.items()}
+    )
 
 
-def r2_key(people: int, null: bool) -> list[Line2D]:
+def r2_key(people: int, null: bool) -> list[Artist]:
     """Handles of the legend."""
-    from matplotlib.lines import Line2D
-
-    hollow = "ridge" if people == 1 else "ridge, median"
-    return [
-        *models_key(linestyle="", ms=5, mew=0),
-        Line2D([], [], marker="o", mfc="none", mec="#333333", linestyle="", ms=6.5, label=hollow),
-        *([Line2D([], [], color=NULL.colour, linestyle=NULL.line, label="band-limited noise")] if null else []),
-    ]
+    ridge = {"marker": "o", "mfc": "none", "mec": "#333333", "linestyle": "", "ms": 6.5}
+    others = {"ridge" if people == 1 else "ridge, median": ridge, **({"band-limited noise": NULL} if null else {})}
+    return [*models_key(linestyle="", ms=5, mew=0), *legend_lines(others)]
 
 
 def lowest_drawn(numbers: pd.DataFrame) -> float:

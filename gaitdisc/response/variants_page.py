@@ -9,7 +9,7 @@ import pandas as pd
 
 from gaitdisc.report.figure import Figure, save_figures
 from gaitdisc.report.page import write_page
-from gaitdisc.report.panels import MODELS, Room, in_style, legend, panels
+from gaitdisc.report.panels import MODELS, Room, in_style, legend, legend_lines, panels
 from gaitdisc.report.table import Table, save_table, save_tables
 from gaitdisc.response.variants import VariantRun
 from gaitdisc.words import MODEL_WORDS, counted, label, listing, number
@@ -26,8 +26,6 @@ TITLES = {"modalities": "Effect of the inputs", "sensitivity": "Other cut-offs a
 @in_style
 def modalities_figure(run: VariantRun) -> Figure | None:
     """Fall of R2, median over the variables of a group, by family of inputs; None where nobody has numbers."""
-    from matplotlib.lines import Line2D
-
     numbers = falls(run)
     if not len(numbers):
         return None
@@ -53,9 +51,9 @@ def modalities_figure(run: VariantRun) -> Figure | None:
         axes.minorticks_off()
         axes.set_xlabel("fall of R² [1]")
         axes.set_title(GROUPS[group])
+    looks = {f"{MODEL_WORDS[model]}, median": MODELS[model] for model in SHOWN}
     mark = {"linestyle": "", "ms": 5}
-    looks = [(MODELS[model], f"{MODEL_WORDS[model]}, median") for model in SHOWN]
-    legend(drawn, [Line2D([], [], color=look.colour, marker=look.mark, label=words, **mark) for look, words in looks])
+    legend(drawn, legend_lines({w: {"color": k.colour, "marker": k.mark, **mark} for w, k in looks.items()}))
     low, high = run.held_out_s
     held = f"{low:.1f}" + (f" to {high:.1f}" if high - low >= 0.05 else "")
     caption = (

@@ -11,7 +11,7 @@ import pandas as pd
 
 from gaitdisc.processing.curves_figure import WALKS, find_walk
 from gaitdisc.report.figure import Figure
-from gaitdisc.report.panels import DROPPED, KEPT, SIDES, Room, in_style, legend, panels
+from gaitdisc.report.panels import DROPPED, KEPT, SIDES, Room, in_style, legend, legend_lines, panels
 from gaitdisc.report.table import Table
 from gaitdisc.response.participant_response import FIT_COLUMNS, ResponseRun
 from gaitdisc.response.participants_result import table_of_people
@@ -55,7 +55,6 @@ def reason_kind(reason: str) -> str:
 @in_style
 def strides_figure(run: ResponseRun, participant: str, name: str) -> Figure | None:
     """Every stride as a bar, and stride durations over time, for each walk; None where there is no stride."""
-    from matplotlib.lines import Line2D
     from matplotlib.patches import Patch
 
     numbers = stride_numbers(run, participant)
@@ -74,12 +73,11 @@ def strides_figure(run: ResponseRun, participant: str, name: str) -> Figure | No
         strip.tick_params(labelbottom=False)
     grid[-1][0].set_xlabel("time in the trial [s]")
     looks = {"left": SIDES["l"], "right": SIDES["r"], "dropped": DROPPED}
-    marks = [
-        Line2D([], [], marker=look.mark, color=look.colour, linestyle="", ms=4, label=word)
-        for word, look in looks.items()
-    ]
+    marks = {
+        words: {"marker": look.mark, "color": look.colour, "linestyle": "", "ms": 4} for words, look in looks.items()
+    }
     bars = {"kept": KEPT, "dropped, with the letter of its reason": DROPPED}
-    legend(drawn, [*(Patch(facecolor=look.colour, label=words) for words, look in bars.items()), *marks])
+    legend(drawn, [*(Patch(facecolor=look.colour, label=words) for words, look in bars.items()), *legend_lines(marks)])
     parts = [
         f"{condition}: {int(rows['kept'].sum())} of {len(rows)} strides kept, median duration "
         f"{rows['duration_s'].median():.2f} s"
