@@ -9,7 +9,7 @@ from pathlib import Path
 
 import numpy as np
 
-from gaitdisc.discovery.candidate import saturations
+from gaitdisc.discovery.candidate import Candidate, saturations
 from gaitdisc.discovery.catalogue import ALL, Request
 from gaitdisc.discovery.discover_files import find_missing, seal
 from gaitdisc.discovery.effect_words import named_at
@@ -17,6 +17,7 @@ from gaitdisc.discovery.first_states import guess_states
 from gaitdisc.discovery.fit_by_engine import EngineFit, base_runs, errs_less, held_out, with_own_runs
 from gaitdisc.discovery.grids import find_rhythm
 from gaitdisc.discovery.result import ENGINE, Discovery, FoundEffect
+from gaitdisc.discovery.scored_model import Part
 from gaitdisc.discovery.spiked_samples import without_spikes
 from gaitdisc.engines.conventions import refuse_other_conventions, refuse_other_units
 from gaitdisc.engines.engine import Engine
@@ -128,7 +129,7 @@ def search(fit: EngineFit, base: EngineAnswer, request: Request, read: dict[Path
     if found.effects and found.verdict != "wrong_initial_condition":
         held = held_out(found, runs, data)
         if not engine.fibres:  # their runs take too long
-            found = fit.fitted(found, linear, runs.among(~held))
+            found = with_forces_of_muscles(fit, fit.fitted(found, linear, runs.among(~held)), linear, runs.among(~held))
         runs = replace(runs, after=fit.left(found, fit.parts, runs)).with_floor(hidden)
         both = list(zip(found.effects, fit.parts, strict=True))
         sure = tuple(part for one, part in both if request.effects or not one.small)
@@ -154,6 +155,45 @@ def search(fit: EngineFit, base: EngineAnswer, request: Request, read: dict[Path
         found = replace(found, verdict="no_gap", rivals=(), explanations=())
     runs = runs.with_floor(hidden)
     return EngineAnswer(with_own_runs(found, runs, fit, linear), augmented, written, runs, engine)
+
+
+def with_forces_of_muscles(fit: EngineFit, found: Discovery, base: Simulation, runs: OwnRuns) -> Discovery:
+    """Return what was found with a muscle's force in the place of its excitation's gain, where own runs leave less.
+
+    An expansion does not distinguish them: its inputs are activations.
+    """
+    own = fit.mapping.values()
+    for number, part in enumerate(fit.parts):
+        name, kept, gain = f"{part.candidate.place}_force", fit.parts, found.effects[number]
+        if part.candidate.name != "input_gain" or name not in own:
+            continue
+        candidate = Candidate("wrong_parameter", "parameter", name, "wrong_parameter", value=own[name])
+        force = replace(gain, kind="parameter", place=name, name="wrong_parameter")
+        rivals = tuple(one for one in found.rivals if (one.name, one.place) != (force.name, name))
+        before = fit.left(found, kept, runs)
+        fit.parts = (*kept[:number], Part(candidate, {"value": part.values["gain"] * own[name]}), *kept[number + 1 :])
+        tried = replace(
+            found,
+            verdict="wrong_parameter",
+            effects=(*found.effects[:number], force, *found.effects[number + 1 :]),
+            rivals=(replace(gain, tied=False), *rivals),
+            explanations=tuple(
+                replace(
+                    one,
+                    effects=tuple(
+                        force if (each.name, each.place) == (gain.name, gain.place) else each for each in one.effects
+                    ),
+                )
+                for one in found.explanations
+            ),
+            findings=tuple(one for one in found.findings if one.kind != "unstated errors"),
+        )
+        tried = fit.fitted(tried, base, runs)
+        if np.nansum((fit.left(tried, fit.parts, runs) / runs.floor) ** 2) < np.nansum((before / runs.floor) ** 2):
+            found = tried
+        else:
+            fit.parts = kept
+    return found
 
 
 def without_beside(found: Discovery, effects: tuple[FoundEffect, ...], idle: tuple[FoundEffect, ...]) -> Discovery:
