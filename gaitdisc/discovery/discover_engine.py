@@ -160,32 +160,25 @@ def search(fit: EngineFit, base: EngineAnswer, request: Request, read: dict[Path
 def with_forces_of_muscles(fit: EngineFit, found: Discovery, base: Simulation, runs: OwnRuns) -> Discovery:
     """Return what was found with a muscle's force in the place of its excitation's gain, where own runs leave less.
 
-    An expansion does not distinguish them: its inputs are activations.
+    An expansion does not distinguish them: its inputs are activations. What ties with that gain there does not here.
     """
     own = fit.mapping.values()
-    for number, part in enumerate(fit.parts):
-        name, kept, gain = f"{part.candidate.place}_force", fit.parts, found.effects[number]
-        if part.candidate.name != "input_gain" or name not in own:
+    for number, gain in enumerate(found.effects):
+        name, kept = f"{gain.place}_force", fit.parts
+        if gain.name != "input_gain" or name not in own:
             continue
-        candidate = Candidate("wrong_parameter", "parameter", name, "wrong_parameter", value=own[name])
-        force = replace(gain, kind="parameter", place=name, name="wrong_parameter")
-        rivals = tuple(one for one in found.rivals if (one.name, one.place) != (force.name, name))
         before = fit.left(found, kept, runs)
-        fit.parts = (*kept[:number], Part(candidate, {"value": part.values["gain"] * own[name]}), *kept[number + 1 :])
+        candidate = Candidate("wrong_parameter", "parameter", name, "wrong_parameter", value=own[name])
+        force = Part(candidate, {"value": kept[number].values["gain"] * own[name]})
+        fit.parts = (*kept[:number], force, *kept[number + 1 :])
+        named = replace(gain, kind="parameter", place=name, name="wrong_parameter")
+        others = (one for one in (gain, *found.rivals) if (one.name, one.place) != (named.name, name))
         tried = replace(
             found,
             verdict="wrong_parameter",
-            effects=(*found.effects[:number], force, *found.effects[number + 1 :]),
-            rivals=(replace(gain, tied=False), *rivals),
-            explanations=tuple(
-                replace(
-                    one,
-                    effects=tuple(
-                        force if (each.name, each.place) == (gain.name, gain.place) else each for each in one.effects
-                    ),
-                )
-                for one in found.explanations
-            ),
+            effects=(*found.effects[:number], named, *found.effects[number + 1 :]),
+            rivals=tuple(replace(one, tied=False) for one in others),
+            explanations=found.explanations[:1],
             findings=tuple(one for one in found.findings if one.kind != "unstated errors"),
         )
         tried = fit.fitted(tried, base, runs)
