@@ -50,7 +50,6 @@ class Case:
     measured: Measured
     learned: tuple[int, ...]  # trials that are searched and fitted
     held_out: tuple[int, ...]  # trials that nothing but a start is fitted to
-    guess: Values  # (trial, sample, state), states of every trial, roughly; NaN beyond a trial's end
     record_filter: RecordFilter
     alpha: float = ALPHA  # the greatest rate of false finds
     substeps: int = TRIED_SUBSTEPS[0]  # integration steps a sample
@@ -59,6 +58,11 @@ class Case:
     def rhythm(self) -> Rhythm:
         """The record's times."""
         return self.search.rhythm
+
+    @property
+    def guess(self) -> Values:
+        """States of every trial, roughly (trial, sample, state); NaN beyond a trial's end."""
+        return self.search.guess
 
     @cached_property
     def sensor_noise(self) -> Values:
@@ -195,14 +199,14 @@ def set_up_case(simulation: Simulation, measured: Measured, request: Request = A
     rhythm = find_rhythm(measured.observed, measured.drive.rate)
     listed = list_candidates(simulation, places, (*read_shapes(), *request.shapes))
     considered = tuple(filter(request.possible, (*listed, *request.added)))
-    search = Search(simulation, places, considered, rhythm, request.progress)
+    guess = guess_states(simulation, measured, rhythm.period, kinematic_rates(simulation))
+    search = Search(simulation, places, considered, rhythm, guess, request.progress)
     trials = len(measured.drive.samples)
     held = max(round(trials / 4), 1)
-    guess = guess_states(simulation, measured, rhythm.period, kinematic_rates(simulation))
     passed, findings = find_record_filter(simulation, measured, rhythm.period, guess)
     measured = replace(measured, findings=(*measured.findings, *findings))
     learned, held_out = tuple(range(trials - held)), tuple(range(trials - held, trials))
-    case = Case(search, measured, learned, held_out, guess, passed, alpha=request.alpha)
+    case = Case(search, measured, learned, held_out, passed, alpha=request.alpha)
     return _less_idle(replace(case, substeps=_count_substeps(case)))
 
 

@@ -10,7 +10,7 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
-from gaitdisc.discovery.candidate import saturations
+from gaitdisc.discovery.candidate import Candidate, saturations
 from gaitdisc.discovery.catalogue import ALL, Request
 from gaitdisc.discovery.discover_files import find_missing, seal
 from gaitdisc.discovery.effect_words import named_at
@@ -117,7 +117,7 @@ def search(fit: EngineFit, base: EngineAnswer, request: Request, read: dict[Path
     if found.effects and found.verdict != "wrong_initial_condition":
         held = held_out(found, runs, data)
         if not engine.fibres:  # their runs take too long
-            found = fit.fitted(found, linear, runs.among(~held))
+            found = with_forces_of_muscles(fit, fit.fitted(found, linear, runs.among(~held)), linear, runs.among(~held))
         runs = replace(runs, after=fit.left(found, fit.parts, runs)).with_floor(hidden)
         kept = keep_borne_out(fit, found, runs, held)
         if not kept:
@@ -175,6 +175,38 @@ def keep_borne_out(fit: EngineFit, found: Discovery, runs: OwnRuns, held: NDArra
         if not errs_less(runs, fit.left(found, others, runs), held):
             kept = tuple(one for one in kept if one is not part)
     return kept
+
+
+def with_forces_of_muscles(fit: EngineFit, found: Discovery, base: Simulation, runs: OwnRuns) -> Discovery:
+    """Return what was found with a muscle's force in the place of its excitation's gain, where own runs leave less.
+
+    An expansion does not distinguish them: its inputs are activations. What ties with that gain there does not here.
+    """
+    own = fit.mapping.values()
+    for number, gain in enumerate(found.effects):
+        name, kept = f"{gain.place}_force", fit.parts
+        if gain.name != "input_gain" or name not in own:
+            continue
+        before = fit.left(found, kept, runs)
+        candidate = Candidate("wrong_parameter", "parameter", name, "wrong_parameter", value=own[name])
+        force = Part(candidate, {"value": kept[number].values["gain"] * own[name]})
+        fit.parts = (*kept[:number], force, *kept[number + 1 :])
+        named = replace(gain, kind="parameter", place=name, name="wrong_parameter")
+        others = (one for one in (gain, *found.rivals) if (one.name, one.place) != (named.name, name))
+        tried = replace(
+            found,
+            verdict="wrong_parameter",
+            effects=(*found.effects[:number], named, *found.effects[number + 1 :]),
+            rivals=tuple(replace(one, tied=False) for one in others),
+            explanations=found.explanations[:1],
+            findings=tuple(one for one in found.findings if one.kind != "unstated errors"),
+        )
+        tried = fit.fitted(tried, base, runs)
+        if np.nansum((fit.left(tried, fit.parts, runs) / runs.floor) ** 2) < np.nansum((before / runs.floor) ** 2):
+            found = tried
+        else:
+            fit.parts = kept
+    return found
 
 
 def without_beside(found: Discovery, effects: tuple[FoundEffect, ...], idle: tuple[FoundEffect, ...]) -> Discovery:

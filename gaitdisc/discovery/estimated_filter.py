@@ -7,6 +7,7 @@ fall is in the way; then the simulation as read, laid over the record run by run
 from __future__ import annotations
 
 from dataclasses import replace
+from statistics import geometric_mean
 
 import numpy as np
 
@@ -17,13 +18,12 @@ from gaitdisc.discovery.segments import FEWEST_SAMPLES, cut_segments
 from gaitdisc.discovery.shooting import Shooting
 from gaitdisc.recording import Finding
 from gaitdisc.recording.arrays import Values
-from gaitdisc.signals.recorded_filter import RecordedFilter, find_filter
+from gaitdisc.signals.recorded_filter import LIKELIER, RecordedFilter, find_filter
 from gaitdisc.simulation.measured import Measured
 from gaitdisc.simulation.simulation import Simulation
 
 SURE = 4.0  # times the noise's power at the cut-off, up to which a signal there is not in the way
 FELT = 1e-3  # times the noise's power at the cut-off, from which on a signal there may be in the way
-LIKELIER = 10.0  # log likelihood, by which the signal has to be more like the simulation than like any that dies out
 ALIKE = 1.3  # between the cut-offs of channels that went through one filter
 OVERLAP = 4  # times as long a run is as what it shares with the next on either side
 ROUGH = 1.0  # times the noise's power at the cut-off, from which on a signal there makes the number a rough one
@@ -40,7 +40,12 @@ def find_record_filter(
     """
     stated = tuple(simulation.sensor(name).lowpass for name in measured.channels)
     unknown = [number for number, cutoff in enumerate(stated) if cutoff is None]
+    units = [simulation.sensor(name).unit for name in measured.channels]
     seen = {number: found for number in unknown if (found := find_filter(_trials(measured, number), measured.rate))}
+    for number in [number for number in unknown if number not in seen]:  # its own spectrum shows none clearly
+        beside = [one.cutoff_hz for k, one in seen.items() if units[k] == units[number] and one.signal <= ROUGH]
+        if beside and (found := find_filter(_trials(measured, number), measured.rate, at_hz=geometric_mean(beside))):
+            seen[number] = found
     inputs = bool(seen) and _inputs_are_filtered(simulation, measured)
     if inputs or any(one.signal > FELT for one in seen.values()):
         length = min(max(int(period * measured.rate), FEWEST_SAMPLES), int(measured.samples.min()) // 2)
@@ -49,10 +54,9 @@ def find_record_filter(
         shooting = Shooting(measured, runs, white_noise(size), past=guess)
         as_read = fit_model(shooting, simulation, (), runs.starts(guess))
         seen = _beside_the_simulation(as_read, seen, inputs)
-    units = [simulation.sensor(name).unit for name in measured.channels]
     cutoffs = _as_the_surer(seen, units)
     if cutoffs and max(cutoffs.values()) < ALIKE * min(cutoffs.values()):  # one filter
-        cutoffs = dict.fromkeys(cutoffs, float(np.exp(np.mean(np.log(list(cutoffs.values()))))))
+        cutoffs = dict.fromkeys(cutoffs, geometric_mean(cutoffs.values()))
     passed = RecordFilter(tuple(cutoffs.get(number, cutoff) for number, cutoff in enumerate(stated)), measured.rate)
     findings = []
     for number, hz in cutoffs.items():
@@ -80,12 +84,9 @@ def _as_the_surer(seen: dict[int, RecordedFilter], units: list[str]) -> dict[int
     """Cut-offs, a rough one in the place of which stands that of surer channels of the same unit."""
     found = {}
     for number, one in seen.items():
-        surer = [
-            other.cutoff_hz
-            for k, other in seen.items()
-            if units[k] == units[number] and other.signal <= ROUGH < one.signal
-        ]
-        found[number] = float(np.exp(np.mean(np.log(surer)))) if surer else one.cutoff_hz
+        beside = [other for k, other in seen.items() if units[k] == units[number]]
+        surer = [other.cutoff_hz for other in beside if other.signal <= ROUGH < one.signal]
+        found[number] = geometric_mean(surer) if surer else one.cutoff_hz
     return found
 
 

@@ -25,6 +25,7 @@ from gaitdisc.engines.mapping import replace_inputs, with_input_changed, with_st
 from gaitdisc.engines.motion import Values
 from gaitdisc.engines.own_runs import Driven, OwnRuns, residual_by, root_mean_square, spread_stretches, trial_called
 from gaitdisc.engines.written import WrittenModel, write_model
+from gaitdisc.processing.kept_parts import hash_content
 from gaitdisc.simulation.expression import names, parse
 from gaitdisc.simulation.measured import Measured
 from gaitdisc.simulation.simulation import Simulation
@@ -176,7 +177,12 @@ def base_runs(engine: Engine, fit: EngineFit) -> OwnRuns:
     """Run a model as read along every trial."""
     mapping, data, recorded = fit.mapping, fit.measured, fit.low_pass.filtered
     at = spread_stretches(data, find_rhythm(data.observed, data.rate).samples, engine.fibres, fit.low_pass.margin)
-    left = residual_by(Driven(engine, mapping, data.drive.inputs, {}, recorded, fit.progress), data, at, fit.states)
+    known = recall(hash_content((mapping, data, data.drive, fit.low_pass), engine.path.read_text(encoding="utf-8")))
+    if known is None:
+        driven = Driven(engine, mapping, data.drive.inputs, {}, recorded, fit.progress)
+        known = residual_by(driven, data, at, fit.states).tolist()
+        keep(known)
+    left = np.array(known)
     sensors = {name: mapping.sensor(name) for name in data.channels}
     given = np.array([sensor.sd or np.nan for sensor in sensors.values()], float)
     floor = np.where(np.isnan(given), sensor_noise(data.observed), given)

@@ -123,6 +123,10 @@ class Scorer:
             if candidate.verdict != "missing_physics" and not late:  # a signal that is late already: not once more
                 yield self._signal_columns(line, candidate, along)
 
+    def beginnings(self, candidate: Candidate) -> list[dict[str, float]]:
+        """Constants of a candidate at which a search begins along the run."""
+        return [cell.constants for cell in self._cells(candidate, {candidate.role: self._along([candidate.role])})]
+
     def _cells(self, candidate: Candidate, along: dict[str, Values]) -> list[_Cell]:
         constants = dict(candidate.constants or {})
         x = along[candidate.role].ravel() if constants else np.zeros(1)

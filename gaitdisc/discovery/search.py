@@ -15,6 +15,7 @@ from gaitdisc.discovery.grids import Rhythm
 from gaitdisc.discovery.places import Place
 from gaitdisc.discovery.score import Score, Scorer
 from gaitdisc.discovery.scored_model import Explanations, Part, ScoredModel, compared
+from gaitdisc.recording.arrays import Values
 from gaitdisc.simulation.evaluating import Points, evaluate
 from gaitdisc.simulation.simulation import Simulation
 
@@ -38,6 +39,7 @@ class Search:
     places: tuple[Place, ...]
     candidates: tuple[Candidate, ...]
     rhythm: Rhythm
+    guess: Values = field(compare=False)  # (trial, sample, state), states of the record, roughly
     progress: Callable[[str], None] = field(default_factory=lambda: lambda _: None, compare=False)
 
     def extended(self, now: ScoredModel) -> list[ScoredModel]:
@@ -64,20 +66,24 @@ class Search:
         before, *longer = compared([now, *[*likeliest.values()][:MOST_COMPARED]])
         return [before, *(replace(model, gained=before.bic - model.bic) for model in longer)]
 
-    def with_part(self, now: ScoredModel, part: Part, turns: int = TURNS) -> ScoredModel:
+    def with_part(self, now: ScoredModel, part: Part, turns: int = TURNS, starts: Values | None = None) -> ScoredModel:
         """Fit a model with one explanation more to the same runs."""
-        return now.refitted(now.shooting, (*now.parts, part), turns=turns, enough=NEARLY)
+        return now.refitted(now.shooting, (*now.parts, part), starts, turns, NEARLY)
 
     def far_off(self, now: ScoredModel) -> list[ScoredModel]:
-        """Fit each number without bounds from other orders of magnitude: a slope at the file's does not reach these."""
-        fitted = []
+        """Fit numbers without bounds, and limits of a force along the record: slopes at the file's reach neither."""
+        fitted, segments = [], now.shooting.segments
         for candidate in self.open_beside(now):
+            begun, starts = list[dict[str, float]](), None
             if candidate.verdict == "wrong_parameter" and not candidate.bounds and candidate.value:
-                parts = [Part(candidate, {"value": candidate.value * factor}) for factor in DECADES]
-                begun = [self.with_part(now, part, FEW_TURNS) for part in parts]
-                best = min(begun, key=lambda model: model.fit.misfit if np.isfinite(model.fit.misfit) else np.inf)
-                if best.fit.misfit < now.fit.misfit:
-                    fitted.append(now.refitted(now.shooting, best.parts, best.fit.starts, TURNS, NEARLY))
+                begun = [{"value": candidate.value * factor} for factor in DECADES]
+            elif candidate.name == "force_saturation":
+                recorded, starts = replace(now.fit, states=segments.of(self.guess)), segments.starts(self.guess)
+                begun = self.scorer(replace(now, fit=recorded)).beginnings(candidate)
+            tried = [self.with_part(now, Part(candidate, values), FEW_TURNS, starts) for values in begun]
+            best = min(tried, key=lambda model: np.nan_to_num(model.fit.misfit, nan=np.inf), default=now)
+            if best.fit.misfit < now.fit.misfit:
+                fitted.append(now.refitted(now.shooting, best.parts, best.fit.starts, TURNS, NEARLY))
         return fitted
 
     def _report(self, worth: list[Score]) -> Iterator[Score]:

@@ -6,32 +6,17 @@ from collections.abc import Callable, Mapping
 from copy import copy
 from dataclasses import replace
 from functools import wraps
-from operator import attrgetter
 from pathlib import Path
-from typing import Any, NamedTuple
+from typing import Any
 
 import numpy as np
 
 from gaitdisc.engines.ball_joints import WAYS, to_accelerations, to_coordinates, to_forces, to_positions
 from gaitdisc.engines.motion import ByHand, Coordinate, Motion, Pushes, Values, new_name, refuse_absent
+from gaitdisc.engines.mujoco_numbers import PASSIVE, list_of_controls, list_of_parts, read_number, with_numbers
 from gaitdisc.engines.mujoco_text import with_effect, with_range, with_value
 from gaitdisc.errors import ReadError, SchemaError
 from gaitdisc.simulation.parts import Input, Parameter
-
-PASSIVE = {  # numbers of a joint or tendon: their units where it turns and where it slides, and the force of one
-    "stiffness": ("N m/rad", "N/m", "{rest!r} - {name}"),
-    "damping": ("N m s/rad", "N s/m", "-{speed}"),
-    "frictionloss": ("N m", "N", "-sign({speed})"),
-}
-
-
-class _Place(NamedTuple):
-    """Where a number of the model stands."""
-
-    array: str  # of the engine
-    index: Any  # in it
-    unit: str
-    part: tuple[str, int]  # kind and number of the part that has it
 
 
 def _heard(method: Callable[..., Any]) -> Callable[..., Any]:
@@ -91,11 +76,13 @@ class MujocoModel:
             for name, called, kind, own in zip(names, words, kinds, ranges, strict=True)
             for unit, way in WAYS[kind]
         )
-        parts = self._places_of_parts()
+        parts = list_of_parts(mujoco, model, self._names)
         taken = {"gravity", *parts} | {each for one in self.coordinates for each in (one.name, one.speed, one.port)}
         self.controls = tuple(Input(name, "1", "actuator") for name in self._names("control", model.nu, taken))
-        self._places = parts | self._places_of_controls()
-        self.parameters = tuple(Parameter(name, self._value(name), one.unit) for name, one in self._places.items())
+        self._places = parts | list_of_controls(mujoco, model, self.controls)
+        self.parameters = tuple(
+            Parameter(name, read_number(model, name, at), at.unit) for name, at in self._places.items()
+        )
         at_zero = {("joint", k) for k in np.flatnonzero(kinds < 2)} | {("tendon", k) for k in range(model.ntendon)}
         numbers = zip(self.parameters, self._places.values(), strict=True)
         said = ((one.name, one.value and "gear" not in one.name, place.part in at_zero) for one, place in numbers)
@@ -211,7 +198,8 @@ class MujocoModel:
     def text_with_value(self, text: str, name: str, value: float) -> str | None:
         """Text of the model with another value of a parameter."""
         kind, number = self._places[name].part
-        model, share = self._model, value / (self._value(name) or 1.0)
+        model = self._model
+        share = value / (read_number(model, name, self._places[name]) or 1.0)
         numbers = {"pos": model.body_ipos, "quat": model.body_iquat, "diaginertia": share * model.body_inertia}
         inertia = {word: each[number] for word, each in numbers.items()} if name.endswith("_mass") else {}
         return with_value(text, name, value, kind, self._called(kind, number), inertia)
@@ -272,58 +260,12 @@ class MujocoModel:
         found = self._mujoco.mj_id2name(self._model, getattr(self._mujoco.mjtObj, f"mjOBJ_{kind.upper()}"), number)
         return found or ""
 
-    def _places_of_parts(self) -> dict[str, _Place]:
-        """Every number of bodies, joints and tendons that may be changed by name."""
-        model = self._model
-        places: dict[str, _Place] = {}
-        if np.any(model.opt.gravity):
-            places["gravity"] = _Place("opt.gravity", slice(None), "m/s^2", ("body", 0))
-        for body, name in enumerate(self._names("body", model.nbody, set())):
-            if model.body_dofnum[model.body_rootid[body]] or model.body_weldid[body]:
-                places[f"{name}_mass"] = _Place("body_mass", body, "kg", ("body", body))
-        joints = [WAYS[kind][0][0] for kind in model.jnt_type]
-        along = zip(model.wrap_type[model.tendon_adr], model.wrap_objid[model.tendon_adr], strict=True)
-        tendons = [joints[k] if way == int(self._mujoco.mjtWrap.mjWRAP_JOINT) else "m" for way, k in along]
-        axes, taken = np.split(np.arange(model.nv), model.jnt_dofadr[1:]), set[str]()
-        for kind, units, prefix in (("joint", joints, "jnt"), ("tendon", tendons, "tendon")):
-            for number, (name, unit) in enumerate(zip(self._names(kind, len(units), taken), units, strict=True)):
-                for word, of in PASSIVE.items():
-                    whole = kind == "joint" and word != "stiffness"  # of each of its axes
-                    array, index = (f"dof_{word}", axes[number]) if whole else (f"{prefix}_{word}", number)
-                    places[f"{name}_{word}"] = _Place(array, index, of[unit == "m"], (kind, number))
-        return places
-
-    def _places_of_controls(self) -> dict[str, _Place]:
-        """Every muscle's force, and every motor's gear."""
-        model, places = self._model, {}
-        for number, one in enumerate(self.controls):
-            if model.actuator_gaintype[number] == int(self._mujoco.mjtGain.mjGAIN_MUSCLE):
-                if model.actuator_gainprm[number, 2] > 0:
-                    places[f"{one.name}_force"] = _Place("actuator_gainprm", (number, 2), "N", ("actuator", number))
-            else:
-                places[f"{one.name}_gear"] = _Place("actuator_gear", (number, 0), "1", ("actuator", number))
-        return places
-
-    def _value(self, name: str) -> float:
-        """Length of gravity; of several equal numbers the first."""
-        own = attrgetter(self._places[name].array)(self._model)[self._places[name].index]
-        return float(np.linalg.norm(own) if name == "gravity" else np.ravel(own)[0])
-
     def with_values(self, values: Mapping[str, float]) -> MujocoModel:
         """Model with other values of some parameters; itself where none differs."""
-        own = {name: self._value(name) for name in values}
-        shares = {name: values[name] / (size or 1.0) for name, size in own.items() if size != values[name]}
-        if not shares:
+        model = with_numbers(self._model, self._places, values)
+        if model is self._model:
             return self
         other = copy(self)
-        other._model = model = copy(self._model)
-        for name, share in shares.items():
-            array, index, *_ = self._places[name]
-            numbers = attrgetter(array)(model)
-            numbers[index] = numbers[index] * share if name == "gravity" else values[name]
-            if name.endswith("_mass"):  # a body of the same shape: its inertia goes with its mass
-                model.body_inertia[index] *= share
-            if name.endswith("_force"):
-                model.actuator_biasprm[index] = values[name]
+        other._model = model
         self._mujoco.mj_setConst(model, self._data)
         return other

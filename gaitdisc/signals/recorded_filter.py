@@ -30,6 +30,7 @@ FALLING = 30.0  # times the power just below half the rate: power at a quarter o
 ROUNDED = 100.0  # times the power of rounding, below which a floor is one of digits and not of a sensor
 SPREAD = 1e-8  # of the strongest line: what the window itself spreads, and no sensor is so quiet
 CLEARLY = 60.0  # by which the log likelihood must be better with the filter than without
+LIKELIER = 10.0  # by which it must be for the filter that other channels went through, if no other is clearly better
 
 
 @dataclass(frozen=True)
@@ -57,13 +58,14 @@ class RecordedFilter:
 
 
 def find_filter(
-    trials: Sequence[Values], rate_hz: float, like: Sequence[Values] | None = None
+    trials: Sequence[Values], rate_hz: float, like: Sequence[Values] | None = None, at_hz: float | None = None
 ) -> RecordedFilter | None:
     """Find the zero-lag low-pass that a channel went through.
 
     trials each (sample,): one channel of each trial, evenly sampled; NaN where nothing was measured
     like each (sample,): the same channel as a simulation has it, before any filter: the signal's spectrum is like that
         of these
+    at_hz: cut-off of channels that were recorded beside it: less has to speak for that
     returns: none where the spectrum shows none, or one of order 4
     Source: Welch (1967), IEEE Trans. Audio Electroacoust. 15:70-73. Whittle (1953), Ark. Mat. 2:423-434.
 
@@ -85,13 +87,16 @@ def find_filter(
     shape = np.ones(len(above.power)) if model is None else np.interp(above.frequency, model.frequency, model.power)
     fits = [_Fit(above, shape / shape[0], order) for order in (ORDER, OTHER)]
     found, other = (max(fit.best((begin,)) for begin in BEGINNINGS) for fit in fits)
+    beside, enough = fits[0].best((at_hz / rate_hz,), held=True) if at_hz else found, CLEARLY
+    if at_hz and (found[0] - beside[0]) * spectrum.windows < CLEARLY:
+        found, enough = beside, LIKELIER
     likelihood, cutoff = found[0] * spectrum.windows, found[1]
     gained = likelihood - fits[0].best(())[0] * spectrum.windows
     steeper = (other[0] - found[0]) * spectrum.windows > CLEARLY
     # the power above the cut-off goes on falling, instead of ending on the noise of a sensor
     near = above.power[(above.frequency > cutoff) & (above.frequency < 1.5 * cutoff)]
     falls_far = bool(near.size) and np.median(near) > FALLEN * np.median(above.power[-12:])
-    if gained < CLEARLY or cutoff > HIGHEST or not falls_far or steeper:
+    if gained < enough or cutoff > HIGHEST or not falls_far or steeper:
         return None
     return RecordedFilter(cutoff * rate_hz, gained, likelihood, found[2])
 
@@ -140,14 +145,13 @@ class _Fit:
         self.power = np.maximum(spectrum.power / spectrum.power.max(), LEAST)
         self.tan, self.beyond = np.tan(np.pi * spectrum.frequency), spectrum.frequency - spectrum.frequency[0]
 
-    def best(self, cutoff: tuple[float, ...]) -> tuple[float, float, float]:
-        """Likelihood of a window, cut-off, and the signal over the noise there; no filter where none is begun with."""
+    def best(self, cutoff: tuple[float, ...], held: bool = False) -> tuple[float, float, float]:
+        """Likelihood of a window, cut-off (sought, or held), and the signal over the noise there; or of no filter."""
         from scipy.optimize import minimize
 
         begun = self._begun(cutoff)
-        found = minimize(
-            self._misfit, begun, method="L-BFGS-B", jac=True, bounds=BOUNDS[: len(begun)], options={"maxiter": 200}
-        )
+        bounds = (*BOUNDS[:4], (begun[4], begun[4])) if held else BOUNDS[: len(begun)]
+        found = minimize(self._misfit, begun, method="L-BFGS-B", jac=True, bounds=bounds, options={"maxiter": 200})
         noise, signal, decay, _ = found.x[:4]
         at = float(np.exp(found.x[4])) if cutoff else float(self.frequency[-1])
         shape = float(np.interp(at, self.frequency, self.shape))

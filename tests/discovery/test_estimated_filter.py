@@ -8,6 +8,7 @@ from hidden_in_a_mass import RATE, Experiment, mass, record, with_load
 from scipy.signal import butter, sosfiltfilt
 from texts import says
 
+from gaitdisc.discovery import estimated_filter
 from gaitdisc.discovery.case import set_up_case
 from gaitdisc.discovery.estimated_filter import _as_the_surer
 from gaitdisc.signals.recorded_filter import RecordedFilter
@@ -94,3 +95,18 @@ def test_a_cut_off_that_the_signal_hides_is_that_of_the_surer_channels_of_the_sa
     }
     cutoffs = _as_the_surer(found, ["deg", "deg", "deg", "N"])
     assert cutoffs == {0: 5.0, 1: 7.2, 2: pytest.approx(6.0), 3: 20.0}
+
+
+@pytest.mark.parametrize(("unit", "second"), [("m", 3.1), ("N", None)])
+def test_what_a_spectrum_does_not_show_alone_is_sought_at_the_cut_off_of_channels_of_its_unit(
+    monkeypatch, filtered, unit, second
+):
+    def find_filter(trials, rate_hz, like=None, at_hz=None):
+        first = np.array_equal(trials[0], filtered.observed[0, :, 0])
+        return RecordedFilter(3.1, 200.0, 0.0, 0.0) if first or at_hz else None
+
+    monkeypatch.setattr(estimated_filter, "find_filter", find_filter)
+    observations = (("x", "x"), ("again", "2*x"))
+    both = replace(mass(), observations=observations, sensors=(Sensor("x", "m"), Sensor("again", unit)))
+    twice = replace(filtered, observed=filtered.observed * [1.0, 2.0], channels=("x", "again"))
+    assert set_up_case(both, twice).record_filter.cutoffs_hz == (pytest.approx(3.1), second and pytest.approx(second))

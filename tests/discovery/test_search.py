@@ -1,8 +1,11 @@
 from dataclasses import replace
 
 import pytest
+from hidden_in_a_mass import Experiment, mass, record
 
-from gaitdisc.discovery.candidate import Candidate
+from gaitdisc.discovery.candidate import Candidate, saturations
+from gaitdisc.discovery.case import set_up_case
+from gaitdisc.discovery.catalogue import ALL
 from gaitdisc.discovery.scored_model import Part
 from gaitdisc.discovery.search import is_certain
 
@@ -79,3 +82,14 @@ def test_a_number_lost_in_its_error_is_not_certain(case, as_read, cubic):
     both = _both(case, as_read, cubic)
     assert not is_certain(both)
     assert is_certain(case.search.without(both, 1))
+
+
+@pytest.mark.parametrize("limit", [2.0, 8.0])
+def test_a_servo_beyond_its_force_nearly_always_gets_its_limit_from_the_record(limit):
+    """A run without a limit follows the servo, and no force along it comes near the limit."""
+    servo = replace(mass(), equations=(("x", "v"), ("v", "(150*push - 150*x - 15*v + load - k*x - c*v)/m")))
+    (*_, candidate) = saturations(servo, {"push": (150.0, 0.0, "-150*x - 15*v")})
+    truth = candidate.written(servo, {"limit": f"{limit}"})
+    case = set_up_case(servo, record(truth, 3, Experiment(seconds=6.0)), replace(ALL, added=(candidate,)))
+    (found,) = (one for one in case.search.far_off(case.as_read()) if one.parts[0].candidate is candidate)
+    assert found.parts[0].values["limit"] == pytest.approx(limit, rel=0.02)

@@ -1,6 +1,7 @@
 """Numbers fitted by the engine's own runs: those of the truth, wherever the expansion's lay."""
 
 from dataclasses import replace
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -22,6 +23,7 @@ SPRING = Candidate(
 )
 DAMPED = Candidate("wrong_parameter", "parameter", "pivot_damping", "wrong_parameter", value=0.3)
 WEAK = Candidate("input_error", "input", "drive", "input_gain")
+KNEE = Path(__file__).parents[2] / "studies/systems/knee_muscles.xml"
 CLIPPED = Candidate("input_error", "input", "drive", "input_saturation", ("min({s}, {limit})",), {"limit": ""})
 
 
@@ -68,7 +70,7 @@ def test_the_engines_own_runs_bring_a_number_to_the_truth(tmp_path, change, part
 
 
 def test_a_fit_that_was_stopped_goes_on_to_the_same_numbers(tmp_path, monkeypatch):
-    """Two of its runs are kept, with the starts that they found, though a low-pass leaves samples without a value."""
+    """Three of its runs are kept, with the starts that they found, though a low-pass leaves samples without a value."""
     low_pass = RecordFilter((4.0,), 100.0)
     record = driven(tmp_path, ('damping="0.3"', 'damping="0.6"'), low_pass)
     part, made, stop_at = Part(DAMPED, {"value": 0.5}), [], 0
@@ -87,4 +89,31 @@ def test_a_fit_that_was_stopped_goes_on_to_the_same_numbers(tmp_path, monkeypatc
     made.clear()
     with kept_work(tmp_path, lambda _: None):
         again = fitted(*record, part, low_pass)
-    assert again.effects == at_once.effects and len(made) == every - 2  # the base is run again, two are kept
+    assert again.effects == at_once.effects and len(made) == every - 3  # that of the base is one of them
+
+
+@pytest.mark.parametrize("weak", ["force", "excitation"])
+def test_own_runs_distinguish_a_muscles_force_from_its_excitation(weak):
+    """Activation rises faster the less there is of it: a scaled excitation makes no scaled activation."""
+    pytest.importorskip("mujoco", reason="MuJoCo is not installed: gaitdisc[mujoco]")
+    from gaitdisc.discovery.discover_engine import with_forces_of_muscles
+    from gaitdisc.engines.engine import read_model
+    from gaitdisc.engines.mapping import draft
+    from gaitdisc.engines.motion import Motion
+
+    model, t, rng = read_model(KNEE), np.arange(300) / 100, np.random.default_rng(4)
+    controls = [0.25 + 0.2 * np.sin(2 * np.pi * f * t[:, None] + [0.0, 2.5]) for f in (0.6, 1.1, 1.7)]
+    truth = model.with_values({"flexor_force": 0.8 * 700.0}) if weak == "force" else model
+    driven = np.stack(controls) * ([1.0, 0.8] if weak == "excitation" else [1.0, 1.0])
+    start = Motion(np.full((3, 1), 0.1), np.zeros((3, 1)), driven[:, 0])
+    whole = truth.run(start, driven, 100.0)
+    seen = whole[:, :, :1] + 0.001 * rng.normal(size=(3, 300, 1))
+    measured = Measured(Drive.of(controls, 100.0), seen, tuple("123"), ("knee",))
+    part = Part(Candidate("input_error", "input", "flexor", "input_gain"), {"gain": 0.81})
+    fit = EngineFit(draft(model), model, measured, whole, (part,))
+    found = replace(_NOTHING, verdict="input_error", effects=(FoundEffect("input", "flexor", "input_gain", ""),))
+    runs = base_runs(model, fit)
+    (one,) = with_forces_of_muscles(fit, fit.fitted(found, fit.mapping, runs), fit.mapping, runs).effects
+    number, true = (one.estimates["value"], 560.0) if weak == "force" else (one.estimates["gain"], 0.8)
+    assert one.place == ("flexor_force" if weak == "force" else "flexor")
+    assert number.low < true < number.high
