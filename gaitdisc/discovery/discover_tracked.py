@@ -16,7 +16,7 @@ from gaitdisc.discovery.effect_words import amount, display_unit, named_at
 from gaitdisc.discovery.estimates import name_estimates
 from gaitdisc.discovery.joint_and_trials import EFFECTS, STRENGTH
 from gaitdisc.discovery.places import Place
-from gaitdisc.discovery.prescribed import JointFinding, Named, ResidualMoment, Values, joint_finding
+from gaitdisc.discovery.prescribed import CLOSED, JointFinding, Named, ResidualMoment, Values, joint_finding
 from gaitdisc.discovery.record_filter import DENSE
 from gaitdisc.discovery.result import ALPHA, TRACKED, Discovery, FoundEffect, GapSize, Runs, Whereabouts
 from gaitdisc.discovery.tracked_pass import (
@@ -109,9 +109,9 @@ def make_discovery(base: Simulation, joints: list[JointFinding]) -> Discovery:
         effects.append(_effect(base, best, 1 - left / max(float(np.sum(one.joint.left**2)), 1e-300)))
         beside = [replace(_effect(base, rival), tied=best.gained - rival.gained < CRITERIA.tie) for rival in one.rivals]
         rivals += beside[1:4]
-    ordered = sorted((joint for joint in joints if joint.rivals), key=lambda one: -one.rivals[0].gained)
-    if not named:
-        rivals = [_effect(base, one.rivals[0]) for one in ordered[:1]]
+    unexplained = [] if named else [one for one in joints if one.rivals and not one.at_noise]
+    unexplained.sort(key=lambda one: -one.rivals[0].gained)
+    rivals += [_effect(base, one.rivals[0]) for one in unexplained[:1]]
     units = tuple(sensor.unit for sensor in base.sensors)
     measured, left = (np.column_stack([getattr(one.joint, name) for one in joints]) for name in ("demanded", "left"))
     closed = np.column_stack([joint.named.predicted if joint.named else 0.0 * joint.joint.left for joint in joints])
@@ -128,15 +128,22 @@ def make_discovery(base: Simulation, joints: list[JointFinding]) -> Discovery:
         units=units,
         runs=Runs(np.arange(1), joints[0].joint.time[None], np.zeros((1, 0)), *walk, names=("whole walk",)),
     )
-    if named or not ordered or all(one.at_noise for one in joints):
+    if not unexplained:
         return write_sentence(found, base, tuple(best for _, best in named))
-    first, (one,) = ordered[0], rivals
-    before, after = (np.sqrt(np.mean((first.joint.left - each) ** 2)) for each in (0.0, first.rivals[0].explained))
-    unit = units[joints.index(first)]
+    first = unexplained[0]
+    best = first.prove(first.rivals[0])
+    if best.gained <= 0:
+        first = max(unexplained, key=lambda one: np.linalg.norm(one.joint.left) / one.joint.floor)
+    joint, parts = first.joint, (0.0, best.explained, best.predicted)
+    before, fitted, held = (amount(float(np.sqrt(np.mean((joint.left - one) ** 2)))) for one in parts)
+    size = f"{before} {units[joints.index(first)]} (noise floor {amount(joint.floor)})"
     sentence = (
-        f"Not proven: {named_at(one)} explains most of the residual, which falls from "
-        f"{amount(before)} to {amount(after)} {unit} on the fitted data (noise floor {amount(first.joint.floor)}). "
-        "Held-out data do not support it, or its evidence is too small: a longer walk or a second one can decide."
+        f"No effect is named: the residual of net_{joint.port} is {size}, and no tested effect explains it. A wrong "
+        "mass, which acts at several joints, is not tested."
+        if best.gained <= 0
+        else f"Not proven: {named_at(rivals[0])} reduces the residual of {size} to {fitted} where it is fitted, and to "
+        f"{held} on held-out time. Its evidence is {best.gained:.0f}; a name requires {CRITERIA.margin:.0f}, and "
+        f"{100 * CLOSED:.0f} % of the squared residual on held-out time. A longer walk or a second one can decide."
     )
     return replace(found, verdict="unexplained", sentence=sentence)
 

@@ -30,10 +30,8 @@ WORDS = ("measured", "simulated", "augmented")
 def discovery_figures(discovery: Discovery) -> list[Figure]:
     """Draw a typical stretch over time, the stride where there is a phase, and the gap against each channel."""
     table = display_runs(discovery)
-    figures = [_over_time(discovery, table), _against_state(discovery, table)]
-    if "phase" in table:
-        figures.insert(1, _over_stride(discovery, table))
-    return figures
+    drawn = {_over_time: True, _over_stride: "phase" in table, _against_state: len(table) >= FEWEST * STATE_BINS}
+    return [draw(discovery, table) for draw, shown in drawn.items() if shown]
 
 
 @in_style
@@ -54,10 +52,7 @@ def explanations_figure(discovery: Discovery) -> list[Figure]:
         axes.tick_params(labelleft=number == 1)
         axes.set_xlabel("time [s]", labelpad=1)
     cells[0].set_ylabel(f"[{unit}]", labelpad=1)
-    columns = {
-        str(number): pd.Series(factor * np.array(explanation.left))
-        for number, explanation in enumerate(explanations, 1)
-    }
+    columns = {str(number): pd.Series(factor * np.array(one.left)) for number, one in enumerate(explanations, 1)}
     caption = (
         f"Residual of each explanation in the table, for {channel}: measured minus simulated, over the first held-out "
         "run. Grey band: two standard deviations of the noise."

@@ -22,7 +22,7 @@ from gaitdisc.discovery.effect_words import (
 )
 from gaitdisc.discovery.figure import discovery_figures, explanations_figure
 from gaitdisc.discovery.method import methods_used
-from gaitdisc.discovery.result import VERDICTS, Discovery, Estimate, Explanation, FoundEffect
+from gaitdisc.discovery.result import TRACKED, VERDICTS, Discovery, Estimate, Explanation, FoundEffect
 from gaitdisc.report.figure import save_figures
 from gaitdisc.report.page import write_page
 from gaitdisc.report.table import Table, provenance_tables, save_tables, tabulate_findings
@@ -37,9 +37,7 @@ def estimates_table(discovery: Discovery) -> Table:
             number = name.replace("_", " ")
             degrees = estimate_text(one) if display_unit(one.unit)[1] != 1.0 else ""
             rows.append((spoken(effect.name), effect.place, number, *_amounts(one), degrees))
-            records.append(
-                (effect.name, effect.kind, effect.place, name, one.value, one.low, one.high, one.unit, effect.term)
-            )
+            records.append((effect.name, effect.kind, effect.place, name, *asdict(one).values(), effect.term))
     caption = "The identified effect, in the units of the simulation file; low and high: 95 % interval."
     headings = ("effect", "place", "number", "value", "low", "high", "in degrees")
     if not any(row[-1] for row in rows):
@@ -58,7 +56,8 @@ def gap_table(discovery: Discovery) -> Table:
             shown, factor = display_unit(unit)
             before, after, floor = size.channels[channel]
             amounts = [with_unit(amount(factor * one, factor * floor / 10), shown) for one in (before, after, floor)]
-            rows.append((data, channel, *amounts, _percent(share_closed(before, after, floor)), p_cell(size.p)))
+            p = NONE if discovery.effects and before == after else p_cell(size.p)  # the effect changes nothing here
+            rows.append((data, channel, *amounts, _percent(share_closed(before, after, floor)), p))
             records.append((data, channel, before, after, floor, unit, share_closed(before, after, floor), size.p))
     moved = " (initial model, its parameters fitted within their bounds)" if discovery.corrections else ""
     held, fitted = (counted(size.pieces, "independent sample") for size in (discovery.held_out, discovery.train))
@@ -187,9 +186,11 @@ def explanations_table(discovery: Discovery) -> Table:
         f"Explanations of the gap, {counted(len(rows), 'explanation')}. Closed: share of the squared gap above the "
         "noise, on held-out data. Evidence: reduction of the Bayesian criterion compared with the initial model; "
         "larger is better. Tied: these data cannot distinguish it from the named effect; small: it closes too little "
-        "to be named. To use another explanation, fit it without a search: gaitdisc discover ... --effects "
-        '"effect@place, effect@place".'
+        "to be named."
     )
+    if not (discovery.provenance and discovery.provenance.section == TRACKED):  # a walk is searched whole
+        given = '--effects "effect@place, effect@place".'
+        caption += f" To use another explanation, fit it without a search: gaitdisc discover ... {given}"
     headings = ("", "effect@place", "its parameters", "closed", "evidence", "tied", "what would distinguish them")
     columns = ("number", "effects", "closed", "p", "evidence", "tied", "what_would_distinguish_them")
     return Table("rivals", caption, headings, tuple(rows), _frame(records, columns))
@@ -209,11 +210,6 @@ def twins_table(discovery: Discovery) -> Table:
     shown = tuple((acts, name if "@" in name else name.replace("_", " "), str(count)) for acts, name, count in rows)
     columns = ("acts", "answer", "records")
     return Table("twins", caption, ("the effect acts", *columns[1:]), shown, _frame(rows, columns))
-
-
-def data_findings(discovery: Discovery) -> Table:
-    """What was seen in the files on the way."""
-    return tabulate_findings(discovery.findings, f"Findings in the files, n = {len(discovery.findings)}.")
 
 
 def share_closed(before: float, after: float, floor: float) -> float:
@@ -259,7 +255,7 @@ def write_discovery_report(discovery: Discovery, folder: Path) -> Path:
         "where": where_table(discovery),
         "explanations": explanations_table(discovery),
         "twins": twins_table(discovery),
-        "findings": data_findings(discovery),
+        "findings": tabulate_findings(discovery.findings, f"Findings in the files, n = {len(discovery.findings)}."),
     }
     if discovery.conditions:
         tables["conditions"] = conditions_table(discovery)

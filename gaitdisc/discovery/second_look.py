@@ -156,15 +156,16 @@ def complete_on_whole_runs(case: Case, as_read: ScoredModel, verdict: Verdict) -
 
 
 def without_small(case: Case, as_read: ScoredModel, verdict: Verdict) -> Verdict:
-    """Return a verdict that names nothing where what is named closes too little of the gap, and mere noise is not left.
+    """Return a verdict that names nothing where unseen data err more with it, or hardly less beside what it leaves.
 
     The gap is that of unseen data above the sensors' noise; data that run alike without it say nothing.
     """
     found, proof = verdict.found, verdict.proof
-    if not found.parts or not proof or case.leaves_noise(found) or is_uninformative(case, as_read, found):
+    if not found.parts or not proof or is_uninformative(case, as_read, found):
         return verdict
     size = gap_size(proof.before, proof.after, case.noise_floor(found.noise.size), case.measured.channels, proof.test)
-    if 1 - np.sqrt(size.unexplained) >= CRITERIA.matters:
+    small = not case.leaves_noise(found) and 1 - np.sqrt(size.unexplained) < CRITERIA.matters
+    if size.after <= size.before and not small:
         return verdict
     return Verdict(as_read, (found, *verdict.rivals), proof=proof)
 

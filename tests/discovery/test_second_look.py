@@ -25,9 +25,7 @@ def _problem(truth, how=None):
 def _with(case, as_read, label, **values):
     """Return the simulation with one explanation in it, fitted from its numbers."""
     candidate = next(one for one in case.search.candidates if one.label == label)
-    parts = (Part(candidate, values),)
-    model = as_read.refitted(as_read.shooting, parts)
-    return score(model)
+    return score(as_read.refitted(as_read.shooting, (Part(candidate, values),)))
 
 
 def test_hysteresis_that_yields_within_a_step_is_dry_friction():
@@ -44,8 +42,7 @@ def test_free_runs_of_what_is_right_leave_the_noise_and_refuse_what_is_wrong():
     right = _with(case, as_read, "cubic_stiffness@load", factor=-14.0)
     wrong = replace(right, fit=replace(right.fit, values=-8 * right.fit.values))
     assert free_run_error(case, right) < 0.01 * free_run_error(case, as_read)
-    proof = prove_held_out(case, as_read, right)
-    verdict = Verdict(wrong, (right,), proof=proof)
+    verdict = Verdict(wrong, (right,), proof=prove_held_out(case, as_read, right))
     assert look_at_whole_runs(case, as_read, verdict)[1].found is right
     _, nothing = look_at_whole_runs(case, as_read, replace(verdict, rivals=()))
     assert nothing.word == "no_gap" and not nothing.found.parts
@@ -62,7 +59,10 @@ def test_what_closes_next_to_nothing_of_the_gap_is_not_named(truth, shaking, nam
     found = _with(case, as_read, "cubic_stiffness@load", factor=-1.0)
     verdict = Verdict(found, (), proof=prove_held_out(case, as_read, found))
     assert (without_small(case, as_read, verdict) is verdict) == named
-    if not named:
+    if named:  # it leaves mere noise; unseen data that err more refuse it all the same
+        proof = replace(verdict.proof, before=verdict.proof.after, after=verdict.proof.before)
+        assert without_small(case, as_read, replace(verdict, proof=proof)).rivals == (found,)
+    else:
         assert without_small(case, as_read, verdict).rivals == (found,)
         monkeypatch.setattr("gaitdisc.discovery.second_look.is_uninformative", lambda *_: True)
         assert without_small(case, as_read, verdict) is verdict  # these data say nothing

@@ -12,7 +12,6 @@ from texts import says
 from gaitdisc.discovery.method import methods_used
 from gaitdisc.discovery.page import (
     corrections_table,
-    data_findings,
     estimates_table,
     explanations_table,
     gap_table,
@@ -33,6 +32,7 @@ from gaitdisc.discovery.result import (
     FoundEffect,
     GapSize,
 )
+from gaitdisc.report.table import tabulate_findings
 from gaitdisc.saved.provenance import provenance_now
 
 
@@ -91,7 +91,7 @@ def test_accounts_are_listed_with_what_each_closes_of_the_held_out_gap():
 
 
 def test_findings_are_listed():
-    assert data_findings(manufactured()).rows[0][0] == "warning"
+    assert tabulate_findings(manufactured().findings, "").rows[0][0] == "warning"
 
 
 def test_what_moved_within_its_bounds_has_a_table_of_its_own():
