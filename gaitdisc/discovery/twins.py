@@ -66,7 +66,7 @@ class TwinSource:
         )
         whole = Drive.of([*inputs], drive.rate, [float(drive.time0.min())])
         measured = replace(measured, drive=whole, observed=observed, trials=(first,))
-        return replace(case, measured=measured, guess=states)
+        return replace(case, measured=measured, search=replace(case.search, guess=states))
 
     @cached_property
     def starts(self) -> list[Values]:

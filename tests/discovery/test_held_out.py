@@ -84,7 +84,7 @@ def test_the_past_of_what_comes_late_is_the_runs_own():
     starts = shooting.segments.starts(case.guess)
     true = score(fit_model(shooting, case.search.base, (part,), starts))
     assert true.noise.size[0] < 0.03 * case.measured.observed.std()
-    rough = replace(case, guess=case.guess + 0.3)
+    rough = replace(case, search=replace(case.search, guess=case.guess + 0.3))
     wide = case.shooting(case.segments(case.learned, 3.0)).with_noise(true.noise)
     run = run_trials(rough, true, case.held_out, replace(true, shooting=wide))
     assert run.fit.residual.std() < 1.3 * true.noise.size[0]
