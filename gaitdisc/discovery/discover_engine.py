@@ -151,9 +151,8 @@ def search(fit: EngineFit, base: EngineAnswer, request: Request, read: dict[Path
         if kept:
             augmented, written = fit.compared(found, runs)
     if (unchecked or not found.effects) and runs.before_at_noise:  # the expansion errs, through a contact say
-        augmented, written = (mapping, base.written) if unchecked else (augmented, written)
-        corrections = () if unchecked else found.corrections
-        found = replace(found, verdict="no_gap", effects=(), corrections=corrections, rivals=(), explanations=())
+        augmented, written, kept = (mapping, base.written, ()) if unchecked else (augmented, written, found.corrections)
+        found = replace(found, verdict="no_gap", effects=(), corrections=kept, rivals=(), explanations=())
     runs = runs.with_floor(hidden)
     return EngineAnswer(with_own_runs(found, runs, fit, linear), augmented, written, runs, engine)
 
