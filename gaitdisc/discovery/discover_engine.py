@@ -110,11 +110,10 @@ def search(fit: EngineFit, base: EngineAnswer, request: Request, read: dict[Path
     hidden = [size[2] for size in found.held_out.channels.values()]  # noise that the record itself may not show
     pushed = [f"{effect.name} at {effect.place}" for effect in found.effects if effect.name == "process_noise"]
     unchecked = " and ".join((*written.absent, *pushed))
-    if unchecked:
+    if unchecked and not runs.before_at_noise:
         why = f"{engine.called} itself has not run {unchecked}: this result is based on the expansion alone."
-        found = replace(found, sentence=f"{found.sentence} {why}")
-        return EngineAnswer(found, augmented, written, runs, engine)
-    if found.effects and found.verdict != "wrong_initial_condition":
+        return EngineAnswer(replace(found, sentence=f"{found.sentence} {why}"), augmented, written, runs, engine)
+    if not unchecked and found.effects and found.verdict != "wrong_initial_condition":
         held = held_out(found, runs, data)
         if not engine.fibres:  # their runs take too long
             found = with_forces_of_muscles(fit, fit.fitted(found, linear, runs.among(~held)), linear, runs.among(~held))
@@ -134,8 +133,9 @@ def search(fit: EngineFit, base: EngineAnswer, request: Request, read: dict[Path
             runs = replace(runs, after=fit.left(found, kept, runs))
         if kept:
             augmented, written = fit.compared(found, runs)
-    if not found.effects and runs.before_at_noise:  # the expansion errs, through a contact say
-        found = replace(found, verdict="no_gap", rivals=(), explanations=())
+    if (unchecked or not found.effects) and runs.before_at_noise:  # the expansion errs, through a contact say
+        augmented, written, kept = (mapping, base.written, ()) if unchecked else (augmented, written, found.corrections)
+        found = replace(found, verdict="no_gap", effects=(), corrections=kept, rivals=(), explanations=())
     runs = runs.with_floor(hidden)
     return EngineAnswer(with_own_runs(found, runs, fit, linear), augmented, written, runs, engine)
 
