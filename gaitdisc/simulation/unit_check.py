@@ -9,7 +9,7 @@ from collections.abc import Callable, Mapping
 from gaitdisc.errors import SimulationError
 from gaitdisc.recording import Finding
 from gaitdisc.simulation.expression import Name, Number, Operation, Tree, parse, written
-from gaitdisc.simulation.parts import Sensor
+from gaitdisc.simulation.parts import Parameter, Sensor
 from gaitdisc.simulation.simulation import Simulation
 from gaitdisc.units import Powers, find_dimension, offset_words, unit_factor, unit_words
 
@@ -27,7 +27,7 @@ Report = Callable[[str], None]
 def unit_findings(simulation: Simulation) -> tuple[Finding, ...]:
     r"""Warnings where unlike units are added, a port's unit does not fit its place, or a unit is unknown.
 
-    A number without a name may carry any unit, and so does what it multiplies; an angle counts as a pure number. Of a
+    A number or parameter without a unit may carry any, and so does what it multiplies; an angle is a pure number. Of a
     simulation in which nothing but 1 is given as a unit (a plain function, say) there is nothing to report.
 
     >>> from gaitdisc.simulation.simulation_file import parse_simulation
@@ -203,10 +203,11 @@ def _unlike(sensor: Sensor, found: str, remedy: str) -> SimulationError:
 
 
 def _list_units(simulation: Simulation, report: Report | None = None) -> dict[str, Powers | None]:
-    """Units of all names; None of what may have any: unknown units, and what an engine computes."""
+    """Units of all names; None of what may have any: an unknown one, a parameter without, what an engine computes."""
     known: dict[str, Powers | None] = {"t": {"s": 1}}
     for part in (*simulation.states, *simulation.inputs, *simulation.parameters, *simulation.ports):
         any_unit = find_dimension(part.unit) is None or getattr(part, "computed", False)
+        any_unit |= isinstance(part, Parameter) and part.unit == "1"
         known[part.name] = None if any_unit else unit_powers(part.unit)
     for name, text in simulation.definitions:
         known[name] = powers_in(parse(text), known, None, report and _at(f"[definitions] {name}", report))

@@ -41,6 +41,7 @@ def _told(k="N/m", port="N", more="", effect=None):
 def test_units_that_fit_are_not_told():
     assert _told() == []
     assert _told(k="kg/s^2") == []
+    assert _told(k="1") == []  # a parameter to which nobody gave a unit
     for term in ("-c*v", "-286.0*max(0, x - 0.035)"):
         assert _told(effect=Term("force", "port", "a", term)) == []
 
