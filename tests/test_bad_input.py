@@ -181,7 +181,7 @@ def test_a_trial_of_a_person_who_changed_is_refused(walk, folder, refusal):
         return values
 
     said = refusal(altered(walk, folder, changed))
-    assert "not change late" in said
+    assert "not change towards the end" in said
 
 
 def test_dropping_nothing_silently(walk, folder, checked):

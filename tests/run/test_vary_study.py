@@ -28,7 +28,7 @@ def test_every_participant_of_the_run_is_varied(small, tmp_path):
 
 
 def test_a_question_that_is_none(study, tmp_path):
-    with pytest.raises(SchemaError, match="modalities, sensitivity; found 'why'"):
+    with pytest.raises(SchemaError, match="modalities or sensitivity; found 'why'"):
         vary_study(study, tmp_path, "why")
 
 

@@ -14,6 +14,7 @@ from gaitdisc.simulation.python_simulation import python_simulation
 from gaitdisc.simulation.simulation import Simulation
 from gaitdisc.simulation.simulation_file import parse_simulation, read_simulation
 from gaitdisc.simulation.writing import read_into, simulation_text, write_simulation
+from gaitdisc.units import find_dimension
 
 SPRING = Term("ankle_moment", "port", "one_sided_spring", "-286.0*max(0, theta - 0.035)")
 
@@ -148,6 +149,11 @@ expressions = st.sampled_from(
 )
 
 
+def is_no_unit(text):
+    """A unit that is known would be compared with the sensor's."""
+    return find_dimension(text) is None
+
+
 @st.composite
 def simulations(draw):
     term = st.builds(
@@ -155,7 +161,7 @@ def simulations(draw):
     )
     return Simulation(
         draw(words),
-        (State("x", draw(words), draw(words), draw(st.none() | numbers)), State("v")),
+        (State("x", draw(words.filter(is_no_unit)), draw(words), draw(st.none() | numbers)), State("v")),
         (Input("u", draw(words), draw(words)),),
         (Parameter("k", draw(numbers), draw(words), draw(st.none() | st.just(-1e300)), None, draw(words)),),
         (Port("force", draw(words), draw(words)),),
