@@ -156,7 +156,7 @@ class MujocoModel:
         model.opt.timestep = 1.0 / (rate * steps)
         change = np.diff(controls, axis=1)[:, :, None] / steps
         driven = np.clip(controls[:, :-1, None] + np.arange(steps)[:, None] * change, *self.control_ranges.T)
-        driven = driven.reshape(len(controls), -1, model.nu)
+        driven = driven.reshape(len(controls), driven.shape[1] * steps, model.nu)
         found = np.empty((len(controls), driven.shape[1] + 1, model.nq + model.nv))
         begun = np.hstack(to_positions(balls, start.q, start.v))
         found[:, 0] = begun

@@ -1,5 +1,7 @@
 """A pendulum's accelerations from mechanics, a run's energy, activations, and what is refused in which words."""
 
+import re
+
 import numpy as np
 import pytest
 
@@ -39,11 +41,13 @@ def test_names_units_and_values(pendulum):
     assert values == {"gravity": GRAVITY, "rod_mass": MASS, "pivot_damping": DAMPING}
 
 
-def test_a_small_swing_has_the_period_of_mechanics(pendulum):
-    pendulum.write_text(PENDULUM.replace(f'damping="{DAMPING}"', ""))
+@pytest.mark.parametrize("driven", [1, 0])
+def test_a_small_swing_has_the_period_of_mechanics(pendulum, driven):
+    free = PENDULUM.replace(f'damping="{DAMPING}"', "")
+    pendulum.write_text(free if driven else re.sub("<actuator>.*</actuator>", "", free, flags=re.DOTALL))
     model = read_model(pendulum)
-    start = Motion(np.array([[0.01]]), np.zeros((1, 1)), np.zeros((1, 1)))
-    run = model.run(start, np.zeros((1, 400, 1)), 100.0)[0, :, 0]
+    start = Motion(np.array([[0.01]]), np.zeros((1, 1)), np.zeros((1, driven)))
+    run = model.run(start, np.zeros((1, 400, driven)), 100.0)[0, :, 0]
     omega = np.sqrt(MASS * GRAVITY * LENGTH / (INERTIA + MASS * LENGTH**2))
     assert np.allclose(run, 0.01 * np.cos(omega * np.arange(400) / 100), atol=2e-4)
 
