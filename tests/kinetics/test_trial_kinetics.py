@@ -96,13 +96,10 @@ def test_a_turn_keeps_the_clean_step_and_names_the_other(gait_data):
     assert says(result.findings[0].line(), "8 cm beyond its edge")
 
 
-def test_a_trial_without_a_clean_step_is_refused(gait_data):
+def test_a_trial_without_a_clean_step_or_without_forces_is_refused(gait_data):
     trial = read_c3d(gait_data / "young_static" / "HC030A" / "HC030A01.c3d")
     with pytest.raises(ChannelError, match=r"one foot alone.*HC030A01.c3d.*plate_1.*0.00 s"):
         trial_kinetics(trial, {}, feet(trial), Person(45.8))
-
-
-def test_a_trial_without_forces_is_refused(gait_data):
     trial = read_c3d(gait_data / "young_straight_and_turn" / "HC030A" / "straight" / "HC030A05.c3d")
     markers = replace(trial, streams={"markers": trial.stream("markers")})
     with pytest.raises(ChannelError, match=r"forces.*markers"):

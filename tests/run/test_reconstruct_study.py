@@ -113,9 +113,8 @@ def test_sensors_are_searched_for_all_participants_together(study):
     ],
 )
 def test_no_search_for_what_is_not_a_present_state(study, settings, found):
-    with pytest.raises(
-        SchemaError, match=rf"possible only for the present states.*{found}.*name the sensors with --sensors"
-    ):
+    words = rf"possible only for the present states.*{found}.*name the sensors with --sensors"
+    with pytest.raises(SchemaError, match=words):
         search_study(study, 2, settings)
 
 
