@@ -50,8 +50,7 @@ def angles(
             knees, ankles = (dict(zip("lr", pair, strict=True)) for pair in (widths[:2], widths[2:]))
             measures = replace(measures, knee_width_m=knees, ankle_width_m=ankles)
         standing = stood.stream("markers") if stood is not None else None
-        markers = walk.stream("markers")
-        moved = move_body(markers, standing, marker_set or None, measures, forward, joints or None)
+        moved = move_body(walk.stream("markers"), standing, marker_set or None, measures, forward, joints or None)
         found, made = moved.angles, moved.findings
         seen = [*(stood.findings if stood is not None else ()), *seen]
     write_recording(found, out)

@@ -37,8 +37,7 @@ def report(
     if language and language != "en" and not Path(language).exists():
         typer.echo(f"words: {write_english(Path(language))}. Fill in the second column and run the command again.")
         return
-    lacking = keep_words(language, place) if language else []
-    if lacking:
+    if language and (lacking := keep_words(language, place)):
         typer.echo(f"{len(lacking)} words remain in English: {'; '.join(lacking)}")
     named = bool(person or before or after or reference or pdf)
     if named or (place / "cycles").is_dir():

@@ -29,19 +29,14 @@ class TrialSet:
         return " ".join(word for word in (self.session, self.condition) if word)
 
 
-def is_static(study: Study, planned: PlannedTrial) -> bool:
-    """Whether somebody stands in a trial, unless the study's conditions use that very word for a way of walking."""
-    return planned.condition == STATIC and STATIC not in study.conditions.words
-
-
-def is_functional(study: Study, planned: PlannedTrial) -> bool:
-    """Whether a trial is one in which the legs are circled about the hips, but for a study that walks by that word."""
-    return planned.condition == FUNCTIONAL and FUNCTIONAL not in study.conditions.words
+def is_calibration(study: Study, planned: PlannedTrial) -> bool:
+    """Whether somebody stands in a trial or circles the legs about the hips, unless a way of walking has that word."""
+    return planned.condition in {STATIC, FUNCTIONAL} - set(study.conditions.words)
 
 
 def is_walk(study: Study, planned: PlannedTrial) -> bool:
     """Whether a trial is used as a walk."""
-    return planned.condition != UNKNOWN and not is_static(study, planned) and not is_functional(study, planned)
+    return planned.condition != UNKNOWN and not is_calibration(study, planned)
 
 
 def trial_sets(study: Study, participant: Participant) -> tuple[TrialSet, ...]:
@@ -55,17 +50,9 @@ def trial_sets(study: Study, participant: Participant) -> tuple[TrialSet, ...]:
     return tuple(found)
 
 
-def static_trial(study: Study, participant: Participant, session: str) -> PlannedTrial | None:
-    """Trial in which a participant stands: of the session, else the only one there is; None without."""
-    return _of_session([trial for trial in participant.trials if is_static(study, trial)], session)
-
-
-def functional_trial(study: Study, participant: Participant, session: str) -> PlannedTrial | None:
-    """Trial in which the legs are circled about the hips: of the session, else the only one; None without."""
-    return _of_session([trial for trial in participant.trials if is_functional(study, trial)], session)
-
-
-def _of_session(trials: list[PlannedTrial], session: str) -> PlannedTrial | None:
+def calibration_trial(study: Study, participant: Participant, session: str, word: str) -> PlannedTrial | None:
+    """Trial of the session in which a participant stands (static) or circles the legs (functional), or the only one."""
+    trials = [trial for trial in participant.trials if trial.condition == word and is_calibration(study, trial)]
     own = [trial for trial in trials if (trial.session or "") == session]
     return own[0] if own else trials[0] if len(trials) == 1 else None
 

@@ -11,7 +11,7 @@ from gaitdisc.errors import GaitdiscError, StrideError
 from gaitdisc.ingest.c3d import C3DReader
 from gaitdisc.ingest.reading import read_planned_trial, read_trial
 from gaitdisc.ingest.study import Participant, PlannedTrial, Study
-from gaitdisc.ingest.trial_sets import is_functional, is_static, is_walk, not_compared, trial_sets, why_refused
+from gaitdisc.ingest.trial_sets import is_calibration, is_walk, not_compared, trial_sets, why_refused
 from gaitdisc.processing.contact_choice import choose_contacts
 from gaitdisc.processing.markers_to_moments import with_segment_angles
 from gaitdisc.processing.pooled import can_pool, pool_cycles
@@ -185,7 +185,7 @@ def _list_unused(study: Study, participant: Participant, reader: C3DReader) -> d
         except GaitdiscError as error:
             found[place] = Inspection(name, participant.id, planned.condition, refusal=str(error))
             continue
-        stands = is_static(study, planned) or is_functional(study, planned)
+        stands = is_calibration(study, planned)
         found[place] = _findings(trial, name, {}, trial.findings) if stands else inspect_trial(trial, name)
     return found
 

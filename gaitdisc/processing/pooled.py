@@ -281,11 +281,11 @@ def _too_few(standing: Standing, trials: TrialSet, cut: Sequence[_CutTrial], out
         if any(cycle.reason and start < cycle.end and cycle.start < end for cycle in trial.cycles)
     ]
     counts = ", ".join(f"{kept[side]} of side {side}" for side in "rl")
-    count = "1 trial" if len(trials.trials) == 1 else f"{len(trials.trials)} trials"
+    have = "1 trial has" if len(trials.trials) == 1 else f"{len(trials.trials)} trials have"
     who = " ".join((standing.participant.id, trials.where))
     error = StrideError(
         f"{who} needs {needed} cycles of a foot {'over ground' if outside else 'on a treadmill'}, pooled over trials",
-        f"{count} trials of it have {counts}{first}{''.join(causes[:1])}",
+        f"{have} {counts}{first}{''.join(causes[:1])}",
         f"{'Correct the labels, add' if causes else 'Add'} trials, or lower {key} in [quality].",
     )
     return str(error)

@@ -14,8 +14,8 @@ from gaitdisc.errors import GaitdiscError, ReadError
 from gaitdisc.ingest.c3d import C3DReader
 from gaitdisc.ingest.public_words import PublicWords, list_words, of_trial
 from gaitdisc.ingest.reading import read_planned_trial
-from gaitdisc.ingest.study import Participant, PlannedTrial, Study
-from gaitdisc.ingest.trial_sets import functional_trial, not_compared, static_trial, trial_sets
+from gaitdisc.ingest.study import FUNCTIONAL, STATIC, Participant, PlannedTrial, Study
+from gaitdisc.ingest.trial_sets import calibration_trial, not_compared, trial_sets
 from gaitdisc.processing.pooled_cycles import CYCLES, PooledCycles, cycles_name
 from gaitdisc.recording import Trial
 from gaitdisc.regular_file import file_sha256
@@ -30,9 +30,8 @@ def unit_keys(study: Study, participant: Participant) -> dict[str, str]:
     keys = {}
     for word in study.conditions.both:
         trial = participant.trials_of(word)[0]
-        standing = static_trial(study, participant, trial.session or "")
-        circled = functional_trial(study, participant, trial.session or "")
-        parts = [person_key(study, participant), *(unit_key(study, one) for one in (trial, standing, circled) if one)]
+        beside = (calibration_trial(study, participant, trial.session or "", kind) for kind in (STATIC, FUNCTIONAL))
+        parts = [person_key(study, participant), *(unit_key(study, one) for one in (trial, *beside) if one)]
         keys[word] = hashlib.sha256("\n".join(parts).encode()).hexdigest()
     return keys
 
@@ -147,7 +146,7 @@ def cycles_key(study: Study, participant: Participant) -> str:
     """Hash of all that decides a participant's pooled cycles: files, settings, and the package's own code."""
     parts = [participant.id, participant.group, person_key(study, participant)]
     for one in trial_sets(study, participant):
-        beside = (static_trial(study, participant, one.session), functional_trial(study, participant, one.session))
+        beside = (calibration_trial(study, participant, one.session, kind) for kind in (STATIC, FUNCTIONAL))
         trials = (*one.trials, *(trial for trial in beside if trial))
         parts += [one.session, one.condition, *(unit_key(study, trial) for trial in trials)]
     return hashlib.sha256("\n".join(parts).encode()).hexdigest()

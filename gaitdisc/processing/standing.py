@@ -10,8 +10,8 @@ import numpy as np
 
 from gaitdisc.errors import GaitdiscError, ShapeError
 from gaitdisc.ingest.c3d_parameters import read_body_measures
-from gaitdisc.ingest.study import Participant, PlannedTrial, Study
-from gaitdisc.ingest.trial_sets import functional_trial, static_trial
+from gaitdisc.ingest.study import FUNCTIONAL, STATIC, Participant, PlannedTrial, Study
+from gaitdisc.ingest.trial_sets import calibration_trial
 from gaitdisc.kinematics.calibration import Calibration, calibrate_body
 from gaitdisc.kinematics.functional_hips import functional_hips
 from gaitdisc.kinematics.marker_set import MarkerSet
@@ -259,7 +259,7 @@ class Standing:
 
 def find_standing(study: Study, participant: Participant, session: str, read: Read) -> Standing:
     """Markers of a session's static trial, or why there are none."""
-    planned = static_trial(study, participant, session)
+    planned = calibration_trial(study, participant, session, STATIC)
     if planned is None:
         return Standing(study, participant, None, None, "there is no static trial")
     try:
@@ -267,10 +267,11 @@ def find_standing(study: Study, participant: Participant, session: str, read: Re
     except GaitdiscError as error:
         return Standing(study, participant, planned, None, f"the static trial cannot be used: {error}")
     sizes = emg_sizes(trial.stream("emg")) if "emg" in trial.streams else {}
-    unread, circles = "the static trial has no markers", functional_trial(study, participant, session)
+    circles = calibration_trial(study, participant, session, FUNCTIONAL)
     try:  # the trial in which the legs are circled about the hips; `check` says why it cannot be read
         circled = read(circles).streams.get("markers") if circles else None
     except GaitdiscError:
         circled = None
     markers, weighed_n = trial.streams.get("markers"), standing_weight_n(trial) if "markers" in trial.streams else None
+    unread = "the static trial has no markers"
     return Standing(study, participant, planned, markers, unread, emg_sizes=sizes, circled=circled, weighed_n=weighed_n)

@@ -41,10 +41,6 @@ class Spectrum:
     power: Values  # (line,), [the channel's unit squared]
     windows: int
 
-    def lines(self, kept: slice) -> Spectrum:
-        """Return some of the lines."""
-        return Spectrum(self.frequency[kept], self.power[kept], self.windows)
-
 
 @dataclass(frozen=True)
 class RecordedFilter:
@@ -80,7 +76,8 @@ def find_filter(
         return None
     # the lines beyond the last one that is surely signal, without those next to half the rate
     surely = np.flatnonzero(spectrum.power > SIGNAL * spectrum.power[2:].max())
-    above = spectrum.lines(slice(int(surely[-1]) + 1, len(spectrum.power) - 3))
+    kept = slice(int(surely[-1]) + 1, len(spectrum.power) - 3)
+    above = Spectrum(spectrum.frequency[kept], spectrum.power[kept], spectrum.windows)
     if len(above.frequency) < FEWEST_LINES:
         return None
     model = mean_spectrum(like) if like is not None else None
@@ -140,7 +137,7 @@ class _Fit:
     The numbers: logarithms of the noise, of the signal at the first line, of its decay, of the floor, of the cut-off.
     """
 
-    def __init__(self, spectrum: Spectrum, shape: Values, order: int = ORDER) -> None:
+    def __init__(self, spectrum: Spectrum, shape: Values, order: int) -> None:
         self.frequency, self.shape, self.order = spectrum.frequency, shape, order
         self.power = np.maximum(spectrum.power / spectrum.power.max(), LEAST)
         self.tan, self.beyond = np.tan(np.pi * spectrum.frequency), spectrum.frequency - spectrum.frequency[0]
@@ -163,8 +160,7 @@ class _Fit:
         level = np.log(np.median(self.power[low] if low.any() else self.power))
         floor = np.log(np.median(self.power[-12:]))
         begun = np.array([level, np.log(self.power[:3].mean()), np.log(30.0), floor, *np.log(cutoff)])
-        low, high = np.array(BOUNDS[: len(begun)]).T
-        return np.clip(begun, low, high)
+        return np.clip(begun, *np.array(BOUNDS[: len(begun)]).T)
 
     def _misfit(self, values: Values) -> tuple[float, Values]:
         """Minus the log likelihood and its slopes."""

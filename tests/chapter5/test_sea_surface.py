@@ -95,14 +95,11 @@ def test_what_comes_back_every_year_departs_from_nothing():
     assert np.abs(season_of(field, np.arange(58), 29).departures(field).values).max() < 1e-6
 
 
-def test_without_a_season_it_is_the_mean():
+def test_without_a_season_and_at_a_time_of_year_never_trained_it_is_the_mean():
     season = season_of(WAVE, np.arange(10), 0)
     np.testing.assert_allclose(
         season.at(np.array([3, 57])), np.tile(WAVE.values[:10].mean(axis=0), (2, 1, 1)), atol=1e-6
     )
-
-
-def test_a_time_of_year_never_trained_has_the_mean():
     season = season_of(WAVE, np.array([0, 1]), 3)
     np.testing.assert_allclose(season.course[2], WAVE.values[:2].mean(axis=0), atol=1e-6)
 
@@ -166,12 +163,9 @@ def test_netcdf4_reads_alike(tmp_path):
     np.testing.assert_allclose(found.unpacked(), [2.0, np.nan, -1.5], atol=1e-6)
 
 
-def test_an_absent_variable_is_named_with_those_there(tmp_path):
+def test_an_absent_variable_is_named_with_those_there_and_another_file_is_refused(tmp_path):
     with pytest.raises(ReadError, match=r"a.nc.*lacks lat.*has t"):
         read_variables(classic(tmp_path / "a.nc"), ("t", "lat"))
-
-
-def test_another_netcdf_file_is_refused(tmp_path):
     (tmp_path / "b.nc").write_bytes(b"not netCDF at all")
     with pytest.raises(ReadError, match=r"b.nc.*netCDF"):
         read_variables(tmp_path / "b.nc", ("t",))

@@ -78,17 +78,14 @@ def test_a_positive_push_off_is_turned_and_the_ground_is_not():
     assert says(findings[-1].what, "1.40 N m/kg", "1 joint")
 
 
-def test_a_negative_push_off_is_as_it_should_be():
-    (values, _), findings = house_kinetics(_kinetics(ankle=-1.4), NO_PLATE, None, "a.c3d")
-    np.testing.assert_array_equal(values[:, 3], -1.4 * PUSH_OFF)
-    assert "plantarflexion is already negative" in findings[-1].what
-
-
-def test_somebody_who_stands_is_taken_as_plug_in_gait_and_said_so():
-    (values, _), findings = house_kinetics(_kinetics(ankle=0.1), NO_PLATE, None, "a.c3d")
-    np.testing.assert_array_equal(values[:, 3], -0.1 * PUSH_OFF)
-    assert says(findings[-1].what, "that of Plug-in Gait")
-    assert findings[-1].spoils
+@pytest.mark.parametrize(
+    ("ankle", "words"), [(-1.4, "plantarflexion is already negative"), (0.1, "that of Plug-in Gait")]
+)
+def test_a_negative_push_off_stays_and_somebody_who_stands_is_taken_as_plug_in_gait(ankle, words):
+    (values, _), findings = house_kinetics(_kinetics(ankle=ankle), NO_PLATE, None, "a.c3d")
+    np.testing.assert_array_equal(values[:, 3], -abs(ankle) * PUSH_OFF)
+    assert words in findings[-1].what
+    assert bool(findings[-1].spoils) == (ankle > 0)
 
 
 def test_the_mass_that_a_file_states():

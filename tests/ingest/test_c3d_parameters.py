@@ -173,9 +173,12 @@ def test_more_frames_than_16_bits_hold(file):
         find_layout(replace(header, size=3 * 512 + 70_000 * 208), parameters)
 
 
-def test_a_header_that_misses_the_data_is_refused(file):
+def test_a_header_that_misses_the_data_and_a_file_without_anything_are_refused(file):
     with pytest.raises(ReadError, match=r"POINT:DATA_START.*4"):
         find_layout(replace(file[0], data_block=3), file[1])
+    header = replace(file[0], points=0, analog_values=0)
+    with pytest.raises(ReadError, match="points or analog"):
+        find_layout(header, _with(file[1], POINT__USED=0, ANALOG__USED=0))
 
 
 @pytest.mark.parametrize(("header", "parameter"), [(-0.1, 0.1), (0.1, -0.1), (0.1, 0.2)])
@@ -187,9 +190,3 @@ def test_contradicting_scales_are_refused(file, header, parameter):
 def test_frames_that_no_count_covers_are_reported(file):
     _, findings = find_layout(replace(file[0], size=file[0].size + 3000), file[1])
     assert says(findings[0].what, "50 frames", "1")
-
-
-def test_a_file_without_anything_is_refused(file):
-    header = replace(file[0], points=0, analog_values=0)
-    with pytest.raises(ReadError, match="points or analog"):
-        find_layout(header, _with(file[1], POINT__USED=0, ANALOG__USED=0))

@@ -46,20 +46,17 @@ def test_an_absent_unit_is_inferred_and_reported(scale, unit):
     assert f"and are read as {unit}" in findings[0].what
 
 
-def test_an_absent_unit_that_the_numbers_do_not_tell_is_refused():
+def test_an_absent_unit_that_the_numbers_do_not_tell_and_one_that_is_no_length_are_refused():
     with pytest.raises(UnitError, match=r"a\.c3d.*50"):
         length_unit(_parameters(), np.full((5, 3), 50.0))
+    with pytest.raises(UnitError, match=r"a\.c3d says 'deg'"):
+        length_unit(_parameters(UNITS=("deg",)), WALK_MM)
 
 
 @pytest.mark.parametrize(("unit", "scale", "looks"), [("m", 1.0, "mm"), ("mm", 1e-3, "m")])
 def test_a_unit_that_the_numbers_contradict_is_refused(unit, scale, looks):
     with pytest.raises(UnitError, match=rf"markers in {unit} must be .* looks like {looks}"):
         length_unit(_parameters(UNITS=(unit,)), WALK_MM * scale)
-
-
-def test_a_unit_that_is_no_length_is_refused():
-    with pytest.raises(UnitError, match=r"a\.c3d says 'deg'"):
-        length_unit(_parameters(UNITS=("deg",)), WALK_MM)
 
 
 def test_angles_moments_and_powers_are_not_scaled_as_lengths():

@@ -68,9 +68,12 @@ def test_a_clock_that_the_format_cannot_hold_is_refused(tmp_path, rate_hz, start
         write_c3d([recording(EMG, np.ones((100, 2)), rate_hz, start_s)], tmp_path / "walk.c3d")
 
 
-def test_a_name_that_no_file_can_hold_is_refused(tmp_path):
+def test_a_name_that_no_file_can_hold_and_a_plate_without_a_channel_are_refused(tmp_path):
     with pytest.raises(ChannelError):
         write_c3d([recording((Channel("emg\t1", "emg", "V"),), np.ones((100, 1)))], tmp_path / "walk.c3d")
+    plate = Surface("plate_1", np.array([[0.0, 0, 0], [0.4, 0, 0], [0.4, 0.6, 0], [0, 0.6, 0]]))
+    with pytest.raises(ChannelError, match=r"walk.c3d.*'plate_1_fx'"):
+        write_c3d([recording(EMG, np.ones((100, 2)))], tmp_path / "walk.c3d", [plate])
 
 
 def test_markers_and_plates_are_read_back(reader, tmp_path):
@@ -113,9 +116,3 @@ def test_markers_and_plates_are_read_back(reader, tmp_path):
     np.testing.assert_array_equal(alone.stream("markers").values, found.values)
     again = write_c3d([trial.stream("markers"), trial.stream("forces")], tmp_path / "again.c3d", trial.surfaces)
     np.testing.assert_allclose(reader.read(again).stream("forces").values, trial.stream("forces").values, atol=1e-3)
-
-
-def test_a_plate_without_a_channel_is_refused(tmp_path):
-    plate = Surface("plate_1", np.array([[0.0, 0, 0], [0.4, 0, 0], [0.4, 0.6, 0], [0, 0.6, 0]]))
-    with pytest.raises(ChannelError, match=r"walk.c3d.*'plate_1_fx'"):
-        write_c3d([recording(EMG, np.ones((100, 2)))], tmp_path / "walk.c3d", [plate])

@@ -103,13 +103,9 @@ def test_a_file_is_not_refused_because_others_use_the_machine(reading, process):
     assert process.read(_request("a.c3d", limit_s=1.0))[1][0].shape == (50, 9)
 
 
-def test_an_answer_that_breaks_off_is_a_crash(playing, process):
-    playing("print('{\"reader\": \"x\"}'); sys.stdout.write('abc')")
-    assert process.read(_request("a.c3d"))[0]["said"].startswith("it crashed")
-
-
-def test_babble_is_a_crash(playing, process):
-    playing("print('hello')")
+@pytest.mark.parametrize("answer", ["print('{\"reader\": \"x\"}'); sys.stdout.write('abc')", "print('hello')"])
+def test_an_answer_that_breaks_off_and_babble_are_a_crash(playing, process, answer):
+    playing(answer)
     assert process.read(_request("a.c3d"))[0]["said"].startswith("it crashed")
 
 

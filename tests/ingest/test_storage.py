@@ -81,12 +81,9 @@ def test_ground_forces_of_both_naming_habits(gait_data):
 
 
 def test_plates_without_a_foot_are_said_until_the_study_names_it(tmp_path):
-    labels, file = ("ground_force_1_vx", "ground_force_1_vy"), tmp_path / "grf.mot"
-    write_storage(
-        Recording(np.arange(9.0), np.ones((9, 2)), tuple(Channel(name, "signal", "N") for name in labels)), file
-    )
-    text = file.read_text().splitlines()
-    file.write_text("\n".join(["forces", "endheader", *text[text.index("endheader") + 1 :]]))
+    labels = ("ground_force_1_vx", "ground_force_1_vy")
+    rows = "".join(f"{i}\t1\t1\n" for i in range(9))
+    file = _written(tmp_path, "\t".join(["forces\nendheader\ntime", *labels]) + "\n" + rows)
     (found,) = [one for one in read_storage(file).findings if one.severity == "warning"]
     assert found.what.startswith(", ".join(labels))
     assert found.spoils.endswith('"ground_force_1_vx" = "ground_force_r_vx [N]"')

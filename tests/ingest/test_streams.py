@@ -109,16 +109,13 @@ def test_a_cell_that_is_no_number_is_named_with_line_and_column(word):
         parse_cells(["0\t1\t2", f"1\t2\t{word}"], LABELS, 11, Form("a.mot"))
 
 
-def test_short_and_long_rows_are_named():
+def test_short_and_long_rows_are_named_and_none_are_refused():
     with pytest.raises(ReadError, match=r"3 cells.*line 12.*2"):
         parse_cells(["0\t1\t2", "1\t2"], LABELS, 11, Form("a.mot"))
     with pytest.raises(ReadError, match=r"line 11 has 2"):
         parse_cells(["0\t1", "1\t2\t3"], LABELS, 11, Form("a.mot"))
     with pytest.raises(ReadError, match=r"line 12 has 4"):
         parse_cells(["0\t1\t2", "1\t2\t3\t4"], LABELS, 11, Form("a.mot"))
-
-
-def test_no_rows_are_refused():
     with pytest.raises(ReadError, match="none follow line 10"):
         parse_cells(["", "  "], LABELS, 11, Form("a.mot"))
 

@@ -5,12 +5,10 @@ from texts import says
 
 from gaitdisc.ingest.study import Conditions, Participant, PlannedTrial, Study
 from gaitdisc.ingest.trial_sets import (
-    functional_trial,
-    is_functional,
-    is_static,
+    calibration_trial,
+    is_calibration,
     is_walk,
     not_compared,
-    static_trial,
     trial_sets,
     why_refused,
 )
@@ -44,7 +42,7 @@ def test_walks_are_taken_together_by_session_and_condition_in_the_study_s_order(
 
 def test_static_is_a_condition_where_the_study_says_so():
     person = _person("P01", _trial("static"))
-    assert is_static(_study(person, nominal="walk"), person.trials[0])
+    assert is_calibration(_study(person, nominal="walk"), person.trials[0])
     assert is_walk(_study(person, nominal="static"), person.trials[0])
 
 
@@ -53,19 +51,19 @@ def test_the_static_trial_is_that_of_the_session_else_the_only_one():
         "P01", _trial("static", "before", "1.c3d"), _trial("static", "after", "2.c3d"), _trial("walk", "after")
     )
     study = _study(own, nominal="walk")
-    found = static_trial(study, own, "after")
+    found = calibration_trial(study, own, "after", "static")
     assert found is not None and found.files == ("2.c3d",)
     only = _person("P02", _trial("static", "before"), _trial("walk", "after"))
-    assert static_trial(study, only, "after") == only.trials[0]
-    assert static_trial(study, own, "") is None and static_trial(study, _person("P03"), "") is None
+    assert calibration_trial(study, only, "after", "static") == only.trials[0]
+    assert all(calibration_trial(study, one, "", "static") is None for one in (own, _person("P03")))
 
 
 def test_circled_legs_are_no_walk_but_for_a_study_that_walks_by_that_word():
     person = _person("P01", _trial("walk", "before"), _trial("functional", "before", "1.c3d"))
     study = _study(person, nominal="walk")
-    assert is_functional(study, person.trials[1]) and not is_walk(study, person.trials[1])
-    assert functional_trial(study, person, "before") == person.trials[1]
-    assert functional_trial(study, _person("P02", _trial("walk")), "") is None
+    assert is_calibration(study, person.trials[1]) and not is_walk(study, person.trials[1])
+    assert calibration_trial(study, person, "before", "functional") == person.trials[1]
+    assert calibration_trial(study, _person("P02", _trial("walk")), "", "functional") is None
     assert is_walk(_study(person, nominal="functional", others=("walk",)), person.trials[1])
 
 

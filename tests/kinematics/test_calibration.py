@@ -39,6 +39,9 @@ from gaitdisc.kinematics.pose import davis_hip, harrington_hip
 from gaitdisc.recording import Recording
 from gaitdisc.recording.trial import BodyMeasures
 
+STATIC = static_of(RAJAGOPAL)
+TWO_EXCHANGES = {"RCAL": "RTOE", "RTOE": "RCAL", "LCAL": "LTOE", "LTOE": "LCAL"}
+
 
 def with_methods(name: str, **methods: str) -> MarkerSet:
     plain = marker_set(name)
@@ -146,31 +149,26 @@ def test_a_marker_with_gaps_and_one_frame_are_enough():
         np.testing.assert_allclose(found, expected, atol=1e-9)
 
 
-def test_a_marker_missing_in_the_static_trial_is_named():
-    with pytest.raises(ChannelError, match=r"rajagopal; static\.c3d.*no RMFC"):
-        calibrate_body(without(static_of(RAJAGOPAL), "RMFC"), marker_set("rajagopal"))
-
-
-def test_a_marker_never_seen_in_the_static_trial_is_missing():
-    static = static_of(RAJAGOPAL)
-    with pytest.raises(ChannelError, match=r"static\.c3d has no RMFC\."):
-        calibrate_body(with_column(static, "RMFC.x", np.nan), marker_set("rajagopal"))
+@pytest.mark.parametrize(
+    ("static", "error", "words"),
+    [
+        (without(STATIC, "RMFC"), ChannelError, r"rajagopal; static\.c3d.*no RMFC"),
+        (with_column(STATIC, "RMFC.x", np.nan), ChannelError, r"static\.c3d has no RMFC\."),
+        (markers_of(known_angles(200), RAJAGOPAL), SamplingError, r"walk\.c3d"),
+        (static_of(RAJAGOPAL, Laboratory(np.diag([-1.0, 1, 1]))), ShapeError, r"static\.c3d.*left.*right"),
+        (renamed(STATIC, TWO_EXCHANGES), ShapeError, r"static\.c3d .TOE.*not.*.CAL \(200 mm\)"),
+    ],
+    ids=["a marker is missing", "is never seen", "a walk", "mirrored", "labels that no single exchange puts right"],
+)
+def test_a_static_trial_that_shows_no_body_is_refused(static, error, words):
+    with pytest.raises(error, match=words):
+        calibrate_body(static, marker_set("rajagopal"))
 
 
 def test_too_few_markers_to_follow_a_segment_are_refused():
     static = without(static_of(GAIT2354), "R.Thigh.Front")
     with pytest.raises(ChannelError, match=r"thigh_r.*3 points.*R\.Thigh\.Upper, R\.Thigh\.Rear.*missing: "):
         calibrate_body(static, marker_set("gait2354"))
-
-
-def test_a_walk_is_no_static_trial():
-    with pytest.raises(SamplingError, match=r"walk\.c3d"):
-        calibrate_body(markers_of(known_angles(200), RAJAGOPAL), marker_set("rajagopal"))
-
-
-def test_a_mirrored_static_trial_is_refused():
-    with pytest.raises(ShapeError, match=r"static\.c3d.*left.*right"):
-        calibrate_body(static_of(RAJAGOPAL, Laboratory(np.diag([-1.0, 1, 1]))), marker_set("rajagopal"))
 
 
 @pytest.mark.parametrize(
@@ -187,12 +185,6 @@ def test_two_exchanged_labels_spoil_their_segments_alone_and_are_named(pair, spo
     (said,) = (one for one in found.findings if one.kind == "exchanged markers")
     assert all(label in said.what for label in pair)
     assert (said.severity, said.file, found.spoiled) == ("warning", "static.c3d", spoiled)
-
-
-def test_labels_that_no_single_exchange_puts_right_are_refused():
-    static = renamed(static_of(RAJAGOPAL), {"RCAL": "RTOE", "RTOE": "RCAL", "LCAL": "LTOE", "LTOE": "LCAL"})
-    with pytest.raises(ShapeError, match=r"static\.c3d .TOE.*not.*.CAL \(200 mm\)"):
-        calibrate_body(static, marker_set("rajagopal"))
 
 
 def test_landmarks_on_a_line_are_refused():

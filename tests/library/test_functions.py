@@ -209,14 +209,11 @@ def test_what_math_refuses_is_a_run_that_ends_and_no_error():
     np.testing.assert_array_equal(rates, [[2.0], [np.nan]])
 
 
-def test_vectors_need_the_arguments_that_they_are_given_to():
+def test_vectors_and_units_need_the_arguments_that_they_are_given_to():
     with pytest.raises(SimulationError, match=r"vectors takes \(t"):
         simulation_from_function(vectors, states=["angle", "rate"], inputs=["torque"])
     with pytest.raises(SimulationError, match=r"2 derivatives.*3 states"):
         simulation_from_function(lambda t, x: x[:2], states=["a", "b", "c"])
-
-
-def test_a_unit_of_nothing_is_refused():
     with pytest.raises(SimulationError, match=r"'angel'.*rate, torque, length"):
         simulation_from_function(pendulum, {"angel": "rad"})
 

@@ -72,14 +72,11 @@ def test_what_is_missing_is_named(keywords, error, words):
         gd.simulate(driven, TIME, **keywords)
 
 
-def test_time_that_is_uneven_or_one_sample_is_refused():
+def test_uneven_time_one_sample_and_a_state_that_leaves_all_bounds_are_refused():
     with pytest.raises(SamplingError, match="a constant"):
         gd.simulate(lambda x: -x, [0.0, 0.1, 0.4], start=[1.0])
     with pytest.raises(ShapeError, match="three"):
         gd.simulate(lambda x: -x, [0.0], start=[1.0])
-
-
-def test_a_simulation_that_leaves_all_bounds_names_state_and_time():
     with pytest.raises(SimulationError, match="x"):
         gd.simulate(lambda x: x**2, np.linspace(0.0, 3.0, 301), start=[1.0])
 

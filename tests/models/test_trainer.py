@@ -111,15 +111,12 @@ def test_a_constant_input_weighs_nothing(swing, quick):
     assert np.isfinite(network(swing.x)).all()
 
 
-def test_too_few_samples(swing, quick):
+def test_too_few_samples_constant_outputs_and_missing_numbers_are_refused(swing, quick):
     with pytest.raises(TrainingError, match=r"3 inputs.*2 outputs.*50 samples.*49 usable"):
         train(swing.rows(slice(0, 49)), FeedForward, quick)
     sparse = replace(swing.rows(slice(0, 50)), time=np.full(50, 0.1))
     with pytest.raises(TrainingError, match=r"20 samples.*0 usable"):
         train(sparse, FeedForward, quick)
-
-
-def test_constant_outputs_and_missing_numbers(swing, quick):
     with pytest.raises(TrainingError, match=r"3.*2000 samples"):
         train(swing.with_outputs(np.column_stack([swing.y[:, 0], np.full(2000, 3.0)])), FeedForward, quick)
     hole = swing.x.copy()

@@ -29,9 +29,11 @@ def test_the_detector_asked_for_is_taken(trial):
     assert choose_contacts(only(trial, "kinematics")).detector == "angles"
 
 
-def test_a_detector_that_cannot_work_says_why(trial):
+def test_a_detector_that_cannot_work_and_nothing_to_find_contacts_in_are_refused(trial):
     with pytest.raises(StrideError, match="P01_nominal has kinematics"):
         choose_contacts(only(trial, "kinematics"), "markers")
+    with pytest.raises(StrideError, match=r"P01_nominal.*emg"):
+        choose_contacts(only(trial, "emg"))
 
 
 def test_two_events_do_not_outvote_a_whole_walk(trial):
@@ -93,11 +95,6 @@ def test_contacts_that_lie_apart_or_are_missed_are_a_warning(trial):
     assert says(missed.spoils, f"{right[12]:.2f} s", "detector finds a", "not")
     late = against([*(("l", time) for _, time in left), *(("r", time + 0.15) for time in right)])
     assert says(late.spoils, "50 ms more")
-
-
-def test_nothing_to_find_contacts_in(trial):
-    with pytest.raises(StrideError, match=r"P01_nominal.*emg"):
-        choose_contacts(only(trial, "emg"))
 
 
 def markers(*names):

@@ -135,14 +135,14 @@ def test_a_cycle_that_the_study_leaves_out_stays_with_its_reason(pieces):
 
 
 def test_too_few_cycles_are_refused_by_the_setting_of_the_ground(pieces):
-    trials = _planned(2)
-    for ground, key, needed in (("overground", "min_cycles", 9), ("treadmill", "min_strides", 10)):
+    cases = (2, "overground", "min_cycles", 9, "2 trials have"), (1, "treadmill", "min_strides", 10, "1 trial has")
+    for count, ground, key, needed, has in cases:
         quality = Quality(min_cycles=9)
-        study, person = _study(trials, strides=StrideRules(ground=ground), quality=quality)
+        study, person = _study(_planned(count), strides=StrideRules(ground=ground), quality=quality)
         (found,) = pool_cycles(study, person, lambda planned: pieces[int(planned.files[0][0])])
         assert len(found.kept) == 0 and found.curves.shape[0] == 0
         (refusal,) = found.refusals
-        assert refusal.reason.startswith(f"P01 walk needs {needed} cycles of a foot") and key in refusal.reason
+        assert refusal.reason.startswith(f"P01 walk needs {needed} cycles of a foot") and says(refusal.reason, has, key)
         assert set(found.left_out["reason"]) == {"too few cycles"}
         assert not can_pool([found])
 

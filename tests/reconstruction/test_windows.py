@@ -30,13 +30,18 @@ def test_every_reading_is_of_the_time_that_its_name_says(count, spacing):
     assert made.inputs[-2:] == ("b", "a")
 
 
-def test_no_window_reaches_over_a_missing_value():
+@pytest.mark.parametrize(
+    ("gap", "kept", "lost"),
+    [(slice(10, 11), False, {10, 12, 14, 25}), (slice(10, 15), True, {14, 25})],  # 14 has no reading at all
+)
+def test_no_window_reaches_over_a_missing_value_unless_those_are_kept(gap, kept, lost):
     recording = counting()
     values = recording.values.copy()
-    values[10, 0] = np.nan
+    values[gap, 0] = np.nan
     values[25, 2] = np.nan
-    made = cut_windows(recording.with_values(values), ["a"], ["c"], Lags(3, 2), np.zeros(30))
-    assert set((made.y[:, 0] / 1000).astype(int)) == set(range(4, 30)) - {10, 12, 14, 25}
+    made = cut_windows(recording.with_values(values), ["a"], ["c"], Lags(3, 2), np.zeros(30), missing=kept)
+    assert set((made.y[:, 0] / 1000).astype(int)) == set(range(4, 30)) - lost
+    assert np.isnan(made.x).any() == kept
 
 
 def test_windows_of_two_trials_never_join():
@@ -53,16 +58,6 @@ def test_present_readings_and_every_third_window():
     assert now.inputs == ("a", "b")
     assert len(thin_windows(made, 9)) == 9
     assert thin_windows(made, 100).x.shape == made.x.shape
-
-
-def test_windows_that_lack_readings_are_kept_on_request():
-    recording = counting()
-    values = recording.values.copy()
-    values[10:15, 0] = np.nan
-    values[25, 2] = np.nan
-    made = cut_windows(recording.with_values(values), ["a"], ["c"], Lags(3, 2), np.zeros(30), missing=True)
-    assert set((made.y[:, 0] / 1000).astype(int)) == set(range(4, 30)) - {14, 25}  # 14 has no reading at all
-    assert np.isnan(made.x).any()
 
 
 @given(st.integers(0, 5))

@@ -48,12 +48,25 @@ def test_the_device_model_helps(response):
     assert says(null, "Band-limited noise alone", "0.51")
 
 
-def test_the_device_model_does_not_help_or_makes_it_worse(response):
-    set_r2(response, "augmented", "network", [0.87, 0.874, 0.866])
-    verdict = participant_sentences(response)[2]
-    assert says(verdict, "not", "no better", "changes by 0.000", "better", "1 of 3 variables")
-    set_r2(response, "augmented", "network", 0.80)
-    assert says(participant_sentences(response)[2], "worse: R² falls", "0.07")
+@pytest.mark.parametrize(
+    ("values", "sentence", "words"),
+    [
+        ({"nominal": -0.3}, 0, ("worse", "nothing (R² −0.30)")),
+        (
+            {"augmented": [0.87, 0.874, 0.866]},
+            2,
+            ("not", "no better", "changes by 0.000", "better", "1 of 3 variables"),
+        ),
+        ({"augmented": 0.80}, 2, ("worse: R² falls", "0.07")),
+        ({"nominal": 0.49}, 4, ("the Nominal model", "not exceed")),
+        ({"nominal": 0.49, "exo": 0.4}, 4, ("Nominal and Exo", "not exceed")),
+        ({"augmented": [0.94, 0.94, 0.5]}, 4, ("0.51", "1 of 3 variables", "no better", "right")),
+    ],
+)
+def test_a_model_that_is_no_better_or_worse_than_another_the_mean_or_noise_is_named(response, values, sentence, words):
+    for model, r2 in values.items():
+        set_r2(response, model, "network", r2)
+    assert says(participant_sentences(response)[sentence], *words)
 
 
 def test_ridge_wins(response):
@@ -61,23 +74,6 @@ def test_ridge_wins(response):
     assert says(participant_sentences(response)[3], "ridge exceeds", "(0.96", "0.94", "no advantage")
     set_r2(response, "augmented", "ridge", 0.94)
     assert participant_sentences(response)[3].endswith("the networks are no better.")
-
-
-def test_no_better_than_noise(response):
-    set_r2(response, "nominal", "network", 0.49)
-    assert says(participant_sentences(response)[4], "the Nominal model", "not exceed")
-    set_r2(response, "exo", "network", 0.4)
-    assert says(participant_sentences(response)[4], "Nominal and Exo", "not exceed")
-
-
-def test_one_variable_no_better_than_noise_is_named_though_the_median_is_fine(response):
-    set_r2(response, "augmented", "network", [0.94, 0.94, 0.5])
-    assert says(participant_sentences(response)[4], "0.51", "1 of 3 variables", "no better", "right")
-
-
-def test_worse_than_the_mean(response):
-    set_r2(response, "nominal", "network", -0.3)
-    assert says(participant_sentences(response)[0], "worse", "nothing (R² −0.30)")
 
 
 def test_what_was_not_computed_is_said(response):

@@ -52,15 +52,17 @@ def test_a_gpu_that_is_not_there_is_refused_before_anything_is_fitted(study):
         reconstruct_study(study, ("knee_angle_r",), ReconstructionSettings(kinds=("linear", "shred"), device="cuda"))
 
 
-def test_a_population_needs_three_people(study):
-    with pytest.raises(SamplingError, match=r"least.*training.*2"):
-        reconstruct_study(study, ("knee_angle_r",), ReconstructionSettings(split="subject", kinds=KINDS))
-
-
-def test_a_history_longer_than_the_trial(study):
-    settings = ReconstructionSettings(history_s=40.0, kinds=KINDS)
-    with pytest.raises(SamplingError, match=r"39\.96 s.*29"):
-        reconstruct_study(study, ("knee_angle_r",), settings)
+@pytest.mark.parametrize(
+    ("settings", "error", "words"),
+    [
+        ({"split": "subject"}, SamplingError, r"least.*training.*2"),
+        ({"history_s": 40.0}, SamplingError, r"39\.96 s.*29"),
+        ({"split": "condition"}, SchemaError, r"needs walks of.*condition.*--condition"),
+    ],
+)
+def test_a_split_or_a_history_for_which_the_walks_do_not_do_is_refused(study, settings, error, words):
+    with pytest.raises(error, match=words):
+        reconstruct_study(study, ("knee_angle_r",), ReconstructionSettings(kinds=KINDS, **settings))
 
 
 def test_forces_are_reconstructed_in_newtons_and_no_number_is_in_degrees(tmp_path):
@@ -83,12 +85,6 @@ def test_one_condition_is_reconstructed_from_the_other(study):
     within, _ = reconstruct_study(study, ("knee_angle_r",), ReconstructionSettings(kinds=KINDS))
     assert says(done.split, "condition: walks of one condition")
     assert done.over_participants()["rmse_deg"]["delay ridge"] > within.over_participants()["rmse_deg"]["delay ridge"]
-
-
-def test_a_split_across_conditions_needs_the_one_that_is_tested(study):
-    settings = ReconstructionSettings(split="condition", kinds=KINDS)
-    with pytest.raises(SchemaError, match=r"needs walks of.*condition.*--condition"):
-        reconstruct_study(study, ("knee_angle_r",), settings)
 
 
 def test_states_ahead_of_the_last_reading(study):
@@ -117,9 +113,8 @@ def test_sensors_are_searched_for_all_participants_together(study):
     ],
 )
 def test_no_search_for_what_is_not_a_present_state(study, settings, found):
-    with pytest.raises(
-        SchemaError, match=rf"possible only for the present states.*{found}.*name the sensors with --sensors"
-    ):
+    words = rf"possible only for the present states.*{found}.*name the sensors with --sensors"
+    with pytest.raises(SchemaError, match=words):
         search_study(study, 2, settings)
 
 

@@ -68,16 +68,10 @@ def test_spans_say_where(made):
     assert channel_findings(planted(made, "gap"))[0].spans == ((4.0, 4.4),)
 
 
-def test_a_force_that_rests_at_zero_is_well():
-    t = np.arange(2000) / 1000
-    f = np.where(np.sin(2 * np.pi * t) > 0, 700 * np.sin(2 * np.pi * t), 0.0)
-    assert channel_findings(one(f, FORCE, 1000.0)) == []
-
-
-def test_a_force_that_is_cut_off_is_clipped():
-    t = np.arange(2000) / 1000
-    f = np.clip(900 * np.sin(2 * np.pi * t), 0.0, 700.0)
-    assert [finding.kind for finding in channel_findings(one(f, FORCE, 1000.0))] == ["clipped"]
+@pytest.mark.parametrize(("size_n", "kinds"), [(700, []), (900, ["clipped"])])
+def test_a_force_that_rests_at_zero_is_well_and_one_that_is_cut_off_is_clipped(size_n, kinds):
+    force = np.clip(size_n * np.sin(2 * np.pi * np.arange(2000) / 1000), 0.0, 700.0)
+    assert [finding.kind for finding in channel_findings(one(force, FORCE, 1000.0))] == kinds
 
 
 def test_a_real_ankle_that_jumps(gait_data, real):

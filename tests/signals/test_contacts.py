@@ -148,14 +148,10 @@ def test_without_a_knee_the_hip_stands_in(made):
     assert np.all((percent > 80) & (percent < 95))
 
 
-def test_no_hip_is_refused(made):
+def test_no_hip_and_a_hip_that_does_not_swing_are_refused(made):
     walk, _ = made.walk(5)
     with pytest.raises(ChannelError, match=r"walk\.mot.*1 channels.*'hip_flexion_r'"):
         angle_contacts(walk.selected(["knee_angle_r"]))
-
-
-def test_a_hip_that_does_not_swing_is_refused(made):
-    walk, _ = made.walk(5)
     with pytest.raises(StrideError, match=r"5 deg.*walk\.mot, hip_flexion_r:"):
         angle_contacts(walk.with_values(walk.values / 100))
 

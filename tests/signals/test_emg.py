@@ -163,17 +163,11 @@ def test_movement_artefact_below_40_hz_is_gone():
     assert np.abs(out[1000:4000]).max() < 1e-4
 
 
-def test_a_slow_rate_is_refused():
+def test_a_slow_rate_an_envelope_and_an_angle_are_refused():
     with pytest.raises(SamplingError, match=r"40 Hz.*above 80.*walk\.c3d.*80.*EMG"):
         envelopes(single(np.random.default_rng(0).normal(size=500), 80.0))
-
-
-def test_an_envelope_is_refused():
     with pytest.raises(SamplingError, match=r"walk\.c3d, emg_sol_r.*500 samples.*below"):
         envelopes(single(0.1 + np.abs(np.random.default_rng(0).normal(size=500))))
-
-
-def test_an_angle_is_refused():
     with pytest.raises(ChannelError, match=r"walk\.c3d.*'knee_angle_r'.*angle"):
         envelopes(single(np.zeros(500), channel=Channel("knee_angle_r", "angle", "deg", "r")))
 

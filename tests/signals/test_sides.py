@@ -21,14 +21,10 @@ def test_the_knee_of_the_side_peaks_in_swing(made):
     assert knee_peak_percent(walk, right_strides(contacts), "knee_angle_l") == pytest.approx(20, abs=2)
 
 
-def test_swapped_sides_are_refused_with_what_was_seen(made):
+def test_swapped_sides_and_a_knee_of_the_other_sign_are_refused_with_what_was_seen(made):
     walk, contacts = made.walk(12)
     with pytest.raises(StrideError, match=r"knee_angle_l.*(19|20|21) %, knee_angle_r.*(69|70|71) %: left.*right"):
         verify_sides(walk, right_strides(contacts, "l"))
-
-
-def test_a_knee_of_the_other_sign_is_refused(made):
-    walk, contacts = made.walk(12)
     with pytest.raises(StrideError, match="flexion is positive"):
         verify_sides(walk.with_values(-walk.values), right_strides(contacts))
 

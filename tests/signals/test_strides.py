@@ -77,12 +77,9 @@ def test_strides_beyond_the_recording_are_dropped(made):
     assert says(strides.dropped[0].reason, "0.00", "5.99 s")
 
 
-def test_one_contact_is_no_stride():
+def test_one_contact_is_no_stride_and_none_left_is_refused_with_the_first_reason():
     with pytest.raises(StrideError, match=r"two initial contacts.*1.*'r'"):
         cut_strides(contacts([]))
-
-
-def test_no_stride_left_is_refused_with_the_first_reason():
     with pytest.raises(StrideError, match=r"2.*1\.00 s: 5\.00 s.*longer.*2\.5 s"):
         cut_strides(contacts([5.0, 6.0]))
 

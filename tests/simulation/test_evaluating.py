@@ -43,12 +43,9 @@ def test_delays_in_a_series(ankle):
     np.testing.assert_allclose(late, wanted, atol=1e-9)
 
 
-def test_a_delay_without_a_series_is_refused(ankle):
+def test_a_delay_without_a_series_and_an_unknown_name_are_refused(ankle):
     with pytest.raises(SimulationError, match="the points have no rate"):
         evaluate(ankle, "delay(theta, 0.1)", Points(T, X, U))
-
-
-def test_an_unknown_name_is_refused(ankle):
     with pytest.raises(SimulationError, match="Did you mean 'theta'"):
         evaluate(ankle, "thetta", Points(T, X, U))
 

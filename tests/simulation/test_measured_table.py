@@ -63,12 +63,9 @@ def test_semicolons_with_decimal_commas(ankle, tmp_path):
     assert read_measured(tmp_path / "walk.csv", ankle).observed[0, 0, 0] == 1.0
 
 
-def test_trial_numbers_keep_their_order(ankle, tmp_path):
+def test_trial_numbers_keep_their_order_and_a_table_without_them_is_one_trial(ankle, tmp_path):
     _table((10, 9, 2)).to_csv(tmp_path / "walk.csv", index=False)
     assert read_measured(tmp_path / "walk.csv", ankle).trials == ("10", "9", "2")
-
-
-def test_a_table_without_trials_is_one(ankle, tmp_path):
     _table(("1",)).drop(columns="trial").to_csv(tmp_path / "walk.csv", index=False)
     assert read_measured(tmp_path / "walk.csv", ankle).trials == ("1",)
 
