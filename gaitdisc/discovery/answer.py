@@ -23,7 +23,6 @@ from gaitdisc.discovery.held_out import (
     tabulate_runs,
 )
 from gaitdisc.discovery.influence import nearly_off
-from gaitdisc.discovery.odd_trials import KIND as ODD_TRIAL
 from gaitdisc.discovery.result import Correction, Discovery, Estimate, Explanation, FoundEffect, GapSize, Whereabouts
 from gaitdisc.discovery.scored_model import Part, ScoredModel
 from gaitdisc.discovery.search import Search
@@ -106,17 +105,7 @@ def answer(
     augmented = augment_with(corrected(base, moved), parts).with_starts(
         {name: float(f"{start.value:.6g}") for name, start in verdict.starts.items()}
     )
-    said = write_sentence(discovery, base, parts)
-    return replace(said, sentence=" ".join([said.sentence, *left_out(case.measured.findings)])), augmented
-
-
-def left_out(findings: tuple[Finding, ...]) -> list[str]:
-    """Say which trials were left out, and why."""
-    return [
-        f"{finding.what[0].upper()}{finding.what[1:]}. This trial was left out."
-        for finding in findings
-        if finding.kind == ODD_TRIAL
-    ]
+    return write_sentence(discovery, base, parts), augmented
 
 
 def list_effects(case: Case, verdict: Verdict, closed: float, gained: float) -> tuple[FoundEffect, ...]:
@@ -190,14 +179,10 @@ def weigh_rivals(search: Search, now: ScoredModel, found: tuple[ScoredModel, ...
             sets = [(last,), *(sets if len(sets[0]) > 1 else []), *beside]
         best = min((search.with_others(now, each) for each in sets), key=lambda model: model.bic)
         fitted.setdefault(tuple(sorted(best.labels)), best)
-    rivals = [
-        Rival(
-            model,
-            gained - (model.bic - now.bic),
-            model.bic - now.bic < CRITERIA.tie and not set(own) < set(model.labels),
-        )
-        for model in fitted.values()  # what only adds to the answer is no other answer
-    ]
+    rivals = []
+    for model in fitted.values():
+        behind, adds = model.bic - now.bic, set(own) < set(model.labels)  # what only adds to it is no other answer
+        rivals.append(Rival(model, gained - behind, behind < CRITERIA.tie and not adds))
     return tuple(sorted(rivals, key=lambda rival: -rival.gained))
 
 
@@ -236,15 +221,10 @@ def whereabouts(case: Case, verdict: Verdict, train: GapSize) -> tuple[Whereabou
         firsts = [rival.parts[0].candidate for rival in verdict.rivals[:1] if rival.parts]
         return tuple(Whereabouts(one.kind, one.place, float("nan")) for one in firsts)
     share = (train.before**2 - train.after**2) / train.before**2 if train.before > 0 else 0.0
+    share /= len(now.parts)
     return tuple(
-        Whereabouts(
-            part.candidate.kind,
-            part.candidate.place,
-            share / len(now.parts),
-            find_phase(case, now, part),
-            find_region(part),
-        )
-        for part in now.parts
+        Whereabouts(one.candidate.kind, one.candidate.place, share, find_phase(case, now, one), find_region(one))
+        for one in now.parts
     )
 
 

@@ -333,19 +333,16 @@ def _castings(shape: Shape, place: Place, driving: tuple[str, ...]) -> list[tupl
         moving = ({"x": x} if x != v else {}) | ({"v": v} if v else {})
         return [(signal, moving | {"u": signal}) for signal in driving if roles <= {"u", *moving}]
     if roles <= {"x", "v"}:
-        castings = []
-        for x, v in place.motions:
-            late = any("delay(" in piece for piece in shape.pieces)
-            if ("v" in roles and not v) or (late and " " in x):
-                continue
-            if x == v and "x" in roles:
-                continue  # of a speed, what acts on a position is not known
-            if x in place.others and shape.pieces in (("x",), ("v",)):
-                continue  # that is a coupling
-            castings.append((x, {"x": x} | ({"v": v} if v else {})))
-            if not roles or shape.needs == "angle":
-                break
-        return castings
+        late, plain = any("delay(" in piece for piece in shape.pieces), shape.pieces in (("x",), ("v",))
+        castings = [
+            (x, {"x": x} | ({"v": v} if v else {}))
+            for x, v in place.motions
+            if (v or "v" not in roles)
+            and not (late and " " in x)
+            and not (x == v and "x" in roles)  # of a speed, what acts on a position is not known
+            and not (plain and x in place.others)  # that is a coupling
+        ]
+        return castings[:1] if not roles or shape.needs == "angle" else castings
     if roles == {"y"}:
         return [(other, {"y": other}) for other in place.others]
     if roles == {"a", "b"}:

@@ -249,11 +249,8 @@ def _less_idle(case: Case) -> Case:
     candidates = tuple(candidate for candidate in search.candidates if (candidate.kind, candidate.place) not in kinds)
     measured, kind = case.measured, "port" if search.base.ports else "equation"
     findings = (*measured.findings, *idle.findings(measured.source or search.base.title, kind))
-    return replace(
-        case,
-        search=replace(search, places=places, candidates=candidates),
-        measured=replace(measured, findings=findings),
-    )
+    search = replace(search, places=places, candidates=candidates)
+    return replace(case, search=search, measured=replace(measured, findings=findings))
 
 
 def split_in_time(measured: Measured, last: bool = True) -> Measured:
@@ -267,16 +264,8 @@ def split_in_time(measured: Measured, last: bool = True) -> Measured:
     observed = np.full((2, samples - quarter, measured.observed.shape[2]), np.nan)
     for place, (first, end) in enumerate(parts):
         observed[place, : end - first] = measured.observed[0, first:end]
+    inputs = [drive.inputs[0, first:end] for first, end in parts]
+    driven = Drive.of(inputs, drive.rate, [drive.time0[0] + first / drive.rate for first, _ in parts])
     name = measured.trials[0]
-    return Measured(
-        Drive.of(
-            [drive.inputs[0, first:end] for first, end in parts],
-            drive.rate,
-            [drive.time0[0] + first / drive.rate for first, _ in parts],
-        ),
-        observed,
-        (name, f"{name}, {'last' if last else 'first'} quarter"),
-        measured.channels,
-        measured.findings,
-        measured.source,
-    )
+    trials = (name, f"{name}, {'last' if last else 'first'} quarter")
+    return replace(measured, drive=driven, observed=observed, trials=trials)

@@ -102,15 +102,12 @@ def shape_that_leaves_noise(
     Held-out data prefer it beyond chance, and in free runs as well: several names can imitate one law that has none. A
     single name that leaves mere noise stands.
     """
-    if shape is None or not case.leaves_noise(shape):
+    named = names.found
+    if shape is None or not case.leaves_noise(shape) or (len(named.parts) == 1 and case.leaves_noise(named)):
         return None
-    if len(names.found.parts) == 1 and case.leaves_noise(names.found):
+    if free_run_error(case, shape) > free_run_error(case, named) or not prove_held_out(case, named, shape).bears_out:
         return None
-    if free_run_error(case, shape) > free_run_error(case, names.found):
-        return None
-    if not prove_held_out(case, names.found, shape).bears_out:
-        return None
-    return proven_shape(case, as_read, shape, (names.found, *names.rivals))
+    return proven_shape(case, as_read, shape, (named, *names.rivals))
 
 
 def proven_shape(

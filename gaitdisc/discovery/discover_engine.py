@@ -184,13 +184,13 @@ def with_forces_of_muscles(fit: EngineFit, found: Discovery, base: Simulation, r
     """
     own = fit.mapping.values()
     for number, gain in enumerate(found.effects):
-        name, kept = f"{gain.place}_force", fit.parts
+        name = f"{gain.place}_force"
         if gain.name != "input_gain" or name not in own:
             continue
-        before = fit.left(found, kept, runs)
+        before = fit.left(found, fit.parts, runs)
         candidate = Candidate("wrong_parameter", "parameter", name, "wrong_parameter", value=own[name])
-        force = Part(candidate, {"value": kept[number].values["gain"] * own[name]})
-        fit.parts = (*kept[:number], force, *kept[number + 1 :])
+        force = Part(candidate, {"value": fit.parts[number].values["gain"] * own[name]})
+        other = replace(fit, parts=(*fit.parts[:number], force, *fit.parts[number + 1 :]))
         named = replace(gain, kind="parameter", place=name, name="wrong_parameter")
         others = (one for one in (gain, *found.rivals) if (one.name, one.place) != (named.name, name))
         tried = replace(
@@ -201,11 +201,10 @@ def with_forces_of_muscles(fit: EngineFit, found: Discovery, base: Simulation, r
             explanations=found.explanations[:1],
             findings=tuple(one for one in found.findings if one.kind != "unstated errors"),
         )
-        tried = fit.fitted(tried, base, runs)
-        if np.nansum((fit.left(tried, fit.parts, runs) / runs.floor) ** 2) < np.nansum((before / runs.floor) ** 2):
-            found = tried
-        else:
-            fit.parts = kept
+        tried = other.fitted(tried, base, runs)
+        after = other.left(tried, other.parts, runs)
+        if np.nansum((after / runs.floor) ** 2) < np.nansum((before / runs.floor) ** 2):
+            found, fit.parts = tried, other.parts
     return found
 
 

@@ -301,8 +301,7 @@ def summarise_joint(walk: Pass, number: int, found: JointFinding) -> Finding:
         f"visible effects: a spring of {spring:.2g} {unit}/{one.unit}, a damper of {damper:.2g} {unit} s/{one.unit}"
         + "".join(f", {each}" for each in shares)
     )
-    unexplained = float(np.sqrt(np.mean((joint.left - (found.named.explained if found.named else 0.0)) ** 2)))
-    if unexplained > BEYOND * joint.floor and found.named is None:
+    if left > BEYOND * joint.floor and found.named is None:
         return Finding("warning", "without a name", "model", what, "this joint's residual, which no effect explains")
     return Finding("note", "joint", "model", what, "", one.called)
 

@@ -149,11 +149,10 @@ def _over_time(discovery: Discovery, table: pd.DataFrame) -> Figure:
     drawn, grid = panels(len(channels), 2, 1.75, Room(left=0.6, across=0.62, down=0.52))
     for (left, right), (channel, unit, floor) in zip(grid, channels, strict=True):
         draw_runs(left, numbers, channel)
-        left.set_title(channel)
-        left.set_ylabel(f"[{unit}]", labelpad=1)
         draw_left(right, numbers, channel, floor)
-        right.set_title(f"{channel}: residual")
-        right.set_ylabel(f"[{unit}]", labelpad=1)
+        for axes, title in ((left, channel), (right, f"{channel}: residual")):
+            axes.set_title(title)
+            axes.set_ylabel(f"[{unit}]", labelpad=1)
     for axes in grid[-1]:
         axes.set_xlabel("time [s]", labelpad=1)
     legend(drawn, discovery_key(measured=True))

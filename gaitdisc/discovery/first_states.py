@@ -7,6 +7,7 @@ signals; its course over whole trials gives the start of every run.
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -69,7 +70,7 @@ def guess_states(simulation: Simulation, measured: Measured, period: float, rate
 
 def _following(simulation: Simulation, drive: Drive, states: Values, hidden: NDArray[np.bool_]) -> Values:
     """States (trial, sample, state), those that are hidden along their own equations, where they forget their start."""
-    machine = compile_simulation(isolate_equations(simulation, tuple(np.flatnonzero(hidden).tolist())))
+    machine = compile_simulation(isolate_equations(simulation, np.flatnonzero(hidden).tolist()))
     driving = np.concatenate([np.nan_to_num(states[..., ~hidden]), drive.inputs], axis=2)
     trials = np.arange(len(states))
     runs = run_twice(machine, replace(drive, inputs=driving), Rows(trials, 0 * trials, states[:, 0, hidden]))
@@ -140,9 +141,8 @@ def follow(shooting: Shooting, simulation: Simulation, values: Values) -> Values
                 past[trial, :length, state] = _bridge(seen, known)
     inputs = np.concatenate([past, drive.inputs], axis=2)
     along = Drive(drive.rate, drive.time0, inputs, drive.samples)
-    machine = compile_simulation(
-        isolate_equations(simulation, tuple(range(shooting.past.shape[2], len(simulation.states))))
-    )
+    own = range(shooting.past.shape[2], len(simulation.states))
+    machine = compile_simulation(isolate_equations(simulation, own))
     trials, versions = len(drive.samples), len(values)
     trial = np.tile(np.arange(trials), versions)
     starts = np.tile([state.initial or 0.0 for state in machine.simulation.states], (len(trial), 1))
@@ -163,7 +163,7 @@ def run_twice(machine: Compiled, drive: Drive, rows: Rows, substeps: int = SUBST
     return first, machine.run(drive, again, steps, substeps=substeps)[0]
 
 
-def isolate_equations(simulation: Simulation, own: tuple[int, ...]) -> Simulation:
+def isolate_equations(simulation: Simulation, own: Iterable[int]) -> Simulation:
     """Return the equations of some of the states, the others being inputs before the rest; nothing acts at ports."""
     states, equations = [simulation.states[one] for one in own], dict(simulation.equations)
     others = [one for one in simulation.states if one not in states]

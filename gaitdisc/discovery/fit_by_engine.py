@@ -8,7 +8,6 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 from numpy.typing import NDArray
 
-from gaitdisc.discovery.answer import left_out
 from gaitdisc.discovery.criteria import CRITERIA
 from gaitdisc.discovery.estimates import name_estimates
 from gaitdisc.discovery.grids import find_rhythm
@@ -225,5 +224,4 @@ def with_own_runs(found: Discovery, runs: OwnRuns, fit: EngineFit, base: Simulat
         explanations=(*named, *found.explanations[len(named) :]),
         runs=Runs(at.trial[shown], time, np.zeros((len(shown), 0)), seen, simulated, augmented, names=data.trials),
     )
-    said = write_sentence(found, base, fit.parts if effects else ())
-    return replace(said, sentence=" ".join([said.sentence, *left_out(found.findings)]))
+    return write_sentence(found, base, fit.parts if effects else ())

@@ -96,9 +96,7 @@ def _promising(now: ScoredModel, search: Search, plain: CrossValidated) -> list[
     scorer = search.scorer(plain)
     shapes = tuple(shape for place in search.places for shape in shapes_at(place, now, search))
     numbers, each = plain.shooting.known.sum(), CRITERIA.independent
-    worth = [
-        score for score in scorer.scores(shapes) if each * score.gain > np.log(numbers) * len(score.candidate.slots)
-    ]
+    worth = [one for one in scorer.scores(shapes) if each * one.gain > np.log(numbers) * len(one.candidate.slots)]
     scores = sorted(worth, key=lambda one: np.log(numbers / each) * len(one.candidate.slots) - one.gain)
     return scores[:FITTED]
 

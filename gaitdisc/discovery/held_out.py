@@ -60,16 +60,13 @@ def free_runs(case: Case, now: ScoredModel) -> tuple[float, float]:
         first = count_first_samples(case, segments)
         late = (segments.samples[:, segments.compared] >= first)[..., None] & shooting.known
         early = slopes[~late & shooting.known]
-        doubt = (
-            np.einsum("...i,ij,...j", slopes, np.linalg.pinv(early.T @ early), slopes)
-            * (scale.size / scale.spread) ** 2
-        )
+        start = np.einsum("...i,ij,...j", slopes, np.linalg.pinv(early.T @ early), slopes)
         moved = np.zeros_like(whole.residual)  # mean square that the stated errors of inputs move the run by
         for seed in range(DRAWN if wandering(case.search.base) else 0):
             drawn = with_drawn_errors(case.measured, case.search.base, seed)
             _, there = replace(shooting, measured=drawn).run(now.machine, whole.starts[None], whole.values[None])
             moved += (shooting.seen - whole.residual - there[0]) ** 2 / DRAWN
-        doubt = doubt + moved / scale.spread**2
+        doubt = start * (scale.size / scale.spread) ** 2 + moved / scale.spread**2
         found.append([np.fmin(error, CRITERIA.lost)[late].mean(), np.fmin(doubt, CRITERIA.lost)[late].mean()])
     error, doubt = np.mean(found, axis=0)
     return float(error), float(doubt)

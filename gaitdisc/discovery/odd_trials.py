@@ -19,6 +19,7 @@ from gaitdisc.discovery.first_states import guess_states
 from gaitdisc.discovery.fitted import find_basis, without
 from gaitdisc.discovery.noise import white_noise
 from gaitdisc.discovery.places import kinematic_rates
+from gaitdisc.discovery.result import ODD_TRIAL
 from gaitdisc.discovery.scored_model import ScoredModel, fit_model, leaves
 from gaitdisc.discovery.segments import cut_segments
 from gaitdisc.discovery.shooting import Shooting
@@ -27,7 +28,6 @@ from gaitdisc.recording.arrays import Values
 from gaitdisc.simulation.compiled_simulation import Drive
 from gaitdisc.simulation.measured import Measured
 
-KIND = "odd trial"
 SIGN = "the sign of "
 FEWEST_OTHERS = 2
 PROMISING = 0.5  # of the mean square, to first order, that a shift has to leave at most for it to be tried
@@ -71,7 +71,7 @@ def agreeing_trials(case: Case, measured: Measured) -> Measured:
     findings = tuple(
         Finding(
             "warning",
-            KIND,
+            ODD_TRIAL,
             source,
             f"trial {measured.trials[one.trial]!r} looks as if {one.change}: with this correction the error of the "
             f"simulation falls from {one.errors[0]:.2g} to {one.errors[1]:.2g} standard deviations; in the other "
@@ -176,11 +176,8 @@ def shift_channels(measured: Measured, shift: int) -> Measured:
     """Return trials whose channels come a number of samples earlier against their inputs; each loses as many."""
     inputs, seen = max(-shift, 0), max(shift, 0)
     trials = [(each, int(samples) - abs(shift)) for each, samples in enumerate(measured.samples)]
-    drive = Drive.of(
-        [measured.drive.inputs[trial, inputs : inputs + samples] for trial, samples in trials],
-        measured.rate,
-        measured.drive.time0 + inputs / measured.rate,
-    )
+    driving = [measured.drive.inputs[trial, inputs : inputs + samples] for trial, samples in trials]
+    drive = Drive.of(driving, measured.rate, measured.drive.time0 + inputs / measured.rate)
     observed = np.full((len(trials), int(drive.samples.max()), len(measured.channels)), np.nan)
     for trial, samples in trials:
         observed[trial, :samples] = measured.observed[trial, seen : seen + samples]
@@ -232,7 +229,7 @@ def without_trial_apart(case: Case) -> Measured:
     source = measured.source or case.search.base.title
     spoils = "this trial, which was left out; check its gain, its offset and whether a channel was constant"
     kept = measured.selected([one for one in range(count) if one != trial])
-    return replace(kept, findings=(*kept.findings, Finding("warning", KIND, source, what, spoils)))
+    return replace(kept, findings=(*kept.findings, Finding("warning", ODD_TRIAL, source, what, spoils)))
 
 
 def _leave_out_each(case: Case, trial: int, spread: Values) -> float:

@@ -32,6 +32,7 @@ VERDICTS = {
 }
 
 SIZES = ("before", "after", "noise_floor")  # of a gap, as its file calls them
+ODD_TRIAL = "odd trial"  # kind of the finding about a trial that was left out
 # What an answer follows, as its provenance has it
 SIMULATION = "discovery of missing physics"
 ENGINE = "discovery of missing physics in a model of an engine"
@@ -301,9 +302,8 @@ class Discovery(Saved, file="discovery.json"):
         return f"Discovery({self.verdict}: {self.sentence})"
 
     def _repr_html_(self) -> str:
-        gap = (
-            f"{self.held_out.before:.3g} before, {self.held_out.after:.3g} after, noise {self.held_out.noise_floor:.3g}"
-        )
+        size = self.held_out
+        gap = f"{size.before:.3g} before, {size.after:.3g} after, noise {size.noise_floor:.3g}"
         rows = [("verdict", self.verdict.replace("_", " ")), ("held-out gap", gap)]
         for effect in self.effects:
             amounts = (
@@ -315,6 +315,7 @@ class Discovery(Saved, file="discovery.json"):
 
     def to_json(self) -> dict[str, Any]:
         """Return the content of `discovery.json`; a number that is not finite is null."""
+        conditions = [asdict(one) | {"effects": [*map(_effect, one.effects)]} for one in self.conditions]
         found = {
             "verdict": self.verdict,
             "where": [_place_fields(place) for place in self.where],
@@ -339,16 +340,7 @@ class Discovery(Saved, file="discovery.json"):
             "sentence": self.sentence,
             "channels": dict(zip(self.channels, self.units, strict=True)),
             **({"beside": self.beside} if self.beside else {}),
-            **(
-                {
-                    "conditions": [
-                        asdict(condition) | {"effects": [*map(_effect, condition.effects)]}
-                        for condition in self.conditions
-                    ]
-                }
-                if self.conditions
-                else {}
-            ),
+            **({"conditions": conditions} if conditions else {}),
         }
         return _finite(found) | {
             "findings": [asdict(finding) for finding in self.findings],

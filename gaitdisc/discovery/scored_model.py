@@ -18,7 +18,7 @@ from gaitdisc.discovery.catalogue import read_shapes
 from gaitdisc.discovery.criteria import CRITERIA
 from gaitdisc.discovery.first_states import with_own_states
 from gaitdisc.discovery.fitted import Fitted, read_prior
-from gaitdisc.discovery.noise import Noise, find_noise
+from gaitdisc.discovery.noise import MOST_LAGS, Noise, find_noise
 from gaitdisc.discovery.shooting import ENOUGH, TURNS, Shooting
 from gaitdisc.recording.arrays import Values
 from gaitdisc.simulation.compiled_simulation import Compiled
@@ -208,8 +208,10 @@ def fit_model(
 def score(model: ScoredModel) -> ScoredModel:
     """Estimate a model's own noise, and its own past for what comes late, and fit it again under them."""
     least = max(INTEGRATED, model.base.inexact) * np.nanstd(model.shooting.measured.observed, axis=(0, 1))
+    passed = model.shooting.record_filter
+    known = passed.autocorrelation(MOST_LAGS) if passed and passed.margin else None
     for _ in range(ROUNDS):
-        residual, known = model.fit.residual, model.shooting.filter_autocorrelation
+        residual = model.fit.residual
         noise = find_noise(residual, model.fit.starts.shape[1] / residual.shape[2], least=least, autocorrelation=known)
         model = model.refitted(model.with_own_past().shooting.with_noise(noise), turns=TURNS_AGAIN)
     return model

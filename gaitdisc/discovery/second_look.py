@@ -73,16 +73,11 @@ def prefer_delay(case: Case, as_read: ScoredModel, verdict: Verdict) -> Verdict:
     springs = [one for one in parts if one.candidate.name == AT_ONCE and (one.candidate.role, "") in firsts]
     if len(parts) != 1 or not springs or not verdict.proof:
         return verdict
-    late = [
-        candidate
-        for candidate in case.search.candidates
-        if candidate.name == LATE
-        and (candidate.place, candidate.role) == (springs[0].candidate.place, springs[0].candidate.role)
-    ]
-    found, search = verdict.found, case.search
+    found, search, at_once = verdict.found, case.search, springs[0].candidate
     begun = [
         Part(one, {"factor": springs[0].values["factor"], "d": float(delay)})
-        for one in late
+        for one in search.candidates
+        if (one.name, one.place, one.role) == (LATE, at_once.place, at_once.role)
         for delay in delays(case.rhythm)[::STEP]
     ]
     tried = [search.with_others(found, (part,)) for part in begun]

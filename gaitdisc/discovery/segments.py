@@ -109,12 +109,8 @@ class Segments:
         values (version, parameter): parameters
         """
         versions, segments = starts.shape[:2]
-        return Rows(
-            np.tile(self.trial, versions),
-            np.tile(self.begin, versions),
-            starts.reshape(versions * segments, -1),
-            np.repeat(values, segments, axis=0),
-        )
+        trial, begin = np.tile(self.trial, versions), np.tile(self.begin, versions)
+        return Rows(trial, begin, starts.reshape(versions * segments, -1), np.repeat(values, segments, axis=0))
 
 
 def cut_segments(

@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 
 from gaitdisc.discovery.fitted import Fitted, Prior
 from gaitdisc.discovery.kept_work import keep, recall
-from gaitdisc.discovery.noise import MOST_LAGS, Noise
+from gaitdisc.discovery.noise import Noise
 from gaitdisc.discovery.record_filter import RecordFilter
 from gaitdisc.discovery.segments import Segments
 from gaitdisc.recording.arrays import Values
@@ -53,13 +53,6 @@ class Shooting:
     def known(self) -> NDArray[np.bool_]:
         """Where there is a measurement (segment, sample, channel)."""
         return np.isfinite(self.seen)
-
-    @cached_property
-    def filter_autocorrelation(self) -> Values | None:
-        """Autocorrelation of what the record's filter leaves of white noise (lag, channel); None without a filter."""
-        return (
-            self.record_filter.autocorrelation(MOST_LAGS) if self.record_filter and self.record_filter.margin else None
-        )
 
     def run(self, machine: Compiled, starts: Values, values: Values) -> tuple[Values, Values]:
         """Run a simulation over all segments, several versions at once.

@@ -197,10 +197,8 @@ class _Curve:
         """Pieces over the position, over its rate, over both, and products of one and the other."""
         rate = self.motion[1]
         angle = any(place.motions[0] == self.motion and place.angle for place in self.search.places)
-        known = [
-            one for one in read_shapes() if len(one.pieces) == 1 and not one.states and "delay" not in one.pieces[0]
-        ]
-        known = [one for one in known if angle or one.needs != "angle"]
+        known = [one for one in read_shapes() if angle or one.needs != "angle"]
+        known = [one for one in known if len(one.pieces) == 1 and not one.states and "delay" not in one.pieces[0]]
         still = [one for one in (*known, BUMP) if one.roles == ("x",) and self.motion[0] != rate]
         moving = [one for one in known if one.roles == ("v",)] if rate else []
         load = Shape("constant_load", ("1",))

@@ -128,9 +128,7 @@ def moments_of_angle_noise(walk: Pass, noise_deg: float | None) -> Values:
 def with_angle_noise(walk: Pass, noise_deg: float, rng: np.random.Generator) -> Pass:
     """Return a walk whose angles have noise of a size [deg] that went through the record's low-pass."""
     motion, spare = walk.motion, int(walk.motion.rate_hz)
-    sizes = [
-        np.radians(noise_deg) if coordinate.unit == "rad" else noise_deg * MM for coordinate in walk.engine.coordinates
-    ]
+    sizes = [np.radians(noise_deg) if one.unit == "rad" else noise_deg * MM for one in walk.engine.coordinates]
     white = rng.normal(size=(len(motion.time) + 2 * spare, len(sizes)))
     noise = sosfiltfilt(walk.sections, white, axis=0)
     noise *= sizes / noise.std(axis=0)

@@ -295,11 +295,9 @@ def names_in(now: ScoredModel) -> list[int]:
 
 def beside_errors(case: Case, now: ScoredModel, erring: list[str]) -> tuple[float, ScoredModel]:
     """Return the criterion of a model whose inputs err, and the model, with their gains where these are evident."""
-    search, present = case.search, now.explanations
-    gains = [
-        candidate for candidate in search.candidates if candidate.name == "input_gain" and candidate.place in erring
-    ]
-    parts = (*now.parts, *(Part(gain, {"gain": 1.0}) for gain in gains if gain.identity not in present))
+    search = case.search
+    gains = [one for one in search.open_beside(now) if one.name == "input_gain" and one.place in erring]
+    parts = (*now.parts, *(Part(gain, {"gain": 1.0}) for gain in gains))
     plain, gained = criterion_with_errors(case, now, erring), search.with_others(now, parts)
     beside = criterion_with_errors(case, gained, erring) if search.sensible(gained) else np.inf
     return min(plain, beside), gained if plain - beside > CRITERIA.margin else now

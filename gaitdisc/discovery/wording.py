@@ -24,7 +24,7 @@ from gaitdisc.discovery.effect_words import (
     with_unit,
     would_distinguish,
 )
-from gaitdisc.discovery.result import Discovery, Estimate, FoundEffect, GapSize, Whereabouts
+from gaitdisc.discovery.result import ODD_TRIAL, Discovery, Estimate, FoundEffect, GapSize, Whereabouts
 from gaitdisc.discovery.scored_model import Part
 from gaitdisc.simulation.simulation import Simulation
 from gaitdisc.units import find_dimension
@@ -52,12 +52,14 @@ def write_sentence(discovery: Discovery, base: Simulation, parts: tuple[Part, ..
 
     parts: the explanations behind the effects, in their order; none for verdicts without a term, number or signal
     """
+    odd = (finding for finding in discovery.findings if finding.kind == ODD_TRIAL)
     said = [
         _say(discovery, base, parts),
         _say_given(discovery),
         _say_tied(discovery),
         _say_gap(discovery),
         _say_moved(discovery),
+        *(f"{one.what[:1].upper()}{one.what[1:]}. This trial was left out." for one in odd),
     ]
     return replace(discovery, sentence=" ".join(one for one in said if one))
 
@@ -190,11 +192,8 @@ def _missing(effect: FoundEffect, part: Part, base: Simulation, where: tuple[Whe
     ]
     if len(numbers) > 4:
         numbers = [f"{len(numbers)} numbers, largest {max(left.items(), key=lambda one: abs(one[1].value))[0]}"]
-    of = (
-        f" of {part.candidate.role}"
-        if part.candidate.role and not how and effect.kind == "port" and " " in part.candidate.role
-        else ""
-    )
+    role = part.candidate.role
+    of = f" of {role}" if " " in role and not how and effect.kind == "port" else ""  # a difference of two states
     said = [f"{noun}{of} {at_place(effect.kind, effect.place)}: {', '.join(numbers)}", how, _stride(effect, where)]
     return ", ".join(one for one in said if one)
 
@@ -261,10 +260,8 @@ def _say_gap(discovery: Discovery) -> str:
     size = discovery.held_out
     few = 0 < size.pieces < FEW and size.after <= size.before
     tested = f", {_chance(size)}" if few else ""
-    said, left = (
-        f"With it, the held-out error{of} {_goes(discovery, channel)} ({noise}{tested}){others}.",
-        size.unexplained,
-    )
+    said = f"With it, the held-out error{of} {_goes(discovery, channel)} ({noise}{tested}){others}."
+    left = size.unexplained
     if left < SMALL or size.after > size.before or may_be_left(size.after, size):
         return said
     return f"{said} {100 * left:.0f} % of the squared error above the noise stays unexplained."
@@ -272,18 +269,13 @@ def _say_gap(discovery: Discovery) -> str:
 
 def _say_moved(discovery: Discovery) -> str:
     """Name the numbers that clearly moved within their bounds."""
-    clear = [
-        correction
-        for correction in discovery.corrections
-        if not correction.found.low <= correction.given <= correction.found.high
-    ]
-    if not clear:
-        return ""
     said = []
-    for one in clear:
-        unit, factor = display_unit(one.found.unit)
-        said.append(f"{one.parameter} from {with_unit(f'{factor * one.given:.6g}', unit)} to {brief_text(one.found)}")
-    return f"Parameters that changed within their bounds: {', '.join(said)}."
+    for one in discovery.corrections:
+        if not one.found.low <= one.given <= one.found.high:
+            unit, factor = display_unit(one.found.unit)
+            given = with_unit(f"{factor * one.given:.6g}", unit)
+            said.append(f"{one.parameter} from {given} to {brief_text(one.found)}")
+    return f"Parameters that changed within their bounds: {', '.join(said)}." if said else ""
 
 
 def _goes(discovery: Discovery, channel: str) -> str:

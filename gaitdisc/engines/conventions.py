@@ -51,10 +51,8 @@ def refuse_other_units(mapping: Simulation, engine: Engine, measured: Measured, 
 
     states (trial, sample, state): smoothed: coordinates, then speeds
     """
-    largest, degrees = np.nanmax(np.abs(states), axis=(0, 1)), np.ones(len(engine.coordinates))
-    for k, one in enumerate(engine.coordinates):
-        if one.unit == "rad" and largest[k] > _limit(one):
-            degrees[k] = np.pi / 180
+    largest, as_read = np.nanmax(np.abs(states), axis=(0, 1)), np.ones(len(engine.coordinates))
+    far = [k for k, one in enumerate(engine.coordinates) if one.unit == "rad" and largest[k] > _limit(one)]
     steep = [k + 1 for k in getattr(engine, "balls", ()) if largest[k + 1] > STEEPEST]
     if steep:
         one = engine.coordinates[steep[0]]
@@ -63,11 +61,11 @@ def refuse_other_units(mapping: Simulation, engine: Engine, measured: Measured, 
             f"column {_column(mapping, one)!r} makes it {largest[steep[0]]:.4g} rad",
             "If these are degrees, say so in the mapping; else turn the axes of the model, so that x points ahead.",
         )
-    misfit = _Misfit(mapping, engine, measured, states)
-    for k in np.flatnonzero(degrees < 1.0):
+    misfit, degrees = _Misfit(mapping, engine, measured, states), as_read.copy()
+    degrees[far] = np.pi / 180
+    for k in far:
         one = engine.coordinates[k]
-        limited = np.isfinite(one.high)
-        if limited or misfit.with_factors(degrees) < misfit.with_factors(np.ones(len(degrees))):
+        if np.isfinite(one.high) or misfit.with_factors(degrees) < misfit.with_factors(as_read):
             raise SchemaError(
                 f"coordinate {one.called!r} must stay within {_limit(one):.3g} rad",
                 f"column {_column(mapping, one)!r} makes it {largest[k]:.4g} rad: these may be degrees",

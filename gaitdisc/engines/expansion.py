@@ -60,12 +60,7 @@ def expand(
     _expand(columns, simulation, _Along(at, np.concatenate(paths), np.concatenate(points)), own)
     computed = columns.values
     inputs = (*simulation.inputs, *(Input(name, "", "computed along the record", True) for name in computed))
-    ends = np.cumsum(drive.samples)[:-1]
-    driven = [np.split(column, ends) for column in (*at.u.T, *computed.values())]
-    trials = [
-        np.column_stack([np.empty((int(samples), 0)), *(column[trial] for column in driven)])
-        for trial, samples in enumerate(drive.samples)
-    ]
+    trials = np.split(np.column_stack([at.u, *computed.values()]), begun[1:])
     lines = tuple((state.name, columns.equations[state.name]) for state in simulation.states)
     linear = replace(simulation, inputs=inputs, equations=lines, definitions=(), model="", layout="", source=None)
     linear = linear if at.z is None else replace(linear, inexact=INEXACT)
@@ -149,7 +144,6 @@ class _Along:
 def _expand(columns: _Columns, simulation: Simulation, along: _Along, values: Mapping[str, float]) -> None:
     """Accelerations to first order in states and controls; forces, and parameters that act as such, exactly."""
     engine, at = columns.engine, along.at
-    count = len(engine.coordinates)
     base = engine.accelerations(at, values)
     few, rest = base[along.points], base.copy()
     slopes = _slopes(engine, along, values)
@@ -163,7 +157,7 @@ def _expand(columns: _Columns, simulation: Simulation, along: _Along, values: Ma
     columns.add("rate", rest)
     ports = {port.name for port in simulation.ports}
     for number, one in enumerate(engine.coordinates):
-        force = np.zeros((len(few), count))
+        force = np.zeros_like(few)
         force[:, number] = 1.0
         acting = [one.port] if one.port in ports else []
         for name in simulation.values():
@@ -263,10 +257,5 @@ def _nudge(engine: Engine, at: Motion, fields: str) -> Iterator[tuple[str, Value
             size = NUDGE * max(float(np.abs(whole[:, column]).max()), 1e-2)
             step = np.zeros(whole.shape[1])
             step[column] = size
-            yield (
-                name,
-                whole[:, column],
-                replace(at, **{field: whole + step}),
-                replace(at, **{field: whole - step}),
-                size,
-            )
+            ahead, behind = (replace(at, **{field: moved}) for moved in (whole + step, whole - step))
+            yield name, whole[:, column], ahead, behind, size

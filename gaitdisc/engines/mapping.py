@@ -74,37 +74,33 @@ def read_mapping(path: Path | str) -> tuple[Simulation, Engine]:
         name and its unit
     """
     path = Path(path)
-    if is_model(path):
-        beside = path.with_suffix(".toml")
-        if not beside.is_file():
-            engine = read_model(path)
-            return draft(engine), engine
-        path = beside
-    if read_tracked(path) is not None:
+    file = path.with_suffix(".toml") if is_model(path) else path
+    if file != path and not file.is_file():
+        engine = read_model(path)
+        return draft(engine), engine
+    if read_tracked(file) is not None:
         raise SchemaError(
             "a mapping for a forward simulation must state the model's controls",
-            f"{path.name} holds [tracked]: its motion is prescribed, and only discover reads it",
+            f"{file.name} holds [tracked]: its motion is prescribed, and only discover reads it",
             "Run gaitdisc discover on it; to simulate, write a mapping without [tracked] for a copy of the model.",
         )
-    mapping = read_simulation(path)
-    engine = read_model(path.parent / mapping.model)
+    mapping = read_simulation(file)
+    engine = read_model(file.parent / mapping.model)
     check_mapping(mapping, engine)
     return mapping, engine
 
 
 def check_mapping(mapping: Simulation, engine: Engine) -> None:
     """Refuse a mapping whose names are not the model's."""
-    file, coordinates = engine.path.name, engine.coordinates
+    file, free = engine.path.name, engine.coordinates
     known = {
-        "coordinate or speed": (
-            tuple(one.name for one in mapping.states),
-            (*(one.name for one in coordinates), *(one.speed for one in coordinates)),
-        ),
-        "control": (tuple(one.name for one in mapping.inputs), tuple(one.name for one in engine.controls)),
-        "parameter": (tuple(mapping.values()), tuple(one.name for one in engine.parameters)),
-        "port": (tuple(one.name for one in mapping.ports), tuple(one.port for one in coordinates)),
+        "coordinate or speed": (mapping.states, (*(one.name for one in free), *(one.speed for one in free))),
+        "control": (mapping.inputs, tuple(one.name for one in engine.controls)),
+        "parameter": (mapping.parameters, tuple(one.name for one in engine.parameters)),
+        "port": (mapping.ports, tuple(one.port for one in free)),
     }
-    for kind, (given, has) in known.items():
+    for kind, (parts, has) in known.items():
+        given = tuple(one.name for one in parts)
         for name in given:
             if name not in has:
                 near = nearest_word(name, has)
@@ -114,8 +110,7 @@ def check_mapping(mapping: Simulation, engine: Engine) -> None:
                     f"{file} has no {name!r}",
                     f"{hint}Known: {', '.join(has) or 'none'}.",
                 )
-        whole = kind not in ("parameter", "port")
-        if whole and given != has:
+        if kind not in ("parameter", "port") and given != has:
             raise SchemaError(
                 f"a mapping must list every {kind.partition(' or ')[0]} of the model, in its order",
                 f"the mapping lists {', '.join(given) or 'none'}; {file} has {', '.join(has) or 'none'}",
@@ -125,14 +120,12 @@ def check_mapping(mapping: Simulation, engine: Engine) -> None:
 
 def other_values(mapping: Simulation, engine: Engine) -> tuple[Finding, ...]:
     """Say which parameters have another value in the mapping than in the model; the mapping's is used."""
-    own = {one.name: one.value for one in engine.parameters}
-    return tuple(
-        Finding(
-            "note", "value", "model", f"{name} is {value:g} in the mapping and {own[name]:g} in the model", "", name
-        )
-        for name, value in mapping.values().items()
-        if abs(value - own[name]) > SAME * max(abs(own[name]), 1e-9)
-    )
+    own, found = {one.name: one.value for one in engine.parameters}, []
+    for name, value in mapping.values().items():
+        if abs(value - own[name]) > SAME * max(abs(own[name]), 1e-9):
+            what = f"{name} is {value:g} in the mapping and {own[name]:g} in the model"
+            found.append(Finding("note", "value", "model", what, "", name))
+    return tuple(found)
 
 
 def with_input_changed(mapping: Simulation, name: str, expression: str) -> Simulation:

@@ -49,13 +49,12 @@ class MujocoModel:
         self.path = Path(path)
         self._mujoco: Any = mujoco
         self.warnings: tuple[str, ...] = ()  # what MuJoCo said of the model and of its runs
-        self._model: Any = self._read()
+        model = self._model = self._read()
         # a run that leaves every bound would set out again from the model's own pose, as if nothing had happened; and
         # controls are clipped where they come in, so that what each does is known at its limit too
         bit = self._mujoco.mjtDisableBit
-        self._model.opt.disableflags |= int(bit.mjDSBL_AUTORESET) | int(bit.mjDSBL_CLAMPCTRL)
-        self._data: Any = self._mujoco.MjData(self._model)
-        model = self._model
+        model.opt.disableflags |= int(bit.mjDSBL_AUTORESET) | int(bit.mjDSBL_CLAMPCTRL)
+        self._data: Any = self._mujoco.MjData(model)
         bound = np.flatnonzero(model.eq_active0)
         if bound.size:
             name = self._called("equality", int(bound[0])) or int(bound[0]) + 1
@@ -80,12 +79,10 @@ class MujocoModel:
         taken = {"gravity", *parts} | {each for one in self.coordinates for each in (one.name, one.speed, one.port)}
         self.controls = tuple(Input(name, "1", "actuator") for name in self._names("control", model.nu, taken))
         self._places = parts | list_of_controls(mujoco, model, self.controls)
-        self.parameters = tuple(
-            Parameter(name, read_number(model, name, at), at.unit) for name, at in self._places.items()
-        )
+        values = {name: read_number(model, name, at) for name, at in self._places.items()}
+        self.parameters = tuple(Parameter(name, value, self._places[name].unit) for name, value in values.items())
         at_zero = {("joint", k) for k in np.flatnonzero(kinds < 2)} | {("tendon", k) for k in range(model.ntendon)}
-        numbers = zip(self.parameters, self._places.values(), strict=True)
-        said = ((one.name, one.value and "gear" not in one.name, place.part in at_zero) for one, place in numbers)
+        said = ((name, values[name] and "gear" not in name, at.part in at_zero) for name, at in self._places.items())
         self.offered = tuple(name for name, there, free in said if there or (free and "loss" not in name))
         limited = model.actuator_ctrllimited[:, None]
         self.control_ranges = np.where(limited, model.actuator_ctrlrange, (-np.inf, np.inf))  # (control, low and high)
@@ -176,8 +173,7 @@ class MujocoModel:
                     q = pushed[:, : model.nv]
                     x = to_coordinates(balls, data.qpos[None, None], data.qvel[None, None], q)
                     pushed[:, : 2 * model.nv] = x[0]
-                    now = np.array([begins + data.time])
-                    forces, rates = self.pushes.at(now, pushed, data.ctrl[None])
+                    forces, rates = self.pushes.at(np.array([begins + data.time]), pushed, data.ctrl[None])
                     data.qfrc_applied[:] = to_forces(balls, q, forces)[0]
                     pushed[:, 2 * model.nv :] += model.opt.timestep * rates
                 self._mujoco.mj_step(model, data)

@@ -79,12 +79,10 @@ def with_effect(text: str, effect: ByHand, joint: str, own: Mapping[str, float])
         attribute, words = "damping", f"{first} {at_speed_one!r}"
     if attribute:
         return _with_attribute(text, tag, attribute, words)
-    low, stiffness, high = effect.slack if name == "one_sided_spring" else (0.0, 0.0, 0.0)
+    low, stiffness, high = effect.slack if name == "one_sided_spring" else (0.0, 0.0, 0.0)  # slack in between
     if not stiffness > 0:
         return None
-    spring = (
-        f'name="one_sided_spring_{joint}" stiffness="{stiffness!r}" springlength="{low!r} {high!r}"'  # slack between
-    )
+    spring = f'name="one_sided_spring_{joint}" stiffness="{stiffness!r}" springlength="{low!r} {high!r}"'
     inside = f'    <fixed {spring}>\n      <joint joint="{joint}" coef="1"/>\n    </fixed>\n'
     return _before_end(text, f"  <tendon>\n{inside}  </tendon>\n")
 
@@ -119,6 +117,7 @@ def _with_spring(text: str, tag: _Tag, stiffness: float, before: float) -> str |
     return _with_attribute(text, tag, "stiffness", repr(both))
 
 
+_TAG = re.compile(r"""<(?:[^>"']|"[^"]*"|'[^']*')*>""")
 _Tag = tuple[str, int, int, int]  # name, where it begins and ends, where its parent begins
 
 
@@ -131,12 +130,9 @@ def _tags(text: str) -> list[_Tag]:
 
     def opened(name: str, _: object) -> None:
         begin = len(whole[: parser.CurrentByteIndex].decode("utf-8"))
-        end = begin
-        quote = ""
-        while quote or text[end] != ">":
-            quote = "" if text[end] == quote else quote or (text[end] if text[end] in "\"'" else "")
-            end += 1
-        found.append((name, begin, end + 1, above[-1] if above else -1))
+        tag = _TAG.match(text, begin)
+        assert tag is not None
+        found.append((name, begin, tag.end(), above[-1] if above else -1))
         above.append(begin)
 
     parser.StartElementHandler = opened

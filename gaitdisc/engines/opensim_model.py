@@ -62,13 +62,12 @@ class OpensimModel:
                 "Unlock those that were measured.",
             )
         taken: set[str] = set()
-        found = [
+        self.coordinates = tuple(
             Coordinate(new_name(name, "coordinate", taken), "rad" if turns else "m", name, low, high)
             for name, turns, low, high in described["coordinates"]
-        ]
-        self.coordinates = tuple(found)
+        )
         self._called = {new_name(name, "number", taken): name for name, *_ in described["parameters"]}
-        taken |= {each for one in found for each in (one.speed, one.port)}
+        taken |= {each for one in self.coordinates for each in (one.speed, one.port)}
         self.controls = tuple(
             Input(new_name(name, "control", taken), "1", kind) for name, kind in described["controls"]
         )
@@ -203,11 +202,11 @@ def with_effect(text: str, effect: ByHand, coordinate: Coordinate) -> str | None
 def with_value(text: str, name: str, value: float) -> str | None:
     """Text with a mass, an optimal force or gravity changed; None where the file does not say it."""
     if name == "gravity":
-        found = re.search(r"(<gravity>)([^<]*)(</gravity>)", text)
+        found = re.search(r"(?<=<gravity>)[^<]*(?=</gravity>)", text)
         if not found:
             return None
-        vector = np.array([float(word) for word in found[2].split()])
-        return text[: found.start(2)] + _words(vector * (value / np.linalg.norm(vector))) + text[found.end(2) :]
+        share = float(value / np.linalg.norm([float(word) for word in found[0].split()]))
+        return text[: found.start()] + _scale(found[0], share) + text[found.end() :]
     word = next(one for one in ELEMENTS if name.endswith(f"_{one}"))
     kind, part = ELEMENTS[word], name.removesuffix(f"_{word}")
     found = re.search(rf"<({kind}) name={re.escape(quoteattr(part))}>.*?</\1>", text, re.DOTALL)
@@ -217,15 +216,12 @@ def with_value(text: str, name: str, value: float) -> str | None:
     changed = f"{found[0][: own.start(2)]}{value!r}{found[0][own.end(2) :]}"
     if word == "mass":
         share = value / float(own[2])
-        inertia = re.search(r"(?<=<inertia>)[^<]*(?=</inertia>)", changed)
-        if inertia:
-            scaled = _words(np.array([float(word) for word in inertia[0].split()]) * share)
-            changed = changed[: inertia.start()] + scaled + changed[inertia.end() :]
+        changed = re.sub(r"(?<=<inertia>)[^<]*(?=</inertia>)", lambda one: _scale(one[0], share), changed, count=1)
     return text[: found.start()] + changed + text[found.end() :]
 
 
-def _words(vector: np.ndarray) -> str:
-    return " ".join(repr(float(each)) for each in vector)
+def _scale(numbers: str, share: float) -> str:
+    return " ".join(repr(float(word) * share) for word in numbers.split())
 
 
 def _translate(tree: Tree, names: dict[str, str]) -> str | None:

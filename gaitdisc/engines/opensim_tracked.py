@@ -108,15 +108,13 @@ class _Tracked:
         zero = np.zeros((1, len(self.names)))
         still = self.demanded([0.0], zero, zero, zero, False)[0]
         weight = model.getTotalMass(self.state) * np.linalg.norm([model.getGravity().get(i) for i in range(3)])
-        upward = [
-            k
-            for k, name in enumerate(self.names)
-            if name in base and self.free[name].getMotionType() == TRANSLATIONAL and abs(still[k]) > 0.9 * weight
-        ]
+        own = [k for k, name in enumerate(self.names) if name in base]
+        sliding = [k for k in own if self.free[self.names[k]].getMotionType() == TRANSLATIONAL]
+        upward = [k for k in sliding if abs(still[k]) > 0.9 * weight]
         return {
             "coordinates": [(name, self.free[name].getMotionType() == ROTATIONAL) for name in self.names],
             "actuators": self.actuators,
-            "base": [k for k, name in enumerate(self.names) if name in base],
+            "base": own,
             "vertical": upward[0] if upward and weight > 0 else -1,
             "paths": [name for name, one in self.given.items() if osim.PathActuator.safeDownCast(one) is not None],
             "mass_kg": model.getTotalMass(self.state),

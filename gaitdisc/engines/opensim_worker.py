@@ -256,10 +256,8 @@ class _Answers:
             found[run, 0] = [*q[run], *v[run]]
             for sample in range(1, len(time)):
                 state = manager.integrate(float(time[sample]))
-                found[run, sample] = [
-                    *(each.getValue(state) for each in one.free),
-                    *(each.getSpeedValue(state) for each in one.free),
-                ]
+                reached = [(each.getValue(state), each.getSpeedValue(state)) for each in one.free]
+                found[run, sample] = np.transpose(reached).ravel()
         return found
 
 

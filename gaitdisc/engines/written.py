@@ -99,11 +99,9 @@ def write_model(engine: Engine, augmented: Simulation, native: bool = True) -> W
     current = getattr(current, "with_values", lambda _: current)(held)
     if by_hand:
         n, current = len(engine.coordinates), copy(engine) if current is engine else current
-        acting = [
-            " + ".join(f"({one.term})" for one in by_hand if one.place == each.port) for each in engine.coordinates
-        ]
-        rates = zip(augmented.states, [*["0"] * n, *(one or "0" for one in acting)], strict=False)
-        lines = (*((state.name, rate) for state, rate in rates), *augmented.equations[2 * n :])
+        acting = {one.speed: [f"({by.term})" for by in by_hand if by.place == one.port] for one in engine.coordinates}
+        rates = ((one.name, " + ".join(acting.get(one.name, ())) or "0") for one in augmented.states[: 2 * n])
+        lines = (*rates, *augmented.equations[2 * n :])
         parts = augmented.states, augmented.inputs, augmented.parameters
         current.pushes = Pushes(compile_simulation(Simulation("pushes", *parts, equations=lines)), n)
     return WrittenModel(current, text, tuple(notes), tuple(absent), definitions)
@@ -127,11 +125,10 @@ def whole_model(path: Path | str) -> tuple[Simulation, Engine]:
 def _adding(engine: Engine, augmented: Simulation, term: Term, text: str) -> str | None:
     """Text with a term in the model's own form."""
     number = next((k for k, one in enumerate(engine.coordinates) if one.port == term.place), -1)
-    count = len(engine.coordinates)
 
     def at(coordinate: float, speed: float) -> float:
         x = np.zeros((1, len(augmented.states)))
-        x[0, number], x[0, count + number] = coordinate, speed
+        x[0, [number, len(engine.coordinates) + number]] = coordinate, speed
         return float(_by_hand(augmented, term, x)[0])
 
     return None if number < 0 else engine.text_with_effect(text, ByHand(term, number, at))
