@@ -206,9 +206,8 @@ def _list_units(simulation: Simulation, report: Report | None = None) -> dict[st
     """Units of all names; None of what may have any: an unknown one, a parameter without, what an engine computes."""
     known: dict[str, Powers | None] = {"t": {"s": 1}}
     for part in (*simulation.states, *simulation.inputs, *simulation.parameters, *simulation.ports):
-        any_unit = find_dimension(part.unit) is None or getattr(part, "computed", False)
-        any_unit |= isinstance(part, Parameter) and part.unit == "1"
-        known[part.name] = None if any_unit else unit_powers(part.unit)
+        free = (isinstance(part, Parameter) and part.unit == "1") or getattr(part, "computed", False)
+        known[part.name] = None if free or find_dimension(part.unit) is None else unit_powers(part.unit)
     for name, text in simulation.definitions:
         known[name] = powers_in(parse(text), known, None, report and _at(f"[definitions] {name}", report))
     return known

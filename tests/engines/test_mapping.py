@@ -48,10 +48,10 @@ def test_a_walk_whose_motion_is_prescribed_has_nothing_to_run_forward(pendulum, 
 @pytest.mark.parametrize(
     ("change", "words"),
     [
-        (("[inputs.drive]", "[inputs.drife]"), "none called 'drife'. Did you mean 'drive'"),
+        (("[inputs.drive]", "[inputs.drife]"), "has no 'drife'. Did you mean 'drive'"),
         (("[states.pivot]", "[states.pivott]"), "each coordinate or speed of a mapping must exist in the model"),
         (("[ports.pivot_moment]", "[ports.hip_moment]"), "each port of a mapping must exist in the model"),
-        (("[parameters.rod_mass]", "[parameters.foot_mass]"), "none called 'foot_mass'"),
+        (("[parameters.rod_mass]", "[parameters.foot_mass]"), "has no 'foot_mass'"),
     ],
 )
 def test_what_is_not_the_models_is_refused(pendulum, change, words):
