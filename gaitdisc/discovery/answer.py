@@ -102,9 +102,8 @@ def answer(
         explanations=(*named, *list_explanations(case, verdict, held, held_out, rivals))[:MOST_EXPLANATIONS],
         given=("proven" if held.bears_out and not all(verdict.given) else "refuted") if verdict.given else "",
     )
-    augmented = augment_with(corrected(base, moved), parts).with_starts(
-        {name: float(f"{start.value:.6g}") for name, start in verdict.starts.items()}
-    )
+    starts = {name: float(f"{start.value:.6g}") for name, start in verdict.starts.items()}
+    augmented = augment_with(corrected(base, moved), parts).with_starts(starts)
     return write_sentence(discovery, base, parts), augmented
 
 

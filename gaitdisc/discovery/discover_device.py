@@ -87,8 +87,8 @@ def _discover_condition(
     except NoMomentsError as lacking:
         progress("comparing only the motion of both walks")
         motion = nominal_and_trials(against(study, condition), person.id, joint)
-        sensed = replace(request, possible=lambda one: one.kind != "observation")  # both walks have the same sensors
-        found, augmented = find_missing(*motion, sensed, files)
+        request = replace(request, possible=lambda one: one.kind != "observation")  # both walks have the same sensors
+        found, augmented = find_missing(*motion, request, files)
         why = f"{lacking.needed[:1].upper()}{lacking.needed[1:]}, but {lacking.found}"
         how = "only the motion of both walks was compared, which gives no moment of the device"
         return replace(found, sentence=f"{why}: {how}. {found.sentence}"), augmented

@@ -113,7 +113,9 @@ def search(fit: EngineFit, base: EngineAnswer, request: Request, read: dict[Path
     if unchecked and not runs.before_at_noise:
         why = f"{engine.called} itself has not run {unchecked}: this result is based on the expansion alone."
         return EngineAnswer(replace(found, sentence=f"{found.sentence} {why}"), augmented, written, runs, engine)
-    if not unchecked and found.effects and found.verdict != "wrong_initial_condition":
+    if unchecked:  # what the engine cannot run is not said where its own runs leave mere noise
+        found, augmented, written = replace(found, effects=(), corrections=()), mapping, base.written
+    if found.effects and found.verdict != "wrong_initial_condition":
         held = held_out(found, runs, data)
         if not engine.fibres:  # their runs take too long
             found = with_forces_of_muscles(fit, fit.fitted(found, linear, runs.among(~held)), linear, runs.among(~held))
@@ -133,9 +135,8 @@ def search(fit: EngineFit, base: EngineAnswer, request: Request, read: dict[Path
             runs = replace(runs, after=fit.left(found, kept, runs))
         if kept:
             augmented, written = fit.compared(found, runs)
-    if (unchecked or not found.effects) and runs.before_at_noise:  # the expansion errs, through a contact say
-        augmented, written, kept = (mapping, base.written, ()) if unchecked else (augmented, written, found.corrections)
-        found = replace(found, verdict="no_gap", effects=(), corrections=kept, rivals=(), explanations=())
+    if not found.effects and runs.before_at_noise:  # the expansion errs, through a contact say
+        found = replace(found, verdict="no_gap", rivals=(), explanations=())
     runs = runs.with_floor(hidden)
     return EngineAnswer(with_own_runs(found, runs, fit, linear), augmented, written, runs, engine)
 
@@ -225,10 +226,8 @@ def withdraw_effects(found: Discovery, runs: OwnRuns) -> Discovery:
         f"Not proven: {named}. {runs.engine}'s own runs have the same error with and without it, above the sensors' "
         "noise; only runs of the expanded model supported it. Trials with other movement can decide."
     )
-    rivals = (*found.effects, *found.rivals)
-    return replace(
-        found, verdict="unexplained", sentence=sentence, effects=(), corrections=(), explanations=(), rivals=rivals
-    )
+    found = replace(found, effects=(), corrections=(), explanations=(), rivals=(*found.effects, *found.rivals))
+    return replace(found, verdict="unexplained", sentence=sentence)
 
 
 def discover_model_file(model: Path, measured: Path, request: Request = ALL) -> EngineAnswer:

@@ -132,19 +132,22 @@ def make_discovery(base: Simulation, joints: list[JointFinding]) -> Discovery:
         return write_sentence(found, base, tuple(best for _, best in named))
     first = unexplained[0]
     best = first.prove(first.rivals[0])
-    if best.gained <= 0:
+    if best.gained <= 0:  # nothing explains anything: where most is left
         first = max(unexplained, key=lambda one: np.linalg.norm(one.joint.left) / one.joint.floor)
-    joint, parts = first.joint, (0.0, best.explained, best.predicted)
-    before, fitted, held = (amount(float(np.sqrt(np.mean((joint.left - one) ** 2)))) for one in parts)
-    size = f"{before} {units[joints.index(first)]} (noise floor {amount(joint.floor)})"
+    name, left = f"net_{first.joint.port}", first.joint.left
+    before, _, floor = found.held_out.channels[name]
+    size = f"{amount(before)} {units[joints.index(first)]} (noise floor {amount(floor)})"
     sentence = (
-        f"No effect is named: the residual of net_{joint.port} is {size}, and no tested effect explains it. A wrong "
-        "mass, which acts at several joints, is not tested."
-        if best.gained <= 0
-        else f"Not proven: {named_at(rivals[0])} reduces the residual of {size} to {fitted} where it is fitted, and to "
-        f"{held} on held-out time. Its evidence is {best.gained:.0f}; a name requires {CRITERIA.margin:.0f}, and "
-        f"{100 * CLOSED:.0f} % of the squared residual on held-out time. A longer walk or a second one can decide."
+        f"No effect is named: the residual of {name} is {size}, and no tested effect explains it. A wrong mass, which "
+        "acts at several joints, is not tested."
     )
+    if best.gained > 0:
+        fitted, held = (amount(float(np.sqrt(np.mean((left - one) ** 2)))) for one in (best.explained, best.predicted))
+        sentence = (
+            f"Not proven: {named_at(rivals[0])} reduces the residual of {size} to {fitted} where it is fitted, and to "
+            f"{held} on held-out time. Its evidence is {best.gained:.0f}; a name requires {CRITERIA.margin:.0f}, and "
+            f"{100 * CLOSED:.0f} % of the squared residual on held-out time. A longer walk or a second one can decide."
+        )
     return replace(found, verdict="unexplained", sentence=sentence)
 
 

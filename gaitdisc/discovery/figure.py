@@ -30,8 +30,9 @@ WORDS = ("measured", "simulated", "augmented")
 def discovery_figures(discovery: Discovery) -> list[Figure]:
     """Draw a typical stretch over time, the stride where there is a phase, and the gap against each channel."""
     table = display_runs(discovery)
-    drawn = {_over_time: True, _over_stride: "phase" in table, _against_state: len(table) >= FEWEST * STATE_BINS}
-    return [draw(discovery, table) for draw, shown in drawn.items() if shown]
+    stride = [_over_stride(discovery, table)] if "phase" in table else []
+    state = [_against_state(discovery, table)] if len(table) >= FEWEST * STATE_BINS else []
+    return [_over_time(discovery, table), *stride, *state]
 
 
 @in_style

@@ -139,9 +139,8 @@ def noting_alike(case: Case) -> Case:
     """Return a case with a finding that says that the held-out data do not show what the others speak for."""
     blind = ", ".join(case.measured.trials[trial] for trial in case.held_out)
     what = f"trial {blind} {ALIKE}; only the other trials show the effect"
-    return case.noting(
-        Finding("note", "held out", case.measured.source, what, "the test on these data, where the effect does not act")
-    )
+    spoils = "the test on these data, where the effect does not act"
+    return case.noting(Finding("note", "held out", case.measured.source, what, spoils))
 
 
 def noted(before: Case, now: Case, why: str = ALIKE) -> Case:

@@ -127,9 +127,8 @@ def joint_model(record: JointRecord, model: MuscleMoment) -> Simulation:
     said += ["others", f"{word}_moment"]
     if carried:
         inputs.append(Input("per_kg", "N m/kg", "change of the muscles' moment per kg added to the foot"))
-        numbers.append(
-            Parameter("added_foot_mass", 0.0, "kg", meaning="mass at the foot, in addition to that of the body")
-        )
+        at_foot = "mass at the foot, in addition to that of the body"
+        numbers.append(Parameter("added_foot_mass", 0.0, "kg", meaning=at_foot))
     total = " + ".join(said) + (" - added_foot_mass*per_kg" if carried else "")
     return Simulation(
         title=f"{word} of {record.subject}: Nominal moment model and inverse dynamics",
