@@ -53,7 +53,11 @@ def _hear_again(lost: sys.UnraisableHookArgs) -> None:
 
 
 def _repeat() -> None:
-    timer = threading.Timer(AGAIN_S, signal.raise_signal, (signal.SIGINT,))
+    """Send the interrupt once more, to the main thread, so that it ends a wait as well."""
+    if sys.platform == "win32":
+        timer = threading.Timer(AGAIN_S, signal.raise_signal, (signal.SIGINT,))
+    else:
+        timer = threading.Timer(AGAIN_S, signal.pthread_kill, (threading.main_thread().ident, signal.SIGINT))
     timer.daemon = True
     timer.start()
 

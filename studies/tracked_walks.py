@@ -5,7 +5,7 @@
 WALKS are a mapping ([tracked], docs/engines.md) and its kinematics, then the next pair. Angles get noise that went
 through the low-pass. At each ankle and knee, one at a time: a one-sided spring that takes its moment from the muscles
 that pull its way, the stronger muscles' moment late, or less of it; each drawn, 0.6 to 1.4 times 300 (knee 60) N m/rad,
-40 ms, 25 %.
+40 ms, 25 %. On each segment of the legs: 0.6 to 1.4 times 3 kg, which the muscles bear in the true motion.
 """
 
 from __future__ import annotations
@@ -39,7 +39,8 @@ from gaitdisc.engines.tracked_mapping import read_tracked
 
 WHITENED_DEG, SIZES = 0.3, (0.6, 1.4)
 STIFFNESS, LATE_S, LESS = {"ankle": 300.0, "knee": 60.0}, 0.04, 0.25  # [N m/rad], [s], share: of the middle size
-SHAPES = {"spring": "one_sided_spring", "late": "wrong_parameter", "scaled": "wrong_parameter", "nothing": ""}
+MORE_KG = 3.0
+SHAPES = {"spring": "one_sided_spring", "nothing": ""} | dict.fromkeys(("late", "scaled", "mass"), "wrong_parameter")
 
 
 def run(walk: Pass, seeds: range, untouched: range, noise_deg: float, quick: bool) -> pd.DataFrame:
@@ -50,6 +51,7 @@ def run(walk: Pass, seeds: range, untouched: range, noise_deg: float, quick: boo
         noisy = with_angle_noise(walk, noise_deg, rng) if noise_deg else walk
         hidden = [("nothing", "", np.nan, noisy)] if seed in untouched else []
         hidden += cases(noisy, rng, quick) if seed in seeds else []
+        hidden += masses(walk, noisy, rng) if seed in seeds and not quick else []
         for what, place, truth, planted in hidden:
             rows.append({"seed": seed, "hidden": what, "place": place, "truth": truth} | searched(planted, draws))
             rows[-1]["right"] = rows[-1]["named"] == (f"{SHAPES[what]} at {place}" if place else "")
@@ -75,6 +77,15 @@ def cases(walk: Pass, rng: np.random.Generator, quick: bool = False) -> Iterator
         yield "scaled", f"{strong}_strength", strength, with_less(walk, number, (strength - 1) * moment)
 
 
+def masses(walk: Pass, noisy: Pass, rng: np.random.Generator) -> Iterator[tuple[str, str, float, Pass]]:
+    """What a heavier body's muscles bear in the true motion, beside the noisy angles."""
+    files = {one.name: one.value for one in walk.engine.parameters}
+    for name in sorted(walk.masses_by_joints()):
+        more, pulls = MORE_KG * rng.uniform(*SIZES), noisy.pulls.copy()
+        pulls[:, 0] += more * walk.demanded_by_mass[name]
+        yield "mass", name, files[name] + more, replace(noisy, pulls=pulls)
+
+
 def with_less(walk: Pass, number: int, moment: np.ndarray) -> Pass:
     """A walk whose muscles give less at a coordinate than its motion demands."""
     pulls = walk.pulls.copy()
@@ -88,11 +99,11 @@ def searched(walk: Pass, draws: np.ndarray) -> dict[str, object]:
     named = [one.named for one in joints if one.named]
     touched = max(joints, key=lambda one: float(np.mean(one.joint.left**2) / one.joint.floor**2))
     residual = [np.sqrt(np.mean(walk.dense(walk.demanded[:, k]) ** 2)) for k in walk.engine.base]
-    numbers = named[0].values if len(named) == 1 else {}
+    numbers = named[0].values if len({one.candidate.place for one in named}) == 1 else {}
     rest = touched.joint.left - (touched.named.predicted if touched.named else 0.0)
     pairs = [(regressed(walk, one.joint) ** 2, float(np.mean(one.joint.left**2))) for one in joints]
     return {
-        "named": ", ".join(f"{one.candidate.name} at {one.candidate.place}" for one in named),
+        "named": ", ".join(dict.fromkeys(f"{one.candidate.name} at {one.candidate.place}" for one in named)),
         "value": abs(numbers.get("value", numbers.get("factor", np.nan))),
         "left_nm": float(np.sqrt(np.mean(touched.joint.left**2))),
         "after_nm": float(np.sqrt(np.mean(rest**2))),

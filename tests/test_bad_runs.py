@@ -81,6 +81,7 @@ def page_of(folder):
     return " ".join(text.split())
 
 
+@pytest.mark.slow
 def test_one_participant_carries_no_test(ran):
     assert says(page_of(ran), "One participant is not enough")
     tests = json.loads((ran / "run" / "tests" / "tests.json").read_text())
@@ -131,6 +132,7 @@ def test_a_training_that_does_not_converge_is_refused_by_participant_and_model(f
     assert says(words, "1e+30. Use another seed")
 
 
+@pytest.mark.slow
 def test_a_trial_shorter_than_the_longest_training_length_shortens_the_ablation_and_says_so(folder, said):
     written(folder, walker("P01"))
     words = said("ablate", folder, "--length", 5, "--length", 60, "--quiet", ends=0)
@@ -140,6 +142,7 @@ def test_a_trial_shorter_than_the_longest_training_length_shortens_the_ablation_
     assert sorted(set(quantity["length_s"])) == [5.0, 20.7]
 
 
+@pytest.mark.slow
 def test_a_disk_that_fills_in_the_middle_keeps_what_was_finished(folder, monkeypatch, said):
     for word in ("nominal", "exo"):
         (folder / f"second_{word}.mot").write_bytes((folder / f"{word}.mot").read_bytes() + b"\n")

@@ -69,7 +69,7 @@ def _with_command(tmp_path, command, **environment):
     [
         "signal.raise_signal(signal.SIGINT)",
         "(__import__('swallows'), time.sleep(5))",
-        "(type('Dying', (), {'__del__': lambda self: signal.raise_signal(signal.SIGINT)})(), time.sleep(5))",
+        "(type('Dying', (), {'__del__': lambda self: signal.raise_signal(signal.SIGINT)})() and 0, time.sleep(5))",
         "__import__('os').kill(__import__('os').getpid(), signal.SIGINT) or time.sleep(5)",
     ],
     ids=["in a command", "in a module that swallows it", "where nothing can be raised", "from outside"],

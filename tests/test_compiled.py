@@ -71,11 +71,13 @@ def said(installed, **environment):
     return done.stdout + done.stderr
 
 
+@pytest.mark.slow
 def test_an_install_that_nobody_may_write_for_a_user_without_a_home(installed):
     (installed / "no").write_text("")
     assert said(installed, HOME=str(installed / "no" / "home")).startswith("2.71828")
 
 
+@pytest.mark.slow
 def test_an_install_that_nobody_may_write_keeps_its_code_where_it_is_told(installed):
     said(installed, HOME=str(installed), NUMBA_CACHE_DIR=str(installed / "kept"))
     assert list((installed / "kept").rglob("*.nbi"))

@@ -4,6 +4,7 @@ import re
 import runpy
 
 import pandas as pd
+import pytest
 from as_a_user import told
 from library_pictures import DOCS, blocks
 
@@ -12,6 +13,7 @@ import gaitdisc as gd
 STUDIES = DOCS.parent / "studies"
 
 
+@pytest.mark.slow
 def test_every_block_of_the_page_and_every_script_of_one_participant_runs(tmp_path, monkeypatch, trained_briefly):
     def run(script, *words):
         monkeypatch.setattr("sys.argv", [script, *words])

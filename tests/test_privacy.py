@@ -221,6 +221,7 @@ def test_a_run_holds_none_of_them(study, ran):
 
 
 @pytest.mark.usefixtures("ran", "painted")
+@pytest.mark.slow
 def test_what_is_made_of_a_run_holds_none_of_them(study, said):
     for words, ends in (
         (("ablate", study, "--quiet", "--length", 5), SOME_REFUSED),
@@ -254,6 +255,7 @@ def test_models_and_what_they_tell_hold_none_of_them(study, recordings, tmp_path
     assert found_in(tmp_path) == {}
 
 
+@pytest.mark.slow
 def test_a_discovery_from_a_study_holds_none_of_them(study, tmp_path, monkeypatch, said):
     """Whatever is found: the words come from the study, and the search for what is missing has none of them."""
     monkeypatch.setattr("gaitdisc.discovery.discover.decide", lambda _, as_read: Verdict(as_read, ()))
@@ -299,6 +301,7 @@ def clinic(tmp_path_factory, said):
 
 
 @pytest.mark.usefixtures("painted")
+@pytest.mark.slow
 def test_pages_of_a_clinic_hold_none_of_them(clinic, said):
     text = (clinic / "week" / "study.toml").read_text()
     assert "age_years = 32" in text and 'id = "P01"' in text and "Zqward" in text

@@ -6,6 +6,8 @@ import subprocess
 import sys
 from pathlib import Path
 
+import pytest
+
 PROJECT = Path(__file__).parents[1]
 ASKED = """
 from gaitdisc.studies.chapter3.recommend import recommend
@@ -18,6 +20,7 @@ def test_a_checkout_has_them_beside_the_package():
     assert list(path) == [str(PROJECT / "studies")]
 
 
+@pytest.mark.slow
 def test_a_wheel_has_them_within_and_recommend_is_imported_alike(tmp_path):
     for folder, place in (("gaitdisc", "."), ("studies", "gaitdisc"), ("data_schema", "gaitdisc")):
         shutil.copytree(PROJECT / folder, tmp_path / place / folder)  # what was compiled as well: else it takes 10 s

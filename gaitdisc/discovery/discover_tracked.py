@@ -8,7 +8,7 @@ from pathlib import Path
 
 import numpy as np
 
-from gaitdisc.discovery.candidate import Candidate, list_candidates
+from gaitdisc.discovery.candidate import Candidate, Identity, list_candidates
 from gaitdisc.discovery.catalogue import ALL, Request, Shape, read_shapes
 from gaitdisc.discovery.criteria import CRITERIA
 from gaitdisc.discovery.discover_engine import name_augmented
@@ -16,10 +16,19 @@ from gaitdisc.discovery.effect_words import amount, display_unit, named_at
 from gaitdisc.discovery.estimates import name_estimates
 from gaitdisc.discovery.joint_and_trials import EFFECTS, STRENGTH
 from gaitdisc.discovery.places import Place
-from gaitdisc.discovery.prescribed import CLOSED, JointFinding, Named, ResidualMoment, Values, joint_finding
+from gaitdisc.discovery.prescribed import (
+    CLOSED,
+    JointFinding,
+    Named,
+    ResidualMoment,
+    Values,
+    joint_finding,
+    name_across_joints,
+)
 from gaitdisc.discovery.record_filter import DENSE
 from gaitdisc.discovery.result import ALPHA, TRACKED, Discovery, FoundEffect, GapSize, Runs, Whereabouts
 from gaitdisc.discovery.tracked_pass import (
+    NOTHING_NM,
     SEED,
     Pass,
     balance,
@@ -75,17 +84,22 @@ def discover_tracked(tracked: Tracked, kinematics: Path, request: Request = ALL)
     base, joints = search_joints(walk, angle_noise, request)
     found = make_discovery(base, joints)
     progress("writing the effects into the model")
-    augmented = draft(engine)
+    masses, augmented = {one.name: one for one in engine.parameters}, draft(engine)
     for one in found.effects:
         if one.kind == "port":
             augmented = augmented.with_effect(Term(one.place, "port", one.name, one.term))
+        elif one.place in masses:
+            mass = replace(masses[one.place], value=one.estimates["value"].value)
+            augmented = replace(augmented, parameters=(*augmented.parameters, mass))
     written = write_model(engine, augmented)
     notes = [note.replace("augmented.toml", "discovery.json") for note in written.notes]
     for one in found.effects:
-        if one.kind == "parameter":  # what muscles do otherwise is no part of the model's file
+        if (
+            one.kind == "parameter" and one.place not in masses
+        ):  # what muscles do otherwise is no part of the model's file
             number = f"{one.place} = {one.estimates['value'].value:.4g}"
             notes.append(f"{number} belongs to the forces file: only discovery.json contains it")
-    said = (stretch_used(walk, kinematics.name), *_gaps(walk, written, found))
+    said = (stretch_used(walk, kinematics.name), *_gaps(walk, written))
     shown = [summarise_joint(walk, number, joint) for number, joint in zip(walk.joints, joints, strict=True)]
     findings += [*shown, *doubts(shown)]
     findings += [Finding("note", "written back", "model", one, "") for one in notes]
@@ -102,11 +116,15 @@ def make_discovery(base: Simulation, joints: list[JointFinding]) -> Discovery:
     """Return what the joints show, as an answer: effects, rivals, the gap before and after."""
     if not joints:
         return write_sentence(Discovery("no_gap", ""), base, ())
-    named = [(joint, joint.named) for joint in joints if joint.named is not None]
+    named: dict[Identity, tuple[Named, list[JointFinding]]] = {}  # a mass is named at several joints
+    for joint in joints:
+        if joint.named is not None:
+            named.setdefault(joint.named.candidate.identity, (joint.named, []))[1].append(joint)
     effects, rivals = [], []
-    for one, best in named:
-        left = float(np.sum((one.joint.left - best.predicted) ** 2))
-        effects.append(_effect(base, best, 1 - left / max(float(np.sum(one.joint.left**2)), 1e-300)))
+    for best, (one, *others) in named.values():
+        pairs = ((each.joint.left, each.named.predicted) for each in (one, *others) if each.named)
+        before, left = np.sum([(np.sum(left**2), np.sum((left - taken) ** 2)) for left, taken in pairs], axis=0)
+        effects.append(_effect(base, best, 1 - left / max(before, 1e-300)))
         beside = [replace(_effect(base, rival), tied=best.gained - rival.gained < CRITERIA.tie) for rival in one.rivals]
         rivals += beside[1:4]
     unexplained = [] if named else [one for one in joints if one.rivals and not one.at_noise]
@@ -117,7 +135,7 @@ def make_discovery(base: Simulation, joints: list[JointFinding]) -> Discovery:
     closed = np.column_stack([joint.named.predicted if joint.named else 0.0 * joint.joint.left for joint in joints])
     walk = [one[None] for one in (measured, measured - left, measured - left + closed)]
     found = Discovery(
-        named[0][1].candidate.verdict if named else "no_gap",
+        next(iter(named.values()))[0].candidate.verdict if named else "no_gap",
         "",
         where=tuple(Whereabouts(effect.kind, effect.place, 1.0 / len(named)) for effect in effects),
         effects=tuple(effects),
@@ -129,7 +147,7 @@ def make_discovery(base: Simulation, joints: list[JointFinding]) -> Discovery:
         runs=Runs(np.arange(1), joints[0].joint.time[None], np.zeros((1, 0)), *walk, names=("whole walk",)),
     )
     if not unexplained:
-        return write_sentence(found, base, tuple(best for _, best in named))
+        return write_sentence(found, base, tuple(best for best, _ in named.values()))
     first = unexplained[0]
     best = first.prove(first.rivals[0])
     if best.gained <= 0:  # nothing explains anything: where most is left
@@ -137,10 +155,7 @@ def make_discovery(base: Simulation, joints: list[JointFinding]) -> Discovery:
     name, left = f"net_{first.joint.port}", first.joint.left
     before, _, floor = found.held_out.channels[name]
     size = f"{amount(before)} {units[joints.index(first)]} (noise floor {amount(floor)})"
-    sentence = (
-        f"No effect is named: the residual of {name} is {size}, and no tested effect explains it. A wrong mass, which "
-        "acts at several joints, is not tested."
-    )
+    sentence = f"No effect is named: the residual of {name} is {size}, and no tested effect explains it."
     if best.gained > 0:
         fitted, held = (amount(float(np.sqrt(np.mean((left - one) ** 2)))) for one in (best.explained, best.predicted))
         sentence = (
@@ -188,15 +203,15 @@ def write_tracked(answer: TrackedAnswer, out: Path) -> list[str]:
     return [augmented.name, mapping.name]
 
 
-def _gaps(walk: Pass, written: WrittenModel, found: Discovery) -> tuple[str, ...]:
+def _gaps(walk: Pass, written: WrittenModel) -> tuple[str, ...]:
     """What the written model leaves by OpenSim itself."""
-    places = {coordinate.port: k for k, coordinate in enumerate(walk.engine.coordinates)}
-    numbers = [places[effect.place] for effect in found.effects if effect.kind == "port"]
-    if not numbers or not isinstance(written.engine, OpensimTracked) or written.engine is walk.engine:
+    if not isinstance(written.engine, OpensimTracked) or written.engine is walk.engine:
         return ()
     after = written.engine.demanded(walk.motion) - walk.pulls.sum(axis=1)
     said = []
-    for k in numbers:
+    for k in walk.joints:
+        if np.abs(after - walk.left)[:, k].max() < NOTHING_NM:
+            continue
         one = walk.engine.coordinates[k]
         before, now = (f"{amount(walk.size(each[:, k]))} {one.force_unit}" for each in (walk.left, after))
         said.append(f"{one.called}, computed with the written model: residual {before} without, {now} with the effects")
@@ -220,6 +235,9 @@ def search_joints(walk: Pass, angle_noise: Values, request: Request = ALL) -> tu
         places = {one.port, *(f"{name}_{word}" for name in walk.groups_at(number) for word in ("strength", "delay"))}
         candidates = tuple(each for each in possible if each.place in places)
         joints.append(joint_finding(_left(walk, base, number, angle_noise), candidates, len(walk.joints)))
+    if not all(one.at_noise for one in joints):
+        masses = walk.masses_by_joints()
+        joints = name_across_joints(joints, tuple(one for one in possible if one.place in masses))
     return base, joints
 
 
@@ -240,7 +258,7 @@ def _simulation(walk: Pass) -> Simulation:
         title=f"tracked walk of {walk.engine.path.name}",
         model="",
         inputs=tuple(Input(name, "N m", "from the forces file") for name in walk.groups),
-        parameters=tuple(numbers),
+        parameters=(*numbers, *walk.engine.parameters),
         observations=tuple(seen) or plain.observations,
         sensors=tuple(sensors),
     )
@@ -267,6 +285,8 @@ def _left(walk: Pass, base: Simulation, number: int, angle_noise: Values) -> Res
         return known[key]
 
     def acting(candidate: Candidate, constants: Mapping[str, float]) -> Values:
+        if candidate.place in walk.demanded_by_mass:
+            return -walk.demanded_by_mass[candidate.place][:, [number]]
         if candidate.verdict == "wrong_parameter":
             group, _, word = candidate.place.rpartition("_")
             own = walk.groups[group]

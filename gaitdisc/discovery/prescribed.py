@@ -64,7 +64,7 @@ class ResidualMoment:
         factors = [values[slot] for slot in candidate.slots[: len(candidate.pieces)]]
         if candidate.verdict == "wrong_parameter":
             late = candidate.place.endswith("_delay")
-            constants, factors = (values, [1.0]) if late else ({}, [values["value"] - 1.0])
+            constants, factors = (values, [1.0]) if late else ({}, [values["value"] - candidate.value])
         return self.columns(candidate, constants) @ np.array(factors)
 
     def slope(self, candidate: Candidate, values: Mapping[str, float], slot: str) -> Values:
@@ -131,10 +131,22 @@ class JointFinding:
             values = self._numbers(one.candidate, learned)
             if values is not None:
                 predicted[held] = joint.explained(one.candidate, values)[held]
-        after = joint.left - predicted
-        test = compare_errors(joint.left[None, :, None], after[None, :, None], np.array([joint.floor or 1.0]))
-        before, after = (float((self._white(each) ** 2).sum()) for each in (joint.left, after))
-        return replace(one, predicted=predicted, held_out=_fall(before, after, len(predicted)), test=test)
+        before, after = (float((self._white(each) ** 2).sum()) for each in (joint.left, joint.left - predicted))
+        held_out = _fall(before, after, len(predicted))
+        return replace(one, predicted=predicted, held_out=held_out, test=self.test(predicted))
+
+    def test(self, predicted: Values) -> PairedTest:
+        """Whether what was predicted (sample,) bears out on held-out time."""
+        left = self.joint.left
+        pair = left[None, :, None], (left - predicted)[None, :, None]
+        return compare_errors(*pair, np.array([self.joint.floor or 1.0]))
+
+    def with_noise_of(self, rest: Values, used: float = 0.0) -> JointFinding:
+        """The same with the noise that an explanation leaves (sample,), where that is more than now."""
+        if np.sqrt(np.mean(rest**2)) <= self.noise.size[0]:
+            return self
+        least = CRITERIA.model_error * float(np.std(self.joint.demanded))
+        return replace(self, noise=find_noise(rest[None, :, None], used=used, least=least))
 
     def _numbers(self, candidate: Candidate, some: NDArray[np.intp], refined: bool = True) -> dict[str, float] | None:
         """Numbers of a candidate that suit some of the samples; None where it does not act in them."""
@@ -180,7 +192,7 @@ class JointFinding:
                 best = dict(zip(names, map(float, found.x), strict=True))
         factors = fit(best)[1]
         if candidate.verdict == "wrong_parameter":
-            return best if late else {"value": 1.0 + float(factors[0])}
+            return best if late else {"value": candidate.value + float(factors[0])}
         return dict(zip(candidate.slots, [*map(float, factors), *best.values()], strict=True))
 
     def _price(self, count: int) -> float:
@@ -197,8 +209,7 @@ def joint_finding(joint: ResidualMoment, candidates: tuple[Candidate, ...], join
     """Weigh every candidate at one of some joints; name the best where evidence and held-out time bear it out."""
     from scipy.stats import chi2
 
-    floor = CRITERIA.model_error * float(np.std(joint.demanded))
-    found = JointFinding(joint, find_noise(joint.angle_noise[:, :, None], least=floor), len(candidates) * joints)
+    found = JointFinding(joint, _noise_of_angles(joint), len(candidates) * joints)
     size = float((found._white(joint.left) ** 2).sum())
     found = replace(found, at_noise=bool(chi2.sf(size, len(joint.time)) > CHANCE / joints))
     ordered: list[Named] = []
@@ -207,9 +218,9 @@ def joint_finding(joint: ResidualMoment, candidates: tuple[Candidate, ...], join
         best = tuple(one.candidate for one in coarse[:REFINED])
         ordered = found.weigh(best, refined=True)
         rest = min((joint.left - named.explained for named in ordered), key=np.linalg.norm, default=joint.left)
-        if np.sqrt(np.mean(rest**2)) <= found.noise.size[0]:
+        before, found = found, found.with_noise_of(rest, used=2)
+        if found is before:
             break
-        found = replace(found, noise=find_noise(rest[None, :, None], used=2, least=floor))
     near = [named for named in ordered if named.gained > max(ordered[0].gained - CRITERIA.margin, CRITERIA.margin)]
     proven = sorted(map(found.prove, near), key=lambda one: -one.held_out)
     alike = [named for named in proven if named.held_out > proven[0].held_out - CRITERIA.tie]  # of these the plainest
@@ -223,6 +234,71 @@ def joint_finding(joint: ResidualMoment, candidates: tuple[Candidate, ...], join
         matters = not best.candidate.bounds or best.candidate.beyond_bounds(best.values["value"]) > 0
         supported = matters and left < (1 - CLOSED) * float(np.sum(joint.left**2))
     return replace(found, named=ordered[0] if supported else None, rivals=tuple(ordered))
+
+
+def name_across_joints(joints: list[JointFinding], candidates: tuple[Candidate, ...]) -> list[JointFinding]:
+    """Name a number that acts at several joints, as a mass does, where it explains more than the best at each of them.
+
+    Either answer is weighed by what it leaves, as noise of unknown size, and is as likely beforehand.
+    """
+    found, most, price = list(joints), CRITERIA.margin, 2 * float(np.log(max(2 * len(candidates), 1)))
+    for candidate in candidates:
+        places = [k for k, one in enumerate(joints) if one.weigh((candidate,), refined=False)]
+        acting, named = _across_joints([joints[k] for k in places], candidate)
+        cost = price + float(np.log(sum(len(one.explained) for one in named)))
+        gained, before, after = sum(one.gained for one in named) - cost, 0.0, 0.0
+        better = -cost
+        for one, each in zip(acting, named, strict=True):
+            left, own = one.joint.left, one.rivals[:1] if one.rivals and one.rivals[0].gained > 0 else ()
+            better += sum(one._price(len(rival.candidate.slots)) for rival in own)
+            sizes = [
+                max(float(np.mean(rest**2)), one.joint.floor**2)
+                for rest in (left - sum(rival.explained for rival in own), left - each.explained)
+            ]
+            better += len(left) / SAMPLES_A_NUMBER * float(np.log(sizes[0] / sizes[1]))
+            before += float((one._white(left) ** 2).sum())
+            after += float((one._white(left - each.predicted) ** 2).sum())
+        if gained > most and better > 0 and after < (1 - CLOSED) * before:
+            found, most = list(joints), gained
+            for k, one, each in zip(places, acting, named, strict=True):
+                whole = replace(each, gained=gained)
+                found[k] = replace(one, named=whole, rivals=(whole, *one.rivals))
+    return found
+
+
+def _across_joints(acting: list[JointFinding], candidate: Candidate) -> tuple[list[JointFinding], list[Named]]:
+    """Fit one number at several joints, each weighed by its information, and predict each block of the time."""
+
+    def fit(some: NDArray[np.intp]) -> tuple[dict[str, float], float]:
+        numbers = [one._numbers(candidate, some, refined=False) or candidate.idle for one in acting]
+        slopes = (one._white(one.joint.slope(candidate, candidate.idle, "value")) for one in acting)
+        weights = np.array([float((slope**2).sum()) for slope in slopes])
+        values = np.array([each["value"] for each in numbers])
+        return {"value": float(weights @ values / weights.sum())}, 1 / float(weights.sum())
+
+    every = np.arange(len(acting[0].joint.time))
+    first = acting = [replace(one, noise=_noise_of_angles(one.joint)) for one in acting]
+    values, variance = fit(every)
+    for _ in range(2 * ROUNDS):
+        acting = [one.with_noise_of(one.joint.left - one.joint.explained(candidate, values)) for one in first]
+        values, variance = fit(every)
+    predicted = np.zeros((len(acting), len(every)))
+    for held, learned in acting[0].joint.blocks:
+        learnt, _ = fit(learned)
+        predicted[:, held] = [one.joint.explained(candidate, learnt)[held] for one in acting]
+    named = []
+    for one, each in zip(acting, predicted, strict=True):
+        explained = one.joint.explained(candidate, values)
+        sizes = [float((one._white(one.joint.left - part) ** 2).sum()) for part in (0.0, explained, each)]
+        gained, held_out = (_fall(sizes[0], size, len(every)) for size in sizes[1:])
+        named.append(
+            Named(candidate, values, np.array([[variance]]), explained, each, gained, held_out, one.test(each))
+        )
+    return acting, named
+
+
+def _noise_of_angles(joint: ResidualMoment) -> Noise:
+    return find_noise(joint.angle_noise[:, :, None], least=CRITERIA.model_error * float(np.std(joint.demanded)))
 
 
 def _fall(before: float, after: float, count: int) -> float:

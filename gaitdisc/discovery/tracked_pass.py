@@ -26,6 +26,7 @@ MM = 1 / 300  # [m] of a translation, that go with a degree of an angle
 OTHER_MOTION = 0.15  # of the weight
 WRONG_MASS = 0.05  # of the weight, which the ground carries less or more than the model moves
 LEAST_ARM_M = 1e-3
+NOTHING_NM = 1e-6  # a kilogram that demands less at a joint does not act there: rounding
 SIDES = ((1.0, "raising"), (-1.0, "lowering"))
 
 
@@ -63,6 +64,22 @@ class Pass:
             return 0.0
         alone = self.engine.demanded(self.motion, loaded=False)
         return abs(float(np.mean(self.dense(alone[:, up]))))
+
+    @cached_property
+    def demanded_by_mass(self) -> Mapping[str, Values]:
+        """What a kilogram more of each body of the model demands, its shape unchanged (sample, coordinate)."""
+        engine, motion = self.engine, self.motion
+        alone = engine.demanded(motion, loaded=False)
+        heavier = {one.name: {one.name: one.value + 1.0} for one in engine.parameters}
+        return {name: engine.demanded(motion, False, values) - alone for name, values in heavier.items()}
+
+    def masses_by_joints(self) -> set[str]:
+        """Names of masses that act at two joints or more; of bodies that move as one, the heaviest one's."""
+        found = dict[tuple[int, ...], str]()
+        for one in sorted(self.engine.parameters, key=lambda one: one.value):
+            sizes = np.abs(self.demanded_by_mass[one.name]).max(axis=0)
+            found[tuple(k for k in self.joints if sizes[k] > NOTHING_NM)] = one.name
+        return {name for joints, name in found.items() if len(joints) > 1}
 
     @property
     def kept(self) -> slice:

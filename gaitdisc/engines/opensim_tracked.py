@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import replace
 from pathlib import Path
+from types import MappingProxyType
 from typing import Any
 
 import numpy as np
@@ -14,8 +15,10 @@ from gaitdisc.engines.opensim_model import OpensimModel
 from gaitdisc.engines.opensim_worker import PORT, ROTATIONAL, Ready, answer_questions
 from gaitdisc.engines.tracked_mapping import Tracked
 from gaitdisc.errors import SchemaError
+from gaitdisc.simulation.parts import Parameter
 
 TRANSLATIONAL = 2
+FILES = MappingProxyType[str, float]({})  # masses of the file
 
 
 class OpensimTracked(OpensimModel):
@@ -36,7 +39,10 @@ class OpensimTracked(OpensimModel):
             raise SchemaError(
                 "a model must have at least one free coordinate", f"{self.path.name}: all are locked", "Unlock some."
             )
-        self.controls, self.parameters, self.offered = (), (), ()
+        self._called = {new_name(f"{name}_mass", "number", taken): f"{name}_mass" for name, _ in described["masses"]}
+        masses = zip(self._called, described["masses"], strict=True)
+        self.parameters = tuple(Parameter(name, mass, "kg") for name, (_, mass) in masses)
+        self.controls, self.offered = (), ()
         self.actuators: tuple[str, ...] = tuple(described["actuators"])
         self.base: tuple[int, ...] = tuple(described["base"])  # coordinates of the joint with the ground
         self.vertical: int = described["vertical"]  # the base's upward coordinate, -1 where there is none
@@ -44,13 +50,16 @@ class OpensimTracked(OpensimModel):
         self.mass_kg: float = described["mass_kg"]
 
     def accelerations(self, at: Motion, values: Mapping[str, float], forces: Values | None = None) -> Values:
-        """Accelerations (point, coordinate) without muscles and without the ground."""
-        del values
-        return self._query("accelerations", at.q, at.v, np.zeros_like(at.q) if forces is None else forces)
+        """Accelerations (point, coordinate) without muscles and without the ground, with other masses [kg]."""
+        push = np.zeros_like(at.q) if forces is None else forces
+        return self._query("accelerations", self._numbers(values), at.q, at.v, push)
 
-    def demanded(self, motion: TrackedMotion, loaded: bool = True) -> Values:
+    def demanded(self, motion: TrackedMotion, loaded: bool = True, values: Mapping[str, float] = FILES) -> Values:
         """Generalised forces (sample, coordinate) that a motion demands of muscles beside the recorded loads."""
-        return self._query("demanded", motion.time, motion.q, motion.v, motion.a, loaded)
+        return self._query("demanded", self._numbers(values), motion.time, motion.q, motion.v, motion.a, loaded)
+
+    def _numbers(self, values: Mapping[str, float]) -> dict[str, float]:
+        return {self._called[name]: value for name, value in values.items()}
 
     def arms(self, time: Values, q: Values, names: tuple[str, ...]) -> Values:
         """Generalised force (sample, name, coordinate) of each actuator's unit force, or unit net moment."""
@@ -65,10 +74,11 @@ class _Tracked:
     """What is known of a model under prescribed motion; lives in the worker's process."""
 
     def __init__(self, osim: Any, path: str) -> None:
-        self.osim, self.model = osim, osim.Model(path)
+        self.osim, self.path, self.model = osim, path, osim.Model(path)
 
-    def loaded(self, loads: Path, data: Path, actuators: Path | None) -> None:
+    def loaded(self, loads: Path, data: Path, actuators: Path | None, values: Any = ()) -> None:
         osim, model = self.osim, self.model
+        self.files = loads, data, actuators
         if actuators:
             for one in osim.ForceSet(str(actuators)):
                 model.updForceSet().cloneAndAppend(one)
@@ -76,7 +86,7 @@ class _Tracked:
         external = osim.ExternalLoads(str(loads), True)
         external.setDataFileName(str(data))
         model.addModelComponent(external)
-        ready = Ready(osim, model, {})
+        ready = Ready(osim, model, dict(values))
         self.state, self.names, self.actuators, self.placed = ready.state, ready.names, ready.actuators, ready.placed
         self.loads = [external.get(k) for k in range(external.getSize())]
         self.solver = osim.InverseDynamicsSolver(model)
@@ -95,6 +105,11 @@ class _Tracked:
             self.place[name] = int(np.argmax(np.abs(self.state.getU().to_numpy())))
         self._speeds({})
 
+    def _with_values(self, values: dict[str, float]) -> _Tracked:
+        other = _Tracked(self.osim, self.path)
+        other.loaded(*self.files, values)
+        return other
+
     def _speeds(self, speeds: Mapping[str, float]) -> None:
         for name, one in self.free.items():
             one.setSpeedValue(self.state, float(speeds.get(name, 0.0)))
@@ -106,7 +121,7 @@ class _Tracked:
             if joint.getParentFrame().findBaseFrame().getName() == "ground" and joint.numCoordinates() > 1:
                 base += [joint.get_coordinates(i).getName() for i in range(joint.numCoordinates())]
         zero = np.zeros((1, len(self.names)))
-        still = self.demanded([0.0], zero, zero, zero, False)[0]
+        still = self.demanded({}, [0.0], zero, zero, zero, False)[0]
         weight = model.getTotalMass(self.state) * np.linalg.norm([model.getGravity().get(i) for i in range(3)])
         own = [k for k, name in enumerate(self.names) if name in base]
         sliding = [k for k in own if self.free[self.names[k]].getMotionType() == TRANSLATIONAL]
@@ -118,6 +133,7 @@ class _Tracked:
             "vertical": upward[0] if upward and weight > 0 else -1,
             "paths": [name for name, one in self.given.items() if osim.PathActuator.safeDownCast(one) is not None],
             "mass_kg": model.getTotalMass(self.state),
+            "masses": [(body.getName(), body.getMass()) for body in model.getBodySet() if body.getMass()],
         }
 
     def _solved(self, a: Mapping[str, float], slopes: Mapping[str, Mapping[str, float]]) -> Any:
@@ -134,7 +150,9 @@ class _Tracked:
                 found[self.names.index(other)] += slope * whole[self.place[name]]
         return found
 
-    def demanded(self, time: Any, q: Any, v: Any, a: Any, loaded: bool) -> Any:
+    def demanded(self, values: dict[str, float], time: Any, q: Any, v: Any, a: Any, loaded: bool) -> Any:
+        if values:
+            return self._with_values(values).demanded({}, time, q, v, a, loaded)
         found = np.empty_like(q)
         for one in self.loads:
             one.setAppliesForce(self.state, loaded)
@@ -178,7 +196,9 @@ class _Tracked:
                     one.setOverrideActuation(self.state, 0.0)
         return found
 
-    def accelerations(self, q: Any, v: Any, forces: Any) -> Any:
+    def accelerations(self, values: dict[str, float], q: Any, v: Any, forces: Any) -> Any:
+        if values:
+            return self._with_values(values).accelerations({}, q, v, forces)
         found = np.empty_like(q)
         self.state.setTime(0.0)
         for k, force in enumerate(forces):

@@ -103,6 +103,7 @@ def test_no_spring_and_no_adaptation_is_no_discrepancy(person):
     assert other == pytest.approx(own, abs=0.015)  # one person; the mean of twelve is held to 0.01 below
 
 
+@pytest.mark.slow
 def test_a_spring_is_a_discrepancy_at_the_ankle(person):
     learner = person.adapt_to(Spring())
     own, other = nominal_on_both(person, learner, Spring(), 120.0, 31)
@@ -248,6 +249,7 @@ def angles(walk, side=0):
     return walk.mean_stride(walk.angles, side)[:, side]
 
 
+@pytest.mark.slow
 def test_a_stiff_knee_swings_with_less_than_45_degrees(walks):
     """Stiff-knee gait is a low peak of knee flexion in swing, below 45 deg (Goldberg et al. 2003)."""
     assert angles(walks["usual"])[60:90, KNEE].max() > 53.0

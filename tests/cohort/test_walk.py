@@ -36,6 +36,7 @@ def test_a_seed_is_a_walk(person):
     assert not np.array_equal(walked(person, None, 4.0, 3).angles, walked(person, None, 4.0, 4).angles)
 
 
+@pytest.mark.slow
 def test_a_stiffer_spring_changes_more(person, nominal):
     springs = [Spring(k) for k in (1.0, 2.5, 5.0, 8.0)]
     for learner in (person, person.unadapted()):

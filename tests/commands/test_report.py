@@ -85,6 +85,7 @@ def test_the_report_of_a_clinic_has_everybodys_pages_and_leaves_those_that_stand
     assert called("report", run_folder).returncode == 0 and "6 controls of the laboratory" in page.read_text()
 
 
+@pytest.mark.slow
 def test_a_language_is_written_filled_in_kept_and_taken_away(called, run_folder, tmp_path, without_figures):
     table, page = tmp_path / "de.csv", run_folder / "report" / "people" / "P08.html"
     empty = called("report", run_folder, "--language", table, ends=0)

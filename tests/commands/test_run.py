@@ -34,6 +34,7 @@ def test_ablate_keeps_what_less_data_gave_and_draws_it(study, called):
     assert "How much data" in (study / "run" / "report" / "report.html").read_text(encoding="utf-8")
 
 
+@pytest.mark.slow
 def test_a_variation_is_written_and_its_page_drawn_again(study, called):
     drawn = {}
     for command in ("modalities", "sensitivity"):

@@ -31,6 +31,7 @@ def best(beam):
     return beam.select_forward(beam.as_read)
 
 
+@pytest.mark.slow
 def test_a_spring_and_a_loss_are_found_though_none_is_exact(beam, best):
     now, _ = beam.material(best)
     names = {label.split("@")[0] for label, _ in now.explanations}
@@ -127,6 +128,7 @@ def answered():
     return discover(mass(), record(with_load("-1.2*v*abs(v)**0.5"), 5, CLEAN))
 
 
+@pytest.mark.slow
 def test_a_loss_that_no_name_is_exact_for_is_named_by_the_nearest(answered):
     found, augmented = answered
     assert found.verdict in ("missing_physics", "wrong_parameter")
@@ -149,6 +151,7 @@ def test_what_is_left_is_told_as_a_share(answered):
     assert found.to_json()["gap"]["held_out"]["unexplained"] == pytest.approx(max(left, 0.0))
 
 
+@pytest.mark.slow
 def test_a_number_ten_times_too_large_is_found_where_no_slope_at_the_files_leads_to_it():
     stiff = parse_simulation(MASS.replace("value = 24.0", "value = 240.0"), "mass.toml")
     case = set_up_case(stiff, record(with_load("-0.6*v*abs(v)**0.5"), 5, CLEAN))

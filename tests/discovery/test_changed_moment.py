@@ -35,6 +35,7 @@ def test_the_same_muscles_changed_nothing(model, nominal):
         ({"strength": 0.7}, "wrong_parameter", "plantarflexors_strength", 0.7),
     ],
 )
+@pytest.mark.slow
 def test_what_changed_is_found_with_its_number(model, nominal, hidden, name, place, value):
     found = changed(model, nominal, made_joint(seed=3, **hidden))
     assert (found.change.name, found.change.place) == (name, place)
@@ -65,6 +66,7 @@ def test_a_mass_at_the_foot_is_weighed_where_its_moment_is_known(model, nominal)
     assert found.value == pytest.approx(0.8, rel=0.1)
 
 
+@pytest.mark.slow
 def test_a_spring_whose_interval_holds_none_is_not_named(model, nominal, monkeypatch):
     """Without what nobody measured, 50 N m/rad are found to 5; with the lag of activation in doubt, 40 are nothing."""
     device = made_joint(seed=3, spring=50.0)

@@ -169,6 +169,7 @@ def test_a_verdict_carries_the_account_and_what_else_was_weighed(case, as_read, 
     assert (verdict.process_noise, verdict.starts) == (None, {})
 
 
+@pytest.mark.slow
 def test_a_random_push_comes_with_its_place_and_strength_and_without_an_explanation():
     case = set_up_case(mass(), record(mass(), 3, Experiment(seconds=8.0, shaking=6.0)))
     verdict = decide(case, case.as_read())

@@ -112,6 +112,7 @@ def test_what_is_wrong_but_not_missing_is_named(truth, how, verdict, name, place
     ],
     ids=["hysteresis", "series elasticity", "lag", "contact damper", "saturation"],
 )
+@pytest.mark.slow
 def test_effects_with_states_of_their_own_and_of_inputs_are_named_and_written(truth, name, place, numbers):
     discovery, augmented = _found(truth)
     assert _named(discovery) == ("input_error" if place == "push" else "missing_physics", [(name, place)])
@@ -162,6 +163,7 @@ def test_what_integration_may_leave_is_not_named(term, noise):
     assert _named(discovery) == ("no_gap", [])
 
 
+@pytest.mark.slow
 def test_without_noise_a_small_effect_is_named_with_its_number():
     discovery, _ = _found(with_load("-0.05*x**3"), Experiment(noise=0.0))
     assert _named(discovery) == ("missing_physics", [("cubic_stiffness", "load")])
@@ -215,12 +217,14 @@ def test_an_effect_of_the_users_own_is_found_by_its_name(tmp_path):
     assert "exp" in augmented.effects[0].term
 
 
+@pytest.mark.slow
 def test_in_a_chain_an_effect_is_named_at_the_joint_where_it_acts():
     truth = two_rods().with_effect(Term("lower_moment", "port", "hidden", "-6*max(0, lower - 0.1)"))
     discovery, _ = _found(truth, Experiment(seconds=9.0, noise=0.01), nominal=two_rods())
     assert _named(discovery) == ("missing_physics", [("one_sided_spring", "lower_moment")])
 
 
+@pytest.mark.slow
 def test_a_spring_that_the_held_out_trial_never_reaches_is_proven_on_another_and_every_step_is_told():
     truth = with_load("-20*max(0, x - 0.7)")
     measured = record(truth, 1, Experiment(seconds=10.0))
@@ -272,6 +276,7 @@ def test_where_the_last_quarter_of_one_trial_alone_shows_a_gap_the_first_is_held
     assert found.held_out.alpha == 0.025  # two splits share the rate of false finds
 
 
+@pytest.mark.slow
 def test_one_record_in_degrees_gives_the_same_name_and_estimates():
     knee = parse_simulation(KNEE, "knee.toml")
     stop = knee.with_effect(Term("knee", "port", "hidden", "-110*max(0, theta - 0.25)"))
@@ -348,6 +353,7 @@ def test_accounts_are_of_the_whole_gap_and_what_was_named_comes_first():
     assert discovery.held_out.of == "trial 4"
 
 
+@pytest.mark.slow
 def test_a_term_goes_before_the_random_pushes_beside_it():
     discovery, _ = _found(with_load("-1.5*sign(v)"), Experiment(seconds=8.0, shaking=3.0))
     assert _named(discovery) == ("missing_physics", [("coulomb_friction", "load")])

@@ -76,6 +76,7 @@ def test_of_a_linear_system_whose_inputs_were_filtered_alike_nothing_is_filtered
     assert set_up_case(mass(), alone).record_filter.cutoffs_hz[0] == pytest.approx(3.0, rel=0.15)
 
 
+@pytest.mark.slow
 def test_a_filtered_record_of_a_stop_gives_the_strength_of_the_raw_one():
     truth = with_load("-60*max(0, x - 0.25)", "one_sided_spring")
     found = {}

@@ -52,6 +52,7 @@ def test_where_there_is_a_stride_a_shape_may_be_locked_to_it():
     assert any("phase" in one.pieces[0] for one in shapes)
 
 
+@pytest.mark.slow
 def test_a_fitted_shape_closes_a_gap_that_has_no_name(bumpy):
     case, now = bumpy
     shape = fit_shape(case, now)

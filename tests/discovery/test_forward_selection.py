@@ -58,6 +58,7 @@ def two():
     return case, case.as_read()
 
 
+@pytest.mark.slow
 def test_two_effects_are_both_found_with_their_numbers(two):
     case, as_read = two
     now, _ = select_forward(case.search, as_read, 3)

@@ -94,6 +94,7 @@ def test_an_effect_that_shows_in_one_trial_alone_is_no_shift_of_it():
     assert found_in(mass().with_values(thick), Measured(drive, x, ("1", "2", "3", "4"), ("x",))) == []
 
 
+@pytest.mark.slow
 def test_it_is_left_out_and_said_in_the_answer_and_the_report(cubic, tmp_path):
     found, augmented = discover(mass(), turned(cubic, 1))
     assert [one.name for one in augmented.effects] == ["cubic_stiffness"]
@@ -126,6 +127,7 @@ def test_trials_are_shifted_against_their_inputs(cubic):
         np.testing.assert_array_equal(moved.drive.inputs[2], cubic.drive.inputs[2, max(-shift, 0) :][:597])
 
 
+@pytest.mark.slow
 def test_a_trial_that_what_was_found_explains_is_searched_after_all(cubic, monkeypatch):
     """As read, one trial seems turned, as a missing effect may make it; with the spring it does not."""
     begun = []

@@ -26,6 +26,7 @@ def damped():
     return case, as_read, Verdict(shape, (), proof=prove_held_out(case, as_read, shape))
 
 
+@pytest.mark.slow
 def test_a_shape_is_read_as_the_product_that_was_hidden(damped):
     verdict = read_shape(*damped)
     (part,) = verdict.found.parts

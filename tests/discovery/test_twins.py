@@ -59,6 +59,7 @@ def searched():
     return find_missing(model, measured, answered, {})[0], before, (model, measured)
 
 
+@pytest.mark.slow
 def test_what_was_planted_returns_and_nothing_is_invented(searched):
     found, ((before, augmented),), _ = searched
     assert found.twins == Twins(2, "cubic_stiffness@load", {"cubic_stiffness@load": 2}, {"no_gap": 2})
@@ -70,6 +71,7 @@ def test_what_was_planted_returns_and_nothing_is_invented(searched):
     )
 
 
+@pytest.mark.slow
 def test_twins_that_were_searched_are_not_searched_again(searched, tmp_path, monkeypatch):
     found, _, (model, measured) = searched
     lines = []

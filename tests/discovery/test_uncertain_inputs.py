@@ -36,6 +36,7 @@ def _stating(simulation: Simulation, **errors: float) -> Simulation:
     return replace(simulation, inputs=tuple(replace(one, **errors) for one in simulation.inputs))
 
 
+@pytest.mark.slow
 def test_what_a_stated_error_explains_as_well_is_not_named():
     measured = _wandering(record(mass(), SEED), 2.0, 0.3)
     found, augmented = discover(_stating(mass(), sd=2.0, wander=0.3), measured)
@@ -55,6 +56,7 @@ def test_a_term_beside_a_stated_error_is_named_with_its_number_in_its_interval()
     assert not [one for one in found.findings if one.kind in ("stated errors", "exact inputs")]
 
 
+@pytest.mark.slow
 def test_a_gain_within_its_stated_error_is_corrected_and_not_named():
     measured = record(mass(), SEED)
     measured = _driven(measured, measured.drive.inputs / 1.12)

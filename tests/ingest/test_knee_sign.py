@@ -133,6 +133,7 @@ def test_the_crop_decides_what_is_checked(gait_data):
     assert cropped.stream("kinematics")["knee_angle_r"].max() > 60
 
 
+@pytest.mark.slow
 def test_no_other_real_file_is_turned(real_trials):
     """Of all files with knees, those of gait10dof alone count flexion negative."""
     turned = {

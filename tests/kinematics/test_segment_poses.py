@@ -143,6 +143,7 @@ def joints_apart(found: Motion) -> float:
     return max(apart)
 
 
+@pytest.mark.slow
 def test_joints_do_not_part():
     markers = shaken(markers_of(known_angles(40), RAJAGOPAL), 0)
     assert joints_apart(motion(markers, CALIBRATION)) < 1e-9

@@ -56,6 +56,7 @@ def test_many_windows_are_read_in_parts_with_the_same_numbers(monkeypatch):
     torch.testing.assert_close(network(x), whole)
 
 
+@pytest.mark.slow
 def test_it_learns_what_needs_history_and_is_loaded_as_it_was_saved(echo, tmp_path):
     settings = TrainingSettings(epochs=20, batch=64, decays=(0.0,))
     done = train(echo.rows(slice(0, 500)), BUILD, settings, check=echo.rows(slice(510, 600)))
@@ -82,6 +83,7 @@ def test_a_masked_network_reads_the_mean_and_that_it_is_none():
     assert Shred(6, 2, 2)(lost).isnan().all()
 
 
+@pytest.mark.slow
 def test_missing_readings_in_training(echo):
     rng = np.random.default_rng(0)
     holes = Samples(

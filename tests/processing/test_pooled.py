@@ -243,6 +243,7 @@ def turning(request):
         ]
 
 
+@pytest.mark.slow
 def test_all_twelve_walks_have_a_clean_cycle(turning):
     assert len(turning) == 12
     assert all(one.counted("r") >= 1 and one.counted("l") >= 1 for one in turning)
@@ -284,6 +285,7 @@ def test_moments_are_there_only_where_a_plate_carried_the_foot(turning):
     assert sum(int(one.kept["kinetic"].sum()) for one in turning) >= 20
 
 
+@pytest.mark.slow
 def test_a_static_trial_of_another_person_is_said_and_costs_no_cycle(gait_data):
     folder = gait_data / "young_straight_and_turn"
     walk = PlannedTrial(condition="walk", files=(str(folder / "HC030A" / "straight" / "HC030A05.c3d"),))

@@ -95,6 +95,7 @@ def test_cycles_of_a_study_are_those_of_the_steps_taken_by_hand(files, trials, f
     assert {"force balance", "own model"} <= set(said)
 
 
+@pytest.mark.slow
 def test_a_file_without_a_model_gets_one_and_a_file_with_its_own_keeps_it(files, trials, from_markers):
     stripped = {kind: bare(trial, "kinematics", "moments") for kind, trial in trials.items()}
     made, findings = pooled(files, stripped, Kinematics(marker_set="plug_in_gait"))
@@ -206,6 +207,7 @@ def with_heels_exchanged(trial, pair=("LHEE", "RHEE"), seconds=(0.6, 1.1)):
     return with_labels_exchanged(trial, pair, frames), frames
 
 
+@pytest.mark.slow
 def test_angles_that_follow_the_right_labels_stay_and_keep_their_cycles(files, trials, from_file):
     other, _ = with_heels_exchanged(trials["straight"])
     (clean, _), _ = from_file

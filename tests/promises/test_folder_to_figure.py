@@ -34,6 +34,7 @@ def test_the_files_of_a_folder_become_one_figure(tmp_path):
     assert (tmp_path / "knees.png").stat().st_size > 5000
 
 
+@pytest.mark.slow
 def test_real_walks_on_a_treadmill_become_one_figure_too(gait_data):
     files = sorted((gait_data / "treadmill_walk_ik").glob("*.mot"))[:2]
     if not files:

@@ -11,6 +11,7 @@ from gaitdisc.discovery.tracked_pass import Pass
 from gaitdisc.engines.motion import Coordinate, TrackedMotion
 from gaitdisc.ingest.storage import write_storage
 from gaitdisc.ingest.study import Conditions, Models, Participant, PlannedTrial, Study
+from gaitdisc.simulation.parts import Parameter
 
 ANGLES = ("hip_flexion_r", "knee_angle_r", "ankle_angle_r", "hip_flexion_l", "knee_angle_l")
 
@@ -55,7 +56,12 @@ class Leg:
     """Two segments of which every moment is known, where OpenSim would stand: a mass, a knee and an ankle."""
 
     mass_kg, vertical, base, called, path = 70.0, 0, (0,), "a leg", Path("leg.osim")
-    controls, parameters, offered = (), (), ()
+    parameters = (
+        Parameter("foot_mass", 1.2, "kg"),
+        Parameter("toes_mass", 0.2, "kg"),
+        Parameter("trunk_mass", 40.0, "kg"),
+    )
+    controls, offered = (), ()
     coordinates = tuple(
         Coordinate(name, unit, name) for name, unit in (("pelvis_ty", "m"), ("knee", "rad"), ("ankle", "rad"))
     )
@@ -64,8 +70,13 @@ class Leg:
     def __init__(self, pulls, carried=1.0):
         self.pulls, self.carried = pulls, carried  # (sample, coordinate) [N m]; share of the weight under the foot
 
-    def demanded(self, motion, loaded=True):
+    def demanded(self, motion, loaded=True, values=None):
         moments = self.inertia * motion.a + self.pulls
+        for one in self.parameters:
+            more = (values or {}).get(one.name, one.value) - one.value
+            moments[:, 0] += 9.81 * more
+            if one.name != "trunk_mass":
+                moments[:, 1:] += more * ([0.3, 0.1] * motion.a[:, 1:] + 9.81 * np.sin(motion.q[:, 1:]) * [0.4, 0.2])
         moments[:, 0] += self.mass_kg * 9.81 * (1 - self.carried * loaded)
         return moments
 

@@ -70,6 +70,7 @@ def test_an_effect_that_is_none(tmp_path):
         write_demonstration(tmp_path, 30.0, 1, laboratory="video")
 
 
+@pytest.mark.slow
 def test_markers_in_place_of_angles_go_through_the_same_reading(tmp_path):
     write_demonstration(tmp_path, 30.0, people=1, laboratory="markers")
     study = load_study(tmp_path)

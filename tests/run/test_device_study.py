@@ -171,6 +171,7 @@ def test_the_models_of_chapter_4_stand_beside_in_newton_metres(walks):
     assert 0.5 < sizes["Augmented (plain regression)"] < sizes["Exo"] < sizes["Nominal"]
 
 
+@pytest.mark.slow
 def test_it_is_said_what_the_moment_model_is_worth_and_that_no_mass_can_be_weighed(walks):
     said = [finding.what for finding in device_findings(walks)]
     assert any("the ankle moment model leaves a residual of" in one and "ms later" in one for one in said)

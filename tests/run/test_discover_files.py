@@ -112,6 +112,7 @@ def test_a_simulation_that_is_a_function_goes_all_the_way(tmp_path, verdict):
         assert read.replaced[0][1].startswith("delay(pump, 0.1")
 
 
+@pytest.mark.slow
 def test_milliseconds_whose_slopes_overflow_are_refused_in_words(tmp_path):
     """A pendulum that swings three times in a sample of 10 s: numpy said "SVD did not converge"."""
     write_simulation(system({"x": "v", "v": "-k*sin(x)"}, parameters={"k": 9.8}), tmp_path / "pendulum.toml")

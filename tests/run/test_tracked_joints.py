@@ -133,6 +133,32 @@ def test_a_named_spring_stands_with_its_numbers_and_the_gap_that_it_closes(leg_w
     assert np.sqrt(np.mean(gap[0, :, 1] ** 2)) == pytest.approx(after)
 
 
+@pytest.mark.parametrize("kg", [2.0, -0.8])
+def test_a_mass_is_named_once_for_the_joints_at_which_it_acts_by_the_heaviest_body_that_moves_so(leg_walk, kg):
+    walk = leg_walk()
+    assert walk.masses_by_joints() == {"foot_mass"}  # toes move with the foot, the trunk at no joint
+    noisy = with_angle_noise(walk, 0.05, np.random.default_rng(3))
+    pulls = noisy.pulls.copy()
+    pulls[:, 1] += kg * walk.demanded_by_mass["foot_mass"]
+    found = make_discovery(*search_joints(replace(noisy, pulls=pulls), moments_of_angle_noise(walk, 0.05)))
+    (effect,) = found.effects
+    mass = effect.estimates["value"]
+    assert (effect.place, mass.unit, effect.kind) == ("foot_mass", "kg", "parameter") and effect.held_out > 0.9
+    assert mass.value == pytest.approx(1.2 + kg, abs=0.1) and mass.low < 1.2 + kg < mass.high
+    assert says(found.sentence, "foot_mass", "1.2 kg in the file")
+    assert all(after < 0.3 * before for before, after, _ in found.held_out.channels.values())
+
+
+def test_a_spring_at_one_joint_is_no_mass(leg_walk):
+    walk = leg_walk()
+    spring = -150 * np.maximum(0, walk.motion.q[:, 2] - 0.05)
+    pulls = walk.pulls.copy()
+    pulls[:, 1, 2] -= spring
+    pulls[:, 0, 1] += 3 * np.sin(40 * walk.motion.time)  # so that the knee is not at the noise
+    found = make_discovery(*search_joints(replace(walk, pulls=pulls), moments_of_angle_noise(walk, 0.05)))
+    assert [one.place for one in found.effects] == ["ankle_moment"]
+
+
 def test_where_nothing_is_left_nothing_is_named(leg_walk):
     found = answered(leg_walk(), 0.0)
     assert (found.verdict, found.effects) == ("no_gap", ())

@@ -196,6 +196,7 @@ def test_what_cannot_be_sent_is_no_kill():
         list(compute_in_processes(1, squared_or_killed, [Unreadable()]))
 
 
+@pytest.mark.slow
 def test_whoever_stops_listening_stops_the_processes(tmp_path):
     units = compute_in_processes(2, Squared(tmp_path, wait_s=1.0), list(range(10)))
     next(units)

@@ -151,6 +151,7 @@ def test_a_shift_in_the_last_fifth_is_found_in_four_minutes(made, dependence):
         assert found.shifts["hip_flexion_r"] == pytest.approx(1.75, abs=0.9)
 
 
+@pytest.mark.slow
 def test_stationary_strides_raise_an_alarm_in_at_most_1_in_20(made):
     cases = [(dependence, 5000 + seed) for seed, dependence in enumerate((0.0, 0.3, 0.6) * 33)]
     p = np.array([late_change(*made.wandering(100, dependence, seed), seed).p for dependence, seed in cases])

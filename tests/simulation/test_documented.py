@@ -3,6 +3,7 @@
 import re
 from pathlib import Path
 
+import pytest
 from hidden_in_a_function import write_record
 
 from gaitdisc.simulation.parts import Term
@@ -10,6 +11,7 @@ from gaitdisc.simulation.parts import Term
 PAGE = Path(__file__).parents[2] / "docs" / "simulation.md"
 
 
+@pytest.mark.slow
 def test_the_code_on_the_page_runs_from_top_to_bottom(tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     write_record(tmp_path / "tank.csv", lambda one: one.with_effect(Term("leak", "port", "hidden", "-0.4*level**2")), 1)

@@ -96,6 +96,7 @@ def test_moments_from_markers_are_those_of_plug_in_gait_within_the_goal(found):
         assert median(rows, "bones", channel) < 0.75 * goal
 
 
+@pytest.mark.slow
 def test_with_the_models_own_segments_opensim_is_met(gait_data):
     rows = gait10dof_segments.against_opensim(gait_data.parent / "opensim_gait10dof")
     own = {row[0]: [float(one) for one in row[2].split()] for row in rows if row[1] == "the model"}
