@@ -4,8 +4,7 @@
 
 `claims.toml` beside this file holds the rows of each subject. `at` names the pages and headings of a row. In its other
 columns `{ROW @ COLUMN}` stands for the cell of a table there (several cells name one row: `SINDy & estimated`), and
-`"words"` for words that stand there. A number without either is an error, as is one that the pages do not hold; an
-`item` is named by the dissertation's own.
+`"words"` for words that stand there; a number without either, or not on the pages, is an error. .5 is printed as 0.5.
 """
 
 from __future__ import annotations
@@ -23,6 +22,7 @@ from markdown_table import markdown_table
 CLAIMS, RESULTS = Path(__file__).with_name("claims.toml"), Path(__file__).with_name("results")
 TAKEN = re.compile(r"\{([^{}@]+) @ ([^{}]+)\}|\"([^\"]+)\"")
 NUMBER = re.compile(r"\d+(?:[.,]\d+)*|(?<!\w)\.\d+")
+BARE_POINT, RANGE = re.compile(r"(?<![\w.])\.(?=\d)"), re.compile(r"(?<=\d)-(?=[\d.])")
 
 
 def read_section(place: str) -> str:
@@ -59,7 +59,7 @@ def fill(words: str, text: str, free: bool) -> str:
     loose = set(NUMBER.findall(TAKEN.sub("", words))) - (set(NUMBER.findall(text)) if free else set())
     if loose:
         raise ValueError(f"{words!r}: numbers without a source: {sorted(loose)}")
-    return TAKEN.sub(take, words)
+    return RANGE.sub(" to ", BARE_POINT.sub("0.", TAKEN.sub(take, words))).replace(" +- ", " ± ")
 
 
 def write_table(subject: str) -> str:
