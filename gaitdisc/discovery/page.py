@@ -82,8 +82,8 @@ def models_table(discovery: Discovery) -> Table:
     rows = tuple((name, with_unit(amount(one, 0.1), unit)) for name, one in discovery.beside.items())
     caption = (
         f"Root mean square error of {channel} on the held-out strides. Nominal: calibrated on the Nominal walk. "
-        "Augmented: Nominal, plus a plain regression of its residual. Exo: calibrated on the device walk itself. The "
-        "latter two are trained on the device walk's other strides."
+        "Augmented: Nominal, plus a regression of its residual. Exo: calibrated on the device walk itself. Augmented "
+        "and Exo are trained on the other strides of the device walk."
     )
     return Table("models", caption, ("model", channel), rows, _frame(list(discovery.beside.items()), ("model", unit)))
 

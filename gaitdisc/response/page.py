@@ -154,6 +154,6 @@ def _filter_sentence(run: ResponseRun) -> str:
         )
     return (
         f"Angles were low-passed by a Butterworth filter of order {order} per pass, forwards and backwards and "
-        f"therefore without lag, {cutoff:g} Hz at −3 dB of one "
+        f"therefore without lag; cut-off {cutoff:g} Hz at −3 dB of one "
         f"pass{f' (both passes: {together})' if together else ''}{emg}."
     )
