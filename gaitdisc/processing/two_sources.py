@@ -187,7 +187,7 @@ def _moment_sizes(moments: Recording) -> Contradictions:
     usual, unit, why = peaks[most[0]], units[most[0]], "it has another unit, such as N mm instead of N m"
     if usual < LEAST_MOMENT[unit]:
         least = f"{LEAST_MOMENT[unit]:g} {unit}"
-        yield list(peaks), f"moments of the legs reach {usual:.2g} {unit}, but standing requires {least} or more: {why}"
+        yield list(peaks), f"moments of the legs reach {usual:.2g} {unit}, but standing takes at least {least}: {why}"
     walks = _range(moments[most[0]]) > usual / 2  # who stands may have next to none about an axis
     for name, peak in peaks.items() if walks and usual >= LEAST_MOMENT[unit] else ():
         share = LEAST_SHARE if _FLEXION.fullmatch(name) else LEAST_SHARE_OTHER
