@@ -22,7 +22,7 @@ def made_cycles(subject="P01", condition="walk", session="", *, each=4, out=1, *
     for side in "lr":
         for k in range(each + out):
             kept, start = k < each, 1.0 * k + (0.5 if side == "l" else 0.0)
-            reason = "" if kept else "no contact of the other foot within the cycle: one was missed or is false"
+            reason = "" if kept else "no contact of the other foot within the cycle: a contact was missed or is false"
             rows.append((
                 1 + k % 2, side, start, start + 0.6, start + 0.1, start + 0.5, start + 1.0, "events", "force",
                 "events", k == 0, kept, reason, 1.0, 0.5, 120.0, 60.0, 40.0, 40.0, 20.0, 1.2 + 0.1 * k, 0.6, 0.1, 1.2,

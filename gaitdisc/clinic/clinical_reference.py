@@ -21,7 +21,7 @@ from gaitdisc.whole_file import write_whole
 
 COLUMNS = ("group", "speed_low", "speed_high", "people", "variable", "percent", "mean", "sd")
 FEWEST_POINTS = 20  # a curve of fewer is none
-FORM = f"a published reference must be a CSV with a line '# source, who, licence', then columns {', '.join(COLUMNS)}"
+FORM = f"a published reference must be a CSV with a line '# source, people, licence', then columns {', '.join(COLUMNS)}"
 FILE, FORMAT = "reference.json", 1
 PUBLISHED = "published.csv"
 DIGITS = 4

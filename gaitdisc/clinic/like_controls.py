@@ -43,9 +43,7 @@ def like_controls(legs: Legs, own: Sequence[LegCurves], leg_m: float | None, age
     of_age = _nearest(legs, AGES, age_years, _age)
     of_both = _nearest(of_age, SPEEDS, speed, dimensionless_speed)
     by = [*(["age"] if of_age != legs else []), *(["speed"] if of_both != of_age else [])]
-    why = (
-        "age and speed are unknown" if list_groups(legs) else f"a group needs {FEWEST} controls of similar age or speed"
-    )
+    why = "age and speed are unknown" if list_groups(legs) else f"fewer than {FEWEST} controls of similar age or speed"
     which = f", the group nearest in {' and '.join(by)}" if by else f", the entire reference ({why})"
     said = [f"Compared with {described(of_both)}{which}."]
     if of_both != of_age:
@@ -56,7 +54,7 @@ def like_controls(legs: Legs, own: Sequence[LegCurves], leg_m: float | None, age
         said.append(f"These controls are {whose}; at {age_years} years, deviations may be due to age.")
     unknown = "the person" if leg_m is None else "some controls" if any(leg.leg_m is None for leg in legs) else ""
     if leg_m is None or unknown:
-        said.append(f"Nothing is scaled: the leg length of {unknown} is unknown. Speed and length depend on body size.")
+        said.append(f"No value is scaled to body size, because the leg length of {unknown} is unknown.")
         return LikeControls(of_both, of_age, tuple(said))
     said.append(
         "Times, distances, moments and powers of the controls are scaled to this person's leg length (Hof 1996)."

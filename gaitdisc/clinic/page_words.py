@@ -33,7 +33,7 @@ TABLES = (  # headings and cells of tables, and the words between numbers in a s
     "green", "amber", "red", "gait profile score", "Time and distance",
     "None of {} values lies outside 2 standard deviations of the reference.", "No comparison with controls: {}.",
     "A leg must have {} cycles to be reported; there are {}.",
-    "With {} controls the 95 % limits are wide: smaller differences may be missed.",
+    "With few controls ({}) the 95 % limits are wide: differences may be missed.",
     *TIERS.values(),
 )  # fmt: skip
 HEADER = ("English", "other")

@@ -127,7 +127,7 @@ def list_sheets(reading: ClinicalReading) -> list[Sheet]:
     bands = "No band: there is no reference for this condition."
     if people:
         count = str(people[0]) if people[0] == people[-1] else f"{people[0]} to {people[-1]}"
-        bands = f"Bands: mean ± 1 (dark) and ± 2 (light) standard deviations over the legs of {count} controls."
+        bands = f"Bands: mean ± 1 (dark) and ± 2 (light) standard deviations over the legs (controls: {count})."
     kinetics, muscles = sheet(reading, MOMENTS, POWERS, FORCES), emg_sheet(reading.pooled)
     return [
         Sheet("kinematics", "Kinematics", sheet(reading, KINEMATICS), f"{bands} {CYCLES}"),
@@ -263,7 +263,7 @@ def write_index(
         rows.append({**who, **own, **dict.fromkeys(("cycles", "score", "noted"), NONE)})
     rows = sorted(rows, key=lambda row: RANKS[row["light"]])
     cells = [tuple(row[key] for key in COLUMNS) for row in rows]
-    table = words_table("people", "People of the run.", HEADINGS, cells)
+    table = words_table("people", "Participants of the run.", HEADINGS, cells)
     save_tables([table], folder)
     lights = {light: sum(row["light"] == light for row in rows) for light in RANKS}
     shown = {

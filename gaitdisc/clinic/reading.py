@@ -67,7 +67,7 @@ def read_beside(pooled: PooledCycles, reference: ClinicalReference | None) -> Cl
     why = "" if controls else NO_REFERENCE
     if reference is not None and not controls:
         there = ", ".join(map(repr, reference.legs))
-        why = f"the reference has nobody in the condition {pooled.condition!r}; its conditions are {there}"
+        why = f"the reference has no controls in the condition {pooled.condition!r}; its conditions are {there}"
     why = why if legs else NO_CYCLE
     like = like_controls(controls, tuple(legs.values()), pooled.leg_m, pooled.age_years)
     profile, no_profile = (None, why) if why else find_profile(legs, like.curves)
@@ -176,11 +176,11 @@ def find_profile(
     known = published or bands(reference)
     lacking = [name for name in PROFILE if name not in known]
     if lacking:
-        return None, f"fewer than two people of the reference have {', '.join(lacking).replace('_', ' ')}"
+        return None, f"fewer than two people of the reference have curves of {', '.join(lacking).replace('_', ' ')}"
     absent = {side: [name for name in PROFILE if name not in leg.cycles] for side, leg in legs.items()}
     if all(absent.values()) or not legs:
         names = ", ".join(next(iter(absent.values()), PROFILE)).replace("_", " ")
-        return None, f"the recording has no {names}; the score needs all nine curves"
+        return None, f"the recording has no {names}; the score requires all nine curves"
     means = {name: known[name].mean for name in PROFILE}
     controls = _own_scores(reference)
     people = max(known[name].people for name in PROFILE)
@@ -263,7 +263,7 @@ def deviation_index(legs: Mapping[str, LegCurves], reference: Sequence[Reference
             vector = vector_of({name: leg.mean(name) for name in PROFILE})
             raw = np.log(np.linalg.norm(vector @ features.T - middle))
             found[side] = float(100 - 10 * (raw - own.mean()) / own.std(ddof=1))
-    return found, "" if found else "no leg has all nine curves that the index needs"
+    return found, "" if found else "no leg has all nine curves that the index requires"
 
 
 def contrast(first: ClinicalReading, second: ClinicalReading) -> Contrast:

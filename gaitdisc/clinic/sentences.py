@@ -83,7 +83,7 @@ def outstanding_sentences(reading: ClinicalReading, say: Callable[[str], str] = 
         rest.append(say("A leg must have {} cycles to be reported; there are {}.").format(FEW, ", ".join(few)))
     people = max((band.people for band in reading.bands.values()), default=0)
     if people < MANY:
-        rest.append(say("With {} controls the 95 % limits are wide: smaller differences may be missed.").format(people))
+        rest.append(say("With few controls ({}) the 95 % limits are wide: differences may be missed.").format(people))
     return {**found, **({"": rest} if rest else {})}
 
 
@@ -172,7 +172,7 @@ def contrast_sentences(contrast: Contrast) -> list[str]:
             f"{sides.capitalize()}: no part of the cycle differs by 5 deg or more between ‘{first}’ and ‘{second}’."
         )
     if small:
-        found.append(f"In {counted(small, 'part')} of the cycle the difference is less than 5 deg.")
+        found.append(f"In {counted(small, 'part')} of the cycle the walks differ by less than 5 deg.")
     return found
 
 

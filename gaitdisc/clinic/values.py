@@ -42,10 +42,10 @@ def values_table(reading: ClinicalReading) -> Table:
             record |= {"reference_mean": limits.mean, "reference_sd": limits.sd, "reference_people": limits.people}
         records.append(record)
     people = max((one.people for one in reading.spatiotemporal.values()), default=0)
-    known = f"reference mean ± standard deviation over legs, {people} people" if people else "no reference"
+    known = f"reference mean ± standard deviation over legs (people: {people})" if people else "no reference"
     caption = (
-        f"Mean ± standard deviation (number of cycles), if {FEW} cycles are kept; {known}; asymmetry: left minus "
-        "right, divided by the mean of both."
+        f"Mean ± standard deviation (number of cycles), if at least {FEW} cycles are kept; {known}; asymmetry: left "
+        "minus right, divided by the mean of both."
     )
     columns = ("value", "left", "right", "reference", "asymmetry")
     return Table("spatiotemporal", caption, columns, tuple(rows), pd.DataFrame(records))
@@ -80,7 +80,7 @@ def numbers_table(reading: ClinicalReading) -> Table:
     caption = (
         f"All values that the rules use, n = {len(rows)}; {len(reading.noted)} stand out: □ outside 2 standard "
         "deviations, ■ outside the prediction limits, which contain all values of a healthy person with probability "
-        "0.95. In brackets: numbers of cycles; controls. Reference: at this person's speed, if the value depends on it."
+        "0.95. In brackets: number of cycles or controls. Reference: at this speed, if the value depends on it."
     )
     columns = ("value of", "side", "value", "limits", "reference", "stands out")
     return Table("outstanding", caption, columns, tuple(rows), pd.DataFrame(records))
@@ -118,9 +118,7 @@ def change_table(contrast: Contrast) -> Table:
     scores = [one.profile.legs.get(side) if one.profile else None for side in FEET for one in pair]
     if any(scores):
         rows.append(("gait profile score [deg]", *(number(one.value, 1) if one else NONE for one in scores)))
-    caption = (
-        f"Mean ± standard deviation (cycles). A profile score that changes by {SCORE_LEAST:g} deg or more matters."
-    )
+    caption = f"Mean ± standard deviation (cycles). A change of a profile score by {SCORE_LEAST:g} deg or more matters."
     numbers = pd.DataFrame(rows, columns=pd.Index(columns))
     return Table("changes", caption, columns, tuple(rows), numbers)
 

@@ -137,7 +137,7 @@ class Mismatch(Saved, file="mismatch.json"):
             if found != wanted:
                 raise ShapeError(f"{name!r} of a mismatch must have shape {wanted}", f"found {found}", AGAIN)
         columns = {"regions": REGION_COLUMNS, "summary": CHANNEL_COLUMNS}
-        check_columns(self, columns, "a mismatch needs", AGAIN)
+        check_columns(self, columns, "a mismatch must have", AGAIN)
         curves = {name: np.asarray(self.curves[name], float) for name in CURVES}
         if np.nansum(curves["gap"] * (curves["second"] - curves["first"])) < 0:  # saved as first minus second
             curves |= {"gap": -curves["gap"], "t": -curves["t"], "low": -curves["high"], "high": -curves["low"]}

@@ -117,7 +117,7 @@ def mismatch_key(mismatch: Mismatch, kind: str) -> list[Artist]:
     from matplotlib.lines import Line2D
     from matplotlib.patches import Patch
 
-    shade = Patch(color=SHADE, alpha=0.55, label="more than chance")
+    shade = Patch(color=SHADE, alpha=0.55, label="significant gap")
     if kind == "gap":
         band = f"gap, {100 * (1 - mismatch.exchange.alpha):g} % band for all points and channels"
         return [Line2D([], [], color=SIDES[""].colour, label=band), shade]
@@ -140,8 +140,8 @@ def _caption(mismatch: Mismatch, kind: str, count: int) -> str:
         "for all points and channels, and the gap reaches the smallest difference that is named."
     )
     if mismatch.alignment.applied:
-        moved = f"{mismatch.alignment.percent:+.1f} % of the stride"
-        shaded += f" {mismatch.first} is drawn {moved} later, a shift that the channels share."
+        by = mismatch.alignment.percent
+        shaded += f" {mismatch.first} is drawn {abs(by):.1f} % of the stride {'later' if by > 0 else 'earlier'}."
     if kind == "gap":
         return (
             f"Gap, {mismatch.second} minus {mismatch.first}, {counted(count, 'channel')}, {n}. Band: "

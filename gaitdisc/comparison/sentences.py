@@ -41,8 +41,8 @@ def mismatch_sentences(mismatch: Mismatch) -> list[str]:
         ]
     if not ordered:
         return [
-            f"No difference exceeds the smallest one that is named: {walks} differ significantly in "
-            f"{_shorten(small)}, but by less than {_by_unit(mismatch, small, 'limit')} at every significant point.",
+            f"No difference is large enough to be named: {walks} differ significantly in {_shorten(small)}, but by "
+            f"less than {_by_unit(mismatch, small, 'limit')} at every significant point.",
             *moved,
             *agreeing,
         ]
@@ -68,7 +68,7 @@ def alignment_sentences(mismatch: Mismatch) -> list[str]:
         return []
     size = f"{number(abs(found.percent), 1)} % of the stride {'later' if found.percent > 0 else 'earlier'}"
     narrower = f"the gap of {found.agreeing} of {counted(found.channels, 'channel')} narrows"
-    said = f"{mismatch.first} was not shifted: with a shift of {size}, {narrower}, but only slightly."
+    said = f"{mismatch.first} was not shifted: if it is shifted {size}, {narrower} only slightly."
     if found.applied:
         said = (
             f"All curves of {mismatch.first} were shifted {size} before the test; with this shift {narrower}. Either "
@@ -183,8 +183,8 @@ def _timing(mismatch: Mismatch, name: str) -> str:
         return ""
     way = f"{abs(shift):.0f} % of the stride {'later' if shift > 0 else 'earlier'}"
     return (
-        f"Much of the largest gap is a difference in timing: after a shift {way}, the curve of {mismatch.first} "
-        f"differs by {number(after, 1)} instead of {with_unit(number(before, 1), str(row['unit']))} (rms)."
+        f"Much of the largest gap is a difference in timing: shifted {way}, the curve of {mismatch.first} differs by "
+        f"{number(after, 1)} instead of {with_unit(number(before, 1), str(row['unit']))} (rms)."
     )
 
 

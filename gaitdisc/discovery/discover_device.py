@@ -101,7 +101,7 @@ def _discover_condition(
     found, augmented = with_model_error(found, both), model if both.agrees else augmented
     errors = beside(both, found)
     if joint == "ankle_angle" and not found.effects:
-        progress("estimating an added mass of the foot at the knee and hip")
+        progress("estimating a mass added to the foot from the moments of the knee and hip")
         found = with_foot_mass(found, walks, condition)
     if found.provenance is not None:
         found = replace(found, provenance=replace(found.provenance, section=DEVICE))
@@ -136,7 +136,7 @@ def _with_number(found: Discovery, changed: Changed) -> Discovery:
     sentence = found.sentence.replace(estimate_text(old), estimate_text(new))
     if abs(old.value - new.value) > APART * abs(new.value):
         number = f"{old.value:.3g} {old.unit}".removesuffix(" 1")
-        sentence += f" In the written model the value is {number}, fitted together with the other parameters."
+        sentence += f" In augmented.toml the value is {number}, fitted together with the other parameters."
     return replace(found, effects=tuple(mended if one is effect else one for one in found.effects), sentence=sentence)
 
 
@@ -149,8 +149,8 @@ def with_foot_mass(found: Discovery, walks: PersonWalks, condition: str) -> Disc
     if mass is None:
         return found
     sentence = (
-        f"added_foot_mass is {estimate_text(mass)}, estimated at the knee and supported by the hip; the ankle moment "
-        "is insensitive to this mass."
+        f"The mass added to the foot is {estimate_text(mass)}, estimated from the knee moment and supported by the hip "
+        "moment; the ankle moment is insensitive to it."
     )
     effect = FoundEffect("parameter", "added_foot_mass", "wrong_parameter", "", {"value": mass})
     return replace(found, verdict="wrong_parameter", effects=(effect,), sentence=sentence)
@@ -163,10 +163,10 @@ def device_findings(walks: DeviceWalks) -> tuple[Finding, ...]:
     unseen = np.nanstd(model.others(drives(nominal))[np.isfinite(nominal.moment)])
     calibration = (
         f"the {joint} moment model leaves a residual of {model.left_nm:.1f} of {model.before_nm:.1f} N m (rms) on "
-        f"held-out Nominal strides (R2 {model.r2:.2f}); EMG acts {late_ms:.0f} ms "
-        f"later; {unseen:.1f} N m come from muscles without an electrode"
+        f"held-out Nominal strides (R² {model.r2:.2f}); the EMG acts {late_ms:.0f} ms later than recorded; "
+        f"{unseen:.1f} N m come from muscles without an electrode"
     )
-    mass = "the added mass is not estimated: no marker shows the foot"
+    mass = "the mass added to the foot is not estimated, because no marker shows the foot"
     if device.per_kg.size:  # which mass at the foot would be as large as what the moment model leaves
         least = model.left_nm / float(np.nanstd(device.per_kg))
         mass = f"an added mass of {least:.1f} kg at the foot would change the {joint} moment by as much as the residual"
@@ -178,7 +178,7 @@ def device_findings(walks: DeviceWalks) -> tuple[Finding, ...]:
     ]
     if changed := walks.changed:
         both = (
-            f"the gains are fitted to both walks together with {spoken(changed.change.name)} at "
+            f"the muscle gains are fitted to both walks together with {spoken(changed.change.name)} at "
             f"{changed.change.place}, which removes {100 * changed.closed:.0f} % of the squared error on held-out "
             "device strides"
         )

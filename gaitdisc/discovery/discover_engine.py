@@ -111,7 +111,7 @@ def search(fit: EngineFit, base: EngineAnswer, request: Request, read: dict[Path
     pushed = [f"{effect.name} at {effect.place}" for effect in found.effects if effect.name == "process_noise"]
     unchecked = " and ".join((*written.absent, *pushed))
     if unchecked and not runs.before_at_noise:
-        why = f"{engine.called} itself has not run {unchecked}: this result is based on the expansion alone."
+        why = f"{engine.called} has not run {unchecked}: this result is based on the expansion of the model alone."
         return EngineAnswer(replace(found, sentence=f"{found.sentence} {why}"), augmented, written, runs, engine)
     if unchecked:  # what the engine cannot run is not said where its own runs leave mere noise
         found, augmented, written = replace(found, effects=(), corrections=()), mapping, base.written
@@ -286,7 +286,7 @@ def _report_limits(engine: Engine, states: Values, data: Measured) -> Iterator[F
             what = f"{coordinate.called} is at its limit ({limits}) in {share:.2g} % of the samples"
             yield Finding("note", "limit", "model", f"{what}: the model's own limit acts there", "")
     if touched := getattr(engine, "contacts", 0):
-        what = f"bodies are in contact (at most {touched} contacts); their stiff forces are expanded unchanged"
+        what = f"bodies are in contact (at most {touched} contacts), where the expansion of the model is not valid"
         yield Finding("warning", "contact", "model", what, "results that depend on runs through a contact")
 
 

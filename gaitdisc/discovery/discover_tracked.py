@@ -94,11 +94,9 @@ def discover_tracked(tracked: Tracked, kinematics: Path, request: Request = ALL)
     written = write_model(engine, augmented)
     notes = [note.replace("augmented.toml", "discovery.json") for note in written.notes]
     for one in found.effects:
-        if (
-            one.kind == "parameter" and one.place not in masses
-        ):  # what muscles do otherwise is no part of the model's file
+        if one.kind == "parameter" and one.place not in masses:  # what muscles do otherwise is not in the model's file
             number = f"{one.place} = {one.estimates['value'].value:.4g}"
-            notes.append(f"{number} belongs to the forces file: only discovery.json contains it")
+            notes.append(f"{number} changes the forces, not the model: only discovery.json contains it")
     said = (stretch_used(walk, kinematics.name), *_gaps(walk, written))
     shown = [summarise_joint(walk, number, joint) for number, joint in zip(walk.joints, joints, strict=True)]
     findings += [*shown, *doubts(shown)]
@@ -161,7 +159,7 @@ def make_discovery(base: Simulation, joints: list[JointFinding]) -> Discovery:
         sentence = (
             f"Not proven: {named_at(rivals[0])} reduces the residual of {size} to {fitted} where it is fitted, and to "
             f"{held} on held-out time. Its evidence is {best.gained:.0f}; a name requires {CRITERIA.margin:.0f}, and "
-            f"{100 * CLOSED:.0f} % of the squared residual on held-out time. A longer walk or a second one can decide."
+            f"{100 * CLOSED:.0f} % less squared residual on held-out time. A longer or a second walk can decide."
         )
     return replace(found, verdict="unexplained", sentence=sentence)
 
@@ -191,7 +189,7 @@ def stretch_used(walk: Pass, file: str) -> str:
         one, q = walk.engine.coordinates[k], walk.motion.q[:, k]
         unit, factor = display_unit(one.unit)
         ranges.append(f"{one.called} {factor * q.min():.3g} to {factor * q.max():.3g} {unit}")
-    used = f"{file} has {begin:.2f} to {end:.2f} s, of which {time[0]:.2f} to {time[-1]:.2f} s were searched"
+    used = f"{file} covers {begin:.2f} to {end:.2f} s; the search used {time[0]:.2f} to {time[-1]:.2f} s"
     return "; ".join([used, *ranges])
 
 
@@ -214,7 +212,7 @@ def _gaps(walk: Pass, written: WrittenModel) -> tuple[str, ...]:
             continue
         one = walk.engine.coordinates[k]
         before, now = (f"{amount(walk.size(each[:, k]))} {one.force_unit}" for each in (walk.left, after))
-        said.append(f"{one.called}, computed with the written model: residual {before} without, {now} with the effects")
+        said.append(f"{one.called}, with the written model: residual {before} without the effects, {now} with them")
     return tuple(said)
 
 
@@ -245,7 +243,7 @@ def _simulation(walk: Pass) -> Simulation:
     """The walk as a simulation: what its muscles' groups may do otherwise, and a port at each joint."""
     plain, numbers = draft(walk.engine), []
     for name in walk.groups:
-        numbers.append(Parameter(f"{name}_strength", 1.0, "1", 1 - STRENGTH, 1 + STRENGTH, "compared with the file"))
+        numbers.append(Parameter(f"{name}_strength", 1.0, "1", 1 - STRENGTH, 1 + STRENGTH, "share of the file's force"))
         numbers.append(Parameter(f"{name}_delay", 0.0, "s", meaning="delay of these muscles compared with the file"))
     seen, sensors = [], []
     for k in walk.joints:
@@ -257,7 +255,7 @@ def _simulation(walk: Pass) -> Simulation:
         plain,
         title=f"tracked walk of {walk.engine.path.name}",
         model="",
-        inputs=tuple(Input(name, "N m", "from the forces file") for name in walk.groups),
+        inputs=tuple(Input(name, "N m", "moment from the forces file") for name in walk.groups),
         parameters=(*numbers, *walk.engine.parameters),
         observations=tuple(seen) or plain.observations,
         sensors=tuple(sensors),
@@ -335,7 +333,7 @@ def doubts(shown: list[Finding]) -> list[Finding]:
     if not unnamed:
         return []
     what = (
-        f"{len(unnamed)} of {len(shown)} joints have an unnamed residual of {BEYOND:g} times their noise or more: "
-        "the forces may have been computed for another motion, or for angles of another low-pass (lowpass_hz)"
+        f"{len(unnamed)} of {len(shown)} joints have an unnamed residual of {BEYOND:g} times their noise or more: the "
+        "forces may have been computed for another motion, or for angles with another low-pass cut-off (lowpass_hz)"
     )
     return [Finding("warning", "forces in doubt", "model", what, "effects named at the other joints")]

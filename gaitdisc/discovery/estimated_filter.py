@@ -60,8 +60,8 @@ def find_record_filter(
     passed = RecordFilter(tuple(cutoffs.get(number, cutoff) for number, cutoff in enumerate(stated)), measured.rate)
     findings = []
     for number, hz in cutoffs.items():
-        what = f"assumed to be low-passed at {hz:.3g} Hz without lag (order 2, both ways), because of its spectrum"
-        spoils = "everything that depends on this filter; state lowpass in the simulation file if you know it"
+        what = f"assumed to be low-passed at {hz:.3g} Hz without lag (order 2, run twice), because of its spectrum"
+        spoils = "results that depend on this filter; state lowpass in the simulation file if you know the cut-off"
         findings.append(Finding("note", "low-pass", measured.source, what, spoils, measured.channels[number]))
     return passed, tuple(findings)
 

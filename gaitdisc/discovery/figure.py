@@ -232,7 +232,7 @@ def _against_state(discovery: Discovery, table: pd.DataFrame) -> Figure:
     legend(drawn, discovery_key(measured=False))
     caption = (
         f"Residual (measured minus simulated) against the measured channel, all {len(table)} held-out samples: mean "
-        "and standard deviation in each bin. The residual of a complete model has no shape."
+        "and standard deviation in each bin. The residual of a complete model does not depend on the channel."
     )
     return Figure("against_state", caption, _alt(discovery), pd.concat(kept, ignore_index=True), drawn)
 

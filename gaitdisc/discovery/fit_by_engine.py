@@ -87,7 +87,7 @@ class EngineFit:
                 column = called.index(part.candidate.place)
                 lags[column] = seconds = max(part.values["seconds"], 0.1 / data.rate)
                 controls[:, :, column] = lag_signal(controls[:, :, column], seconds * data.rate)
-                lag = f"{part.candidate.place} with a first-order lag of {seconds:.4g} s has no form in a mapping: "
+                lag = f"{part.candidate.place} with a first-order lag of {seconds:.4g} s cannot stand in a mapping: "
                 written = replace(written, notes=(*written.notes, f"{lag}only discovery.json contains it"))
         recorded = self.low_pass.filtered
         return augmented, written, Driven(written.engine, augmented, controls, lags, recorded, self.progress)

@@ -33,7 +33,7 @@ class Idle:
     def findings(self, source: str, kind: str) -> tuple[Finding, ...]:
         """One for each kind."""
         idle = (
-            ("warning", kind, self.places, "a search there: an effect without influence cannot be identified"),
+            ("warning", kind, self.places, "the search: an effect without influence cannot be identified"),
             ("note", "parameter", self.parameters, "nothing; these data do not determine the value"),
             ("note", "state", self.states, "nothing; these data do not determine the initial value"),
         )
@@ -103,6 +103,6 @@ def nearly_off(effects: tuple[FoundEffect, ...], source: str) -> tuple[Finding, 
     }
     if len(gains) < 2:
         return ()
-    what = " and ".join(f"{name!r} ({gain:.2g} times)" for name, gain in gains.items()) + " are nearly switched off"
+    what = " and ".join(f"{name!r} (gain {gain:.2g})" for name, gain in gains.items()) + " are nearly switched off"
     spoils = "the answer, if the simulation follows a recorded motion; combine signals of one recording into one input"
     return (Finding("warning", "inputs switched off", source, what, spoils),)

@@ -8,7 +8,7 @@ from gaitdisc.discovery.result import DEVICE, ENGINE, TRACKED, Discovery
 
 BOUNDS = (
     "Parameters with two bounds in the file were fitted within these bounds, in the initial model and in every "
-    "explanation (half the width is two standard deviations). A wrong parameter is one that must leave its bounds."
+    "explanation; half their distance is two standard deviations. A wrong parameter must leave its bounds."
 )
 WEIGHED = (
     "Every explanation was tested at every place where it can act: the effects of the catalogue, wrong parameters, "
@@ -16,8 +16,8 @@ WEIGHED = (
     "(a threshold, a delay, a frequency)."
 )
 EVIDENCE = (
-    "Evidence is twice the log likelihood under autocorrelated noise, estimated from the residuals, minus the "
-    "logarithm of the number of samples for each fitted parameter."
+    "Evidence is twice the log likelihood under autocorrelated noise, estimated from the residuals. For each fitted "
+    "parameter, the logarithm of the number of samples is subtracted."
 )
 UNNAMED = "An effect that only a fitted shape explains remains unnamed."
 SHORT_RUNS = (
@@ -28,27 +28,27 @@ SHORT_RUNS = (
     WEIGHED,
     EVIDENCE,
     "The identified effect had to reduce the squared error on the held-out data, also in combination with another "
-    "effect. Only the initial state of each run was fitted to these data. The change must correlate with the "
-    "residual (one-sided test, each sample weighted by its size, with the autocorrelation of the residual: Newey and "
-    "West 1987). The intervals follow from the curvature of the likelihood under that noise.",
-    "The noise floor is the sensor noise, estimated from the data without a model: the residual of a cubic over "
-    "seven samples. Up to four explanations are the answer if their residual does not exceed this floor. Otherwise "
-    "sets of explanations were compared by the share of the gap that they close on held-out runs, minus a complexity "
-    "penalty per term: 3 % of the gap for a plain term, up to 10 % for a term that can imitate many others (a delay, a "
-    "product, a periodic force). Terms that close less than 5 % are listed as small.",
+    "effect. Only the initial states were fitted to these data. The change had to correlate with the residual "
+    "(one-sided test, each sample weighted by its size, with the autocorrelation of the residual: Newey and West "
+    "1987). The intervals follow from the curvature of the likelihood under that noise.",
+    "The noise floor is the sensor noise, estimated from the data without a model: the residual of a cubic fitted "
+    "to seven samples. Up to four explanations are the answer if their residual does not exceed this floor. "
+    "Otherwise, sets of explanations were compared by the share of the gap that they close on held-out runs, minus "
+    "a complexity penalty per term: 3 % of the gap for a simple term, up to 10 % for a term that can imitate many "
+    "others (a delay, a product, a periodic force). Terms that close less than 5 % are listed as small.",
     UNNAMED,
 )
 BY_ENGINE = (
-    "The engine ran the initial model along every trial, two periods at a time, each run from its best initial state. "
-    "If the residual of these runs is white noise of the sensors' size, no effect is missing and nothing was searched.",
+    "The engine ran the initial model along every trial, in runs of two periods, each from its best-fitting initial "
+    "state. If their residual is white noise of the sensors' size, no effect is missing and nothing was searched.",
     "The engine then computed the accelerations along the smoothed recording, and their derivatives with respect to "
     "each coordinate, speed, control and parameter; a force on a coordinate enters exactly. The short runs below use "
-    "that expansion. Along muscles with fibres its error is treated as noise, 2 % of a channel's spread.",
+    "that expansion. With muscle fibres, its error counts as noise of 2 % of a channel's standard deviation.",
     *SHORT_RUNS,
     "If no muscle has fibres, the parameters and their intervals were fitted again with the engine's own runs.",
-    "Effects with a form in the model's own file were inserted there and compared with the expression; others acted "
-    "as a force at each step. The same runs with all effects, and without each one if there are several, decide: an "
-    "effect that they do not support is withdrawn. All errors and shares here are those of the engine's runs.",
+    "Effects that the model's own file can express were inserted there and compared with the expression; others "
+    "acted as a force at each step. Runs with all effects, and without each of them, decide: an effect that they do "
+    "not support is withdrawn. All errors and shares here are those of the engine's runs.",
 )
 ALONG_A_WALK = (
     "The measured motion was prescribed. Inverse dynamics gave the moments that this motion requires in addition to "
@@ -58,14 +58,14 @@ ALONG_A_WALK = (
     "is larger, smaller or later than in the file. Noise of the angles was simulated, low-passed like the recording "
     "and processed by the same inverse dynamics. The noise of a joint is this noise, or the residual of the best "
     "explanation.",
-    "Evidence is the reduction of twice the log likelihood under that noise, minus the logarithm of the number of "
-    "samples for each fitted parameter, and minus a penalty for the choice among all explanations at all joints.",
-    "Each block of time was predicted with parameters fitted to the other blocks, without samples closer to the block "
-    "than half a period of the low-pass. “After” is the residual of this prediction. An effect is named if its "
-    "evidence is at least 10 and it removes 30 % of the squared residual. Of equal predictions, the simpler is named. "
-    "This is evidence from one walk, often from one stride; a second walk may differ.",
+    "Evidence is twice the gain in log likelihood under that noise. The logarithm of the number of samples is "
+    "subtracted for each fitted parameter, and a penalty for the choice among all explanations at all joints.",
+    "Each block of time was predicted with parameters fitted to the other blocks, without samples closer to it than "
+    "half a period of the low-pass cut-off. “After” is the residual of this prediction. An effect is named if its "
+    "evidence is at least 10 and it removes at least 30 % of the squared residual. Of two effects with equal "
+    "predictions, the simpler one is named. This is evidence from one walk, often one stride; a second may differ.",
     "The noise floor of a moment is the noise of the angles, propagated by inverse dynamics, and 1 % of the moment's "
-    "spread.",
+    "standard deviation.",
     "The effect was inserted into the model's file, and OpenSim computed the moments again (see the findings above).",
 )
 OF_A_DEVICE = (
@@ -79,12 +79,12 @@ OF_A_DEVICE = (
     "With these gains the device walk was searched in trials of three strides; the measured motion was prescribed.",
     WEIGHED,
     EVIDENCE,
-    "The identified effect had to reduce the squared error of the moment on the last quarter of the walk: p < .05 in "
-    "a one-sided test, each sample weighted by its size. The interval combines the noise, resampled strides of both "
-    "walks, and the effects of another speed at which muscles lose their force, another lag, less similar gains and "
-    "a shift of the mean stride by one degree.",
-    "If the ankle shows no effect, an added mass at the foot is estimated at the knee, and named if the hip supports "
-    "it.",
+    "The identified effect had to reduce the squared error of the moment on the last quarter of the walk: p < 0.05 "
+    "in a one-sided test, each sample weighted by its size. The interval combines the noise, resampled strides of "
+    "both walks, and the effects of another speed at which muscles lose their force, another lag, less similar "
+    "gains and a shift of the mean stride by one degree.",
+    "If the ankle shows no effect, a mass added to the foot is estimated from the moment of the knee, and named if "
+    "that of the hip supports it.",
     UNNAMED,
 )
 
@@ -100,11 +100,11 @@ class Method:
 
 RUNS_HELD_OUT = "held out: neither searched nor fitted, except the initial state of each run"
 METHODS = {
-    ENGINE: Method(BY_ENGINE, RUNS_HELD_OUT, "As in augmented.toml, and in the model's own file if it has a form:"),
+    ENGINE: Method(BY_ENGINE, RUNS_HELD_OUT, "As in augmented.toml and, if possible, in the model's own file:"),
     TRACKED: Method(
         ALONG_A_WALK,
         "each block of time predicted from the other blocks",
-        "As in the model's own file, if it has a form there, and in the mapping next to that file:",
+        "As in the model's own file, if possible, and in the mapping next to that file:",
     ),
     DEVICE: Method(
         OF_A_DEVICE, "held out: neither searched nor fitted", "As in augmented.toml, the moment model of this person:"

@@ -82,8 +82,8 @@ def models_table(discovery: Discovery) -> Table:
     rows = tuple((name, with_unit(amount(one, 0.1), unit)) for name, one in discovery.beside.items())
     caption = (
         f"Root mean square error of {channel} on the held-out strides. Nominal: calibrated on the Nominal walk. "
-        "Augmented: Nominal, plus a plain regression of its residual. Exo: calibrated on the device walk itself. The "
-        "latter two are trained on the device walk's other strides."
+        "Augmented: Nominal, plus a regression of its residual. Exo: calibrated on the device walk itself. Augmented "
+        "and Exo are trained on the other strides of the device walk."
     )
     return Table("models", caption, ("model", channel), rows, _frame(list(discovery.beside.items()), ("model", unit)))
 
@@ -183,10 +183,9 @@ def explanations_table(discovery: Discovery) -> Table:
         rows.append((str(number), one.as_given, numbers, _percent(closed), bic, tied, apart))
         records.append((number, one.as_given, closed, size.p if size else math.nan, first.bic, tied, apart))
     caption = (
-        f"Explanations of the gap, {counted(len(rows), 'explanation')}. Closed: share of the squared gap above the "
-        "noise, on held-out data. Evidence: reduction of the Bayesian criterion compared with the initial model; "
-        "larger is better. Tied: these data cannot distinguish it from the named effect; small: it closes too little "
-        "to be named."
+        f"Explanations of the gap, n = {len(rows)}. Closed: share of the squared gap above the noise, on held-out "
+        "data. Evidence: reduction of the Bayesian criterion compared with the initial model; larger is better. Tied: "
+        "these data cannot distinguish it from the named effect; small: it closes too little to be named."
     )
     if not (discovery.provenance and discovery.provenance.section == TRACKED):  # a walk is searched whole
         given = '--effects "effect@place, effect@place".'

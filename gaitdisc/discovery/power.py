@@ -79,7 +79,7 @@ class Power:
             instead = f"; in most records with {most} the answer is {self.instead}" if self.instead else ""
             return f"{what} is not found in 19 of 20 records like these with a {number} of up to {most}{instead}."
         said = with_unit(amount(size, size / 10), self.unit)
-        return f"{what} is found in 19 of 20 records like these from a {number} of {said} on."
+        return f"{what} is found in 19 of 20 records like these if the {number} is at least {said}."
 
 
 def find_power(model: Simulation, data: Measured, request: Request) -> list[Power]:

@@ -93,7 +93,7 @@ class Search:
             now = time.perf_counter()
             if done and now - last >= EVERY:
                 left = (now - began) / done * (len(worth) - done)
-                self.progress(f"{done} of {len(worth)} explanations are fitted; {left:.0f} s remain in this round")
+                self.progress(f"{done} of {len(worth)} explanations fitted; about {left:.0f} s remain in this round")
                 last = now
             yield score
 

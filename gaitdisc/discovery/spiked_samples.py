@@ -118,10 +118,10 @@ def _finding(measured: Measured, marks: NDArray[np.bool_], channel: int) -> Find
         beside = " and ".join(f"{record[one[0]]:.4g}" for one in nearest if one.size)
         said.append(
             f"trial {measured.trials[trial]!r}: {count} of {len(time)} samples, the first at {time[first]:.4g} s "
-            f"({value:.4g} between {beside})"
+            f"({value:.4g}; its neighbours: {beside})"
         )
         spans += [(float(time[begin]), float(time[end - 1])) for begin, end in runs(mine)]
-    more = f"; spikes also in {len(said) - LISTED} more trials" if len(said) > LISTED else ""
+    more = f"; further trials with spikes: {len(said) - LISTED}" if len(said) > LISTED else ""
     what = "spikes of one to three samples: " + "; ".join(said[:LISTED]) + more
     spoils = "these samples only, which are excluded like empty cells"
     name = measured.channels[channel]

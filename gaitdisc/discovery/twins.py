@@ -138,7 +138,7 @@ def search_twins(
     models = [verdict.found, as_read] if acts else [as_read]
     sources = [TwinSource(case, now, verdict.found.noise) for now in models]
     if any(source.draw(0) is None for source in sources):
-        what = "a free run of the simulation departs from the record, so that records like these cannot be simulated"
+        what = "a free run of the simulation departs from the record, so records like these cannot be simulated"
         finding = Finding("note", "twins", case.measured.source, what, "how often this answer is right")
         return replace(found, findings=(*found.findings, finding))
     note_found("")

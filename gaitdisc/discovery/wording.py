@@ -91,7 +91,7 @@ def _say_given(discovery: Discovery) -> str:
     if not discovery.given:
         return ""
     bear = "support it" if discovery.given == "proven" else "do not support it"
-    said = f"The effect was given, not searched: the held-out data {bear} ({_chance(discovery.held_out)})."
+    said = f"The effect was given, not searched for: the held-out data {bear} ({_chance(discovery.held_out)})."
     idle = [named_at(effect) for effect in discovery.effects if effect.small]
     return f"{said} The other effects suffice without {' or '.join(idle)}." if idle else said
 
@@ -227,7 +227,7 @@ def _say_unnamed(effect: FoundEffect, base: Simulation, where: tuple[Whereabouts
     acts = f" ({stride})" if stride else ""
     missing = f"An effect is missing {at_place(effect.kind, effect.place)}"
     if effect.reads_as_effect:
-        shape = f"{effect.reads_as}, {spoken(effect.reads_as_effect)} of the catalogue"
+        shape = f"{effect.reads_as} ({spoken(effect.reads_as_effect)} in the catalogue)"
         return f"{missing}{acts}; the fitted shape is {shape}"
     shape = f"is approximately {effect.reads_as}" if effect.reads_as else "replaces it"
     return f"{missing}{acts}. The effect is not in the catalogue; a fitted shape{over} {shape}"

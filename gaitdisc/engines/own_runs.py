@@ -102,8 +102,8 @@ class OwnRuns:
     def said(self) -> str:
         """One sentence."""
         sizes = zip(self.units.items(), *map(root_mean_square, (self.before, self.after)), strict=True)
-        found = "; ".join(f"{name} {old:.3g} {unit} before, {new:.3g} {unit} after" for (name, unit), old, new in sizes)
-        return f"in {len(self.before)} runs of all trials by {self.engine} itself, the errors are: {found}"
+        found = "; ".join(f"{name} {old:.3g} and {new:.3g} {unit}" for (name, unit), old, new in sizes)
+        return f"in {len(self.before)} runs by {self.engine}, the errors without and with the effects are {found}"
 
 
 def root_mean_square(left: Values) -> Values:

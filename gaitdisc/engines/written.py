@@ -65,7 +65,7 @@ def write_model(engine: Engine, augmented: Simulation, native: bool = True) -> W
         wanted = (replace(augmented, definitions=()), (*forces, *more_forces), values | more_values)
         deviation, read = _deviation(engine, tried, *wanted)
         if tried is None or read is None or deviation > SAME:
-            said = "has no form in the model's own file"
+            said = "cannot be expressed in the model's own file"
             if tried is not None:
                 said = "is refused by the engine in the model's own form"
             if read is not None:
@@ -85,7 +85,7 @@ def write_model(engine: Engine, augmented: Simulation, native: bool = True) -> W
         notes.append(f"{what} {said} {deviation:.1g}")
     definitions = augmented.definitions
     for name, expression in definitions:
-        said = "has no form in the model's file: only augmented.toml contains it"
+        said = "cannot be expressed in the model's file: only augmented.toml contains it"
         read = _ranged(current, augmented, text, name) if native and isinstance(current, MujocoModel) else None
         if read is not None:
             definitions = tuple(one for one in definitions if one[0] != name)

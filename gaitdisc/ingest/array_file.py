@@ -38,7 +38,7 @@ _STEP = re.compile(r"\.([^.(){}]+)|\{(\d{1,9})\}|\((\d{1,9})\)")
 _COLUMN = re.compile(r"\(\s*((?::|\d{1,9})(?:\s*,\s*(?::|\d{1,9}))+)\s*\)$")
 _SHOWN = 12  # variables that a message names
 _UNPACKED = (64 * MEBIBYTE, 100)  # bytes, and times the file: values deflate up to 12 times, a bomb 1,000 times
-_REMEDY = "The form of a path is in docs/sessions.md, section on recordings in .mat and .npz."
+_REMEDY = "See docs/sessions.md, section on recordings in .mat and .npz, for the form of a path."
 _COMPLEX = "an array of complex numbers, which a recording cannot contain"
 
 

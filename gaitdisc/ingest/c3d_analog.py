@@ -159,7 +159,7 @@ def _doubts(emg: list[AnalogLabel], others: list[AnalogLabel], file: str) -> lis
     muscles = [signal.muscle.name for signal in emg if signal.muscle is not None]
     doubled = sorted({name for name in muscles if muscles.count(name) > 1})
     if doubled:
-        what = f"several channels are called {', '.join(doubled)}; they are numbered"
+        what = f"several EMG channels have the same name ({', '.join(doubled)}); they are numbered"
         findings.append(Finding("warning", "equal muscles", file, what, "these muscles; name them in [channels]"))
     nameless = [signal for signal in emg if signal.muscle is None]
     if nameless:

@@ -129,7 +129,7 @@ def _internal(kinetics: Kinetics, file: str) -> tuple[Kinetics, list[Finding]]:
         return kinetics, []
     ankles = [i for i in joints if _ANKLE.fullmatch(channels[i].name) and channels[i].unit in PUSH_OFF]
     moments = finite_values(values[:, ankles])
-    how = "joint moments are internal (of the muscles), positive towards the positive angle"
+    how = "joint moments are internal (of the muscles), positive in the angle's positive direction"
     words, why = "no ankle moment shows the sign", "; the sign is assumed to be that of Plug-in Gait"
     spoils = "the sign of joint moments if the file comes from another model"
     if moments.size:

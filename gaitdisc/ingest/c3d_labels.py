@@ -102,7 +102,7 @@ class LabelMap:
             if not self._used[key]:
                 hint = hint_nearest(key, labels)
                 what = f"the study maps {key!r} to {self._names[key]!r}, but the file does not have this label{hint}"
-                spoils = "everything that needs this channel"
+                spoils = "results that need this channel"
                 findings.append(Finding("warning", "label not found", file, what, spoils))
         return findings
 

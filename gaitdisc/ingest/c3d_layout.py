@@ -15,8 +15,7 @@ from gaitdisc.recording.arrays import Values
 
 _SATURATED = 65535  # a 16-bit frame number that stands for "more than that"
 _REMEDY = (
-    "Export the trial again, or set the value in the software that wrote it. Without their scale the numbers have no "
-    "unit."
+    "Export the trial again, or set the value in the software that wrote it. Numbers without a scale have no unit."
 )
 
 

@@ -241,13 +241,13 @@ def _entries(section: bytes, header: C3DHeader) -> Iterator[tuple[str, int, byte
             return
         offset_at = at + 2 + length
         if offset_at + 2 > len(section):
-            raise _broken(header, f"the name of an entry at byte {at} has {length} letters and extends beyond the end")
+            raise _broken(header, f"the name of an entry at byte {at} has {length} letters, too many for the section")
         name = section[at + 2 : offset_at].decode("latin-1").strip().upper()
         order = "big" if header.processor == "MIPS" else "little"
         offset = int.from_bytes(section[offset_at : offset_at + 2], order)
         end = offset_at + offset if offset else len(section)
         if offset == 1 or end > len(section):
-            raise _broken(header, f"the entry {name[:24]!r} at byte {at} points {offset} bytes ahead, beyond the end")
+            raise _broken(header, f"the entry {name[:24]!r} at byte {at} points {offset} bytes ahead, past the section")
         yield name, group, section[offset_at + 2 : end]
         if not offset:
             return
@@ -263,7 +263,7 @@ def _value(name: str, body: bytes, header: C3DHeader) -> Value:
     count = math.prod(dimensions)
     raw = body[2 + len(dimensions) :][: count * width]
     if len(raw) < count * width:
-        raise _broken(header, f"{name[:24]!r} has {len(raw)} bytes, but dimensions {dimensions} need {count * width}")
+        raise _broken(header, f"{name[:24]!r} has {len(raw)} bytes, but dimensions {dimensions} take {count * width}")
     if is_text:
         length, texts = dimensions[0] if dimensions else 1, []
         for cell in (raw[at : at + length] for at in range(0, len(raw), length or 1)):

@@ -124,7 +124,7 @@ def force_plates(
         if not wanted:
             why = f"is of type {kind}, but only types 1 to 4 are known"
         elif len(own) < wanted or not np.all((own >= 1) & (own <= channels)):
-            why = f"names channels {', '.join(format(one, 'g') for one in own)}, but the file has {channels}"
+            why = f"names channels {', '.join(format(one, 'g') for one in own)}, but the file has {channels} channels"
         elif any(int(one) - 1 in unscaled for one in own):
             why = "has a channel without a scale"
         elif (

@@ -89,7 +89,7 @@ def read_people(folder: Path, files: Iterable[Path], notes: list[str]) -> dict[s
         for word, one in read.items():
             before = found.setdefault(word, one)
             if before != one:
-                notes.append(f"{file.as_posix()}: {word!r} differs from another table, whose values are used")
+                notes.append(f"{file.as_posix()}: {word!r} has other values in another table; those are used")
     return found
 
 

@@ -87,7 +87,7 @@ def without_impossible(
                 channel, high = recording.channels[i], ranges[i].high
                 most = float(np.nanmax(np.abs(recording.values[:, i])))
                 thousandth = channel.unit == "V" and most <= 1e3 * high
-                looks = "it looks like mV or counts" if thousandth else "it may be in counts"
+                looks = "it seems to be in mV or counts" if thousandth else "it may be in counts"
                 what = f"reaches {most:.6g} {channel.unit}, but EMG stays within {high:g} {channel.unit}, so {looks}"
                 spoils = "the amplitude; state the unit in the file or in [channels]"
                 findings.append(Finding("warning", "unit", recording.source.file, what, spoils, channel.name))
@@ -137,7 +137,7 @@ def without_frozen(streams: Mapping[str, Recording]) -> tuple[dict[str, Recordin
                 value = f"{recording.values[int(np.argmax(here)), place]:.4g} {channel.unit}"
                 more = f", and in {others} more stretch{'es' if others > 1 else ''}" if others else ""
                 what = f"is constant at {'one place' if marker else value} from {spans[0].start:.3f} to "
-                what += f"{spans[0].end:.3f} s{more}; no measurement is constant for so long; these count as missing"
+                what += f"{spans[0].end:.3f} s{more}: too long for a measurement; these samples count as missing"
                 name, file = channel.name.removesuffix(".x") if marker else channel.name, recording.source.file
                 spoils = "these frames; fill the gap"
                 findings.append(Finding("warning", "frozen", file, what, spoils, name, spans=spans))
@@ -203,7 +203,7 @@ def _finding(
             where,
             "Correct the cell or the unit and export the force again.",
         )
-    most = "the unit or the name of the channel, if most of its samples are affected"
+    most = "the entire channel, whose unit or name is probably wrong"
     spoils = most if beyond.mean() > 0.5 else "these frames"
     spans, what = spans_s(recording.time, beyond), f"{where}; such samples are treated as missing"
     return Finding("warning", "out of range", file, what, f"{spoils}; correct the file", channel.name, spans=spans)
@@ -238,7 +238,7 @@ def with_flexion_positive(streams: Mapping[str, Recording]) -> tuple[dict[str, R
             f"{spans[name]}; a knee bends beyond {HYPEREXTENDED_DEG:g} deg in one direction only, so the sign is "
             "unknown and not changed"
         )
-        spoils = "everything that depends on the knee; correct the file, or exclude the damaged part with crop_s"
+        spoils = "results that depend on the knee; correct the file, or exclude the damaged part with crop_s"
         findings.append(Finding("warning", "knee sign", file, what, spoils, name))
     if not turned:
         return dict(streams), findings

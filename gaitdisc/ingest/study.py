@@ -112,7 +112,7 @@ class Participant(StudyPart):
         default="", description="reason why this person is excluded from the statistics; empty otherwise"
     )
     group: Annotated[str, Field(max_length=40)] = Field(
-        default="", description="group of this person, such as control; empty if there are none"
+        default="", description="group of this person, such as control; empty without groups"
     )
     mass_kg: Annotated[float, Field(ge=MASS_KG.least, le=MASS_KG.most)] | None = Field(
         default=None, description="body mass [kg], if the C3D files state none or a wrong one"
@@ -121,7 +121,7 @@ class Participant(StudyPart):
         default=None, description="stature [m], if the C3D files state none or a wrong one"
     )
     sex: Literal["", "f", "m"] = Field(
-        default="", description="f or m, for the inertia of the segments; if empty, the mean of both"
+        default="", description="f or m, for the inertia of the segments; if empty, the mean of both is used"
     )
     age_years: Annotated[int, Field(ge=AGE_YEARS.least, le=AGE_YEARS.most)] | None = Field(
         default=None, description="age in whole years, to choose controls of similar age; never a date of birth"

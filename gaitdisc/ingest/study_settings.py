@@ -67,7 +67,7 @@ class Kinematics(StudyPart):
     )
     marker_set: str = Field(
         default="",
-        description="plug_in_gait, oxford_foot, helen_hayes, rajagopal, gait2354, or a .toml file; default: by labels",
+        description="plug_in_gait, oxford_foot, helen_hayes, rajagopal, gait2354, or a .toml file; if empty, by labels",
     )
     hip: Literal["davis", "harrington"] | None = Field(
         default=None, description="hip joint centre: davis or harrington; by default that of the marker set"
@@ -115,7 +115,7 @@ class HeldOut(StudyPart):
     share: Annotated[float, Field(gt=0, lt=1)] | None = Field(
         default=0.125, description="held-out fraction of the trial, its last part"
     )
-    seconds: Positive | None = Field(default=None, description="or the held-out length [s]; write one of the two")
+    seconds: Positive | None = Field(default=None, description="held-out length [s], instead of share")
 
     @model_validator(mode="after")
     def _check(self) -> HeldOut:
@@ -139,7 +139,7 @@ class Quality(StudyPart):
         default=1, description="fewest cycles over ground, pooled over the trials of a person, session and condition"
     )
     late_change: Literal["refuse", "report"] = Field(
-        default="refuse", description="how to treat a trial whose gait changes late: refuse or report"
+        default="refuse", description="how to treat a trial whose gait changes towards its end: refuse or report"
     )
 
 
@@ -181,7 +181,7 @@ def check_variables(models: Models, channels: Mapping[str, str]) -> None:
                 _check_spelling(("models", key, i), name)
     both = sorted(set(models.angles) & set(models.emg))
     if both:
-        refuse(("models", "emg"), "not repeat a channel of angles", f"{both[0]!r} is in both", "Remove it from one.")
+        refuse(("models", "emg"), "not repeat a channel of angles", f"{both[0]!r} is in both", "Remove it from emg.")
 
 
 def _check_spelling(place: Sequence[str | int], name: str) -> None:

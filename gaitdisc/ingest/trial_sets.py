@@ -75,7 +75,7 @@ def why_refused(study: Study, participant: Participant) -> str:
     elif not trial_sets(study, participant):
         words = " or ".join(map(repr, study.conditions.words))
         found = f"{participant.id} has {len(participant.trials) or 'no'} trials of other conditions"
-        return f"a participant needs a trial of {words}; {found}. Correct the conditions in [[participants.trials]]."
+        return f"each person must have a trial of {words}; {found}. Correct the conditions in [[participants.trials]]."
     return ""
 
 
@@ -147,5 +147,5 @@ def _one_walk_each(study: Study, participant: Participant) -> str:
     found = ", ".join(f"{count or 'none'} of {word!r}" for word, count in counts.items())
     others = sum(trial.condition not in both for trial in participant.trials)
     unused = f"; trials of other conditions: {others}" if others else ""
-    needed = f"a comparison needs one trial of {both[0]!r} and one of {both[1]!r}"
+    needed = f"a comparison requires one trial of {both[0]!r} and one of {both[1]!r}"
     return f"{needed}; {participant.id} has {found}{unused}. Correct the conditions in [[participants.trials]]."

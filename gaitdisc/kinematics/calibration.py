@@ -164,7 +164,7 @@ class _Builder:
                 'Provide leg_length_m, or use hip = "harrington".',
             )
         if methods[0] == "davis" and side == "l":
-            what = f"hip centres after Harrington, not Davis: {self.file} and the measures lack a leg length"
+            what = f"hip centres are those of Harrington, not Davis: {self.file} and the measures lack a leg length"
             self._note("hip", what, "hip centres by 1 to 2 cm compared with Plug-in Gait")
         return harrington_hip(width, depth, side)
 
@@ -192,7 +192,7 @@ class _Builder:
         if self._has(f"{joint}_medial"):
             apart = self._place(f"{joint}_lateral", side) - self._place(f"{joint}_medial", side)
             width = float(np.linalg.norm(apart)) - 2 * self._radius()
-            self._note("width", f"the width of {joint}_{side} is {width * 1000:.0f} mm between its two markers")
+            self._note("width", f"the width of {joint}_{side}, between its two markers, is {width * 1000:.0f} mm")
             return width
         raise ChannelError(
             f"a {joint} joint centre from one lateral marker needs the width of the {joint}",

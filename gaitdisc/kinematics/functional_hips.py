@@ -74,7 +74,7 @@ def _find_hip(pelvis: Pose, thigh: PlacedMarkers, usual: Values) -> tuple[Pivot 
     if found.residual_m > LARGEST_RESIDUAL_M:
         return None, f"the thigh deviates from the centre by {_mm(found.residual_m)} (rms)"
     if _apart(found, usual) > FARTHEST_M:
-        return None, f"the computed centre is {_mm(_apart(found, usual))} from the centre by the landmarks"
+        return None, f"the computed centre is {_mm(_apart(found, usual))} from that of the landmarks"
     return found, ""
 
 

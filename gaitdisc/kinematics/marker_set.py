@@ -223,7 +223,7 @@ def read_marker_set(path: Path) -> MarkerSet:
         check_regular(path, LARGEST_BYTES)
         text = path.read_text(encoding="utf-8")
     except (OSError, UnicodeDecodeError) as error:
-        reason = "it is not a UTF-8 text" if isinstance(error, UnicodeDecodeError) else error.strerror
+        reason = "it is not UTF-8 text" if isinstance(error, UnicodeDecodeError) else error.strerror
         raise ReadError("a marker set must be a file", f"{path.name}: {reason}", "Check the path.") from error
     try:
         table = parse_toml(text)
@@ -315,7 +315,7 @@ def _check_tracked(tracked: Mapping[str, Iterable[str]], file: str) -> None:
             raise SchemaError(needed, f"{file} has {len(points)}: {', '.join(points)}", EXAMPLE)
         wrong = [point for point in points if point in METHODS and point not in above]
         if wrong:
-            needed = f"tracked.{part} may name the joint centre above it ({', '.join(above) or 'none'})"
+            needed = f"tracked.{part} may name only the joint centre above it ({', '.join(above) or 'none'})"
             raise SchemaError(needed, f"{file} names {wrong[0]!r}", EXAMPLE)
 
 

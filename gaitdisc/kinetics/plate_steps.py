@@ -215,7 +215,7 @@ def _foot(platform: Platform, feet: Mapping[str, FootPath]) -> tuple[str, str, s
         both = ", ".join(f"{side} for {seconds:.2f} s" for side, seconds in standing.items())
         return "", f"both feet are on the plate, {both}", "note"
     if not known:
-        return "", "the markers of both feet are missing then", ""
+        return "", "the markers of both feet are missing during this step", ""
     if known[side] > BESIDE_FOOT_M:
         return "", f"the centre of pressure is {100 * known[side]:.0f} cm from the nearest foot ({side})", "warning"
     return side, _edge(feet[side], platform), ""

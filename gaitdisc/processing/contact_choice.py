@@ -65,7 +65,7 @@ def choose_contacts(
             f"the detector is {str(detector)[:60]!r}",
             "Name one of these. To use known contacts, call cycles(..., contacts=times).",
         )
-    needed = "strides need initial contacts from force, events, markers or joint angles"
+    needed = "initial contacts must come from force, events, markers or joint angles"
     if any(len(recording.time) < 2 for recording in trial.streams.values()):
         raise nothing_found(trial, needed, ["a single frame"])
     seen, refused = find_contacts(trial, direction, body_weight_n)
@@ -80,7 +80,7 @@ def choose_contacts(
     taken = seen[chosen] if offset_s is None else _move(seen[chosen], offset_s)
     findings = [*late, *_findings(trial, chosen, seen, refused, reference)]
     if chosen in SEEN_LATE:
-        by = "the median difference at steps that " + ("a plate" if reference == "force" else "an event") + " shows"
+        by = "the median difference over steps that " + ("a plate" if reference == "force" else "an event") + " records"
         spoils = "phase, compared with a plate, by 3 to 5 % of the stride; durations are unaffected"
         findings.append(offset_finding(trial.name, chosen, offset_s, by, spoils))
     return ContactChoice(taken, tuple(findings))
@@ -269,10 +269,10 @@ def _findings(
             spoils = []
             beyond = agreement.median_ms + EARLY_MS.get(name, 0.0) - EARLY_MS.get(chosen, 0.0)
             if abs(beyond) > DISAGREEMENT_MS and name != reference:  # which the contacts were moved by
-                spoils.append(f"phase: the two disagree by {DISAGREEMENT_MS:g} ms more than such detectors usually do")
+                spoils.append(f"phase: these detectors disagree by {DISAGREEMENT_MS:g} ms more than usual")
             if apart.any():
                 those = "1 contact" if apart.sum() == 1 else f"{apart.sum()} contacts"
-                spoils.append(f"the strides of {those}: {DISAGREEMENT_MS:g} ms or more from the usual difference")
+                spoils.append(f"the strides of {those} ({DISAGREEMENT_MS:g} ms or more from the usual difference)")
             if name not in refused and len(agreement.missed) + len(agreement.extra):
                 at = ", ".join(f"{time:.2f}" for time in sorted([*agreement.missed, *agreement.extra])[:5])
                 spoils.append(f"the strides at about {at} s: one detector finds a contact there, the other does not")

@@ -182,8 +182,8 @@ VARIABLES = tuple(
         (MOMENTS, "hip_frontal_moment", "hip frontal moment", "hip_adduction", "adduction", "abduction"),
         (MOMENTS, "knee_frontal_moment", "knee frontal moment", "knee_adduction", "adduction", "abduction"),
         (MOMENTS, "ankle_frontal_moment", "ankle frontal moment", "ankle_inversion", "inversion", "eversion"),
-        (FORCES, "vertical_force", "vertical force, of body weight", "vy", "upwards", ""),
-        (FORCES, "fore_aft_force", "fore-aft force, of body weight", "vx", "forwards", "backwards"),
+        (FORCES, "vertical_force", "vertical force / body weight", "vy", "upwards", ""),
+        (FORCES, "fore_aft_force", "fore-aft force / body weight", "vx", "forwards", "backwards"),
     )
 )
 BY_NAME = {one.name: one for one in VARIABLES}

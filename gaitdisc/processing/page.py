@@ -51,8 +51,8 @@ METHOD = (
     "and 6 robust standard deviations, does not contain exactly one contact of the other foot, or lacks an angle of "
     "its own leg. Cycles never cross trials.",
     "Moments are shown for cycles in which one plate carried the entire stance, with this foot alone on it.",
-    "Speed and lengths are measured at the heels from contact to contact. On a treadmill the belt speed is added if "
-    "the study states it.",
+    "Speed and step lengths are measured at the heels from contact to contact. On a treadmill the belt speed is "
+    "added if the study states it.",
 )
 COMPUTED = (
     "Joint angles are computed from markers, calibrated with the person's static trial. “Findings” lists the marker "
@@ -112,7 +112,7 @@ def cycles_sentences(run: StudyRun) -> list[str]:
     if few := sorted({pooled.subject for pooled in kept if min(pooled.counted("l"), pooled.counted("r")) < FEW}):
         sentences.append(
             f"Participants with fewer than {FEW} cycles of a foot in a session and condition: {listing(few)}. Their "
-            "curves show single steps, not how steadily a person walks."
+            "curves show single cycles, not the variability of walking."
         )
     if moved := [pooled for pooled in kept if pooled.contact_offset_s is not None]:
         shifts = [f"{pooled.name} {offset_words(pooled)}" for pooled in moved]
@@ -126,7 +126,7 @@ def save_cycle_blocks(run: StudyRun, folder: Path) -> list[Block[SavedFigure]]:
         return []
     unfitted = tuple(f"No models are fitted to {refusal.participant}: {refusal.reason}" for refusal in run.unfitted)
     device = "" if run.exo else " The study does not compare a device, so no models are fitted."
-    windows = f"Every cycle lies within one trial; cycles are not joined across trials.{device}"
+    windows = f"Every cycle lies within one trial.{device}"
     first = Block("cycles", "Cycles", (windows, *unfitted), (), (overview_table(run.of(CYCLES)),))
     people = list(dict.fromkeys(pooled.subject for pooled in run.of(CYCLES)))
     names, count = file_names(people), len(run.of(CYCLES))

@@ -87,8 +87,8 @@ def _plate_findings(trial: Trial, weight_n: float | None) -> list[Finding]:
     if exchanged and sum(exchanged) >= MOST * len(exchanged):
         names = " and ".join(platform.name for platform in found)
         what = f"the centre of pressure lies under the foot in {sum(as_is)} of {len(as_is)} steps, and in "
-        what += f"{sum(exchanged)} of {len(exchanged)} if the two plates are exchanged: {names} are exchanged"
-        spoils = "the assignment of feet to plates, moments and powers; exchange their channels"
+        what += f"{sum(exchanged)} of {len(exchanged)} if the channels of {names} are swapped"
+        spoils = "the assignment of feet to plates, moments and powers; swap the channels of the two plates"
         spans = tuple(step.span for step in steps)
         return [Finding("warning", "swapped plates", file, what=what, spoils=spoils, channel=names, spans=spans)]
     said = []
@@ -121,7 +121,7 @@ def check_weight(weighed_n: float | None, mass_kg: float | None, file: str) -> l
         return []
     what = f"the force plates show {weighed_n / GRAVITY:.1f} kg in the static trial, but {mass_kg:.1f} kg are stated"
     if off > WRONG:
-        needed = f"moments per kg need a body mass and force plates that agree within {100 * WRONG:.0f} %"
+        needed = f"for moments per kg, body mass and force plates must agree within {100 * WRONG:.0f} %"
         raise UnitError(needed, what, "Weigh the person again: correct the mass, or the gain of the plates.")
     return [Finding("warning", "body weight", file, what, f"moments and powers, by {100 * off:.0f} %; weigh again")]
 

@@ -76,7 +76,7 @@ def person_findings(static: Recording, walk: Recording, file: str) -> list[Findi
     if apart[worst[1]] < MOST_LOG_RATIO:
         return []
     said = " and ".join(
-        f"{one} to {other} is {1000.0 * standing[one, other]:.0f} mm when standing, but "
+        f"the distance from {one} to {other} is {1000.0 * standing[one, other]:.0f} mm when standing, but "
         f"{1000.0 * walking[one, other]:.0f} mm in the walk"
         for one, other in worst
     )

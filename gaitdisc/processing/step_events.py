@@ -111,7 +111,7 @@ def step_events(
             counts = ", ".join(f"{len(one)} of side {side}" for side, one in sorted(seen.get(name, {}).items()))
             reasons.append(f"{name}: {error.found if error else counts or 'no contact'}")
         by = "events, force, markers or joint angles" if detector == "auto" else detector
-        raise nothing_found(trial, f"a cycle needs two initial contacts of the same foot, from {by}", reasons)
+        raise nothing_found(trial, f"a cycle must have two initial contacts of the same foot, from {by}", reasons)
     sure = {name: count for name, count in strides.items() if name != "angles"} or strides
     chosen = best_detector(ORDER, sure, seen) if detector == "auto" else detector
     if chosen == "events":

@@ -83,7 +83,7 @@ def cut_cycles(contacts: Timed, offs: Timed) -> list[Cycle]:
             reason = ""
             if len(inside) > 1 or (seen and not inside):
                 count = f"{len(inside)} contacts" if inside else "no contact"
-                reason = f"{count} of the other foot within the cycle: one was missed or is false"
+                reason = f"{count} of the other foot within the cycle: a contact was missed or is false"
             found.append(Cycle(side, start, end, (by, next_by), off, max(left, start), landed, off_by, False, reason))
     return found
 
@@ -164,7 +164,7 @@ def without_stated(cycles: list[Cycle], said: Sequence[str], file: str) -> tuple
             at = near[min(near)]
             found[at] = replace(found[at], reason=f"left out by the study: {reason or 'no reason is given'}")
         else:
-            what = f"leave_out_cycles says {words!r}, but no such cycle begins there"
+            what = f"leave_out_cycles contains {words!r}, but no such cycle exists"
             findings.append(Finding("warning", "cycle not found", file, what, "nothing; correct it with cycles.csv"))
     return found, findings
 

@@ -121,7 +121,7 @@ def _in_radians(angles: Recording) -> Contradictions:
     most = max((reach[name] for name in legs), default=0.0)
     whole = set(legs) <= set(found) and most >= WALKS_RAD
     if found and (whole or most >= WALKS_DEG):
-        what = f"{found[0]} varies by {reach[found[0]]:.2g} deg in a walk, less than skin moves: it looks like radians"
+        what = f"{found[0]} varies by {reach[found[0]]:.2g} deg in a walk, less than skin moves: it seems to be in rad"
         yield names if whole else found, what
 
 
@@ -147,7 +147,7 @@ def _against_markers(angles: Recording, markers: Recording) -> Contradictions:
             and r > ALIKE
             and not 1 / SCALE < median_abs_deviation(own) / median_abs_deviation(line) < SCALE
         ):
-            yield [name], f"{what}: it has another unit or scale"
+            yield [name], f"{what}: its unit or scale is wrong"
         elif len(line) >= FEWEST:
             bent = line > np.median(line)
             offsets[name] = np.array([np.median((own - line)[part]) for part in (bent, ~bent)])
@@ -187,7 +187,7 @@ def _moment_sizes(moments: Recording) -> Contradictions:
     usual, unit, why = peaks[most[0]], units[most[0]], "it has another unit, such as N mm instead of N m"
     if usual < LEAST_MOMENT[unit]:
         least = f"{LEAST_MOMENT[unit]:g} {unit}"
-        yield list(peaks), f"moments of the legs reach {usual:.2g} {unit}, but standing needs at least {least}: {why}"
+        yield list(peaks), f"moments of the legs reach {usual:.2g} {unit}, but standing takes at least {least}: {why}"
     walks = _range(moments[most[0]]) > usual / 2  # who stands may have next to none about an axis
     for name, peak in peaks.items() if walks and usual >= LEAST_MOMENT[unit] else ():
         share = LEAST_SHARE if _FLEXION.fullmatch(name) else LEAST_SHARE_OTHER
@@ -212,7 +212,7 @@ def _powers(moments: Recording, angles: Recording) -> Contradictions:
         slope = float(given @ made / (made @ made))
         r = slope * float(np.sqrt((made @ made) / (given @ given)))
         if r < -AGAINST or (r > ALIKE and not 1 / POWER_SCALE <= slope <= POWER_SCALE):
-            what = f"{power} is {slope:.3g} times {moment} times the rate of {angle} (r = {r:.2f}), instead of 1 times"
+            what = f"{power} must equal {moment} times the rate of {angle}, but is {slope:.3g} times that (r = {r:.2f})"
             names = [name for name in units if re.fullmatch(rf"{joint}_\w+_{side}_moment|{power}", name)]
             yield names, f"{what}: the sign or unit of one of them is wrong"
 

@@ -61,7 +61,7 @@ def walk_pair(
     one, other = (
         _summary(trials[k], contacts[k], cutoff_hz, repeated=trials[k] is not given[k]) for k in range(len(given))
     )
-    what = f"percent stride begins at the contacts by {chosen} in both walks"
+    what = f"percent stride begins at the contacts from {chosen} in both walks"
     note = Finding("note", "detector", f"{first.name}, {second.name}", what, "")
     if len(contacts[0]) == 1:
         foot = {"r": "right", "l": "left"}[next(iter(contacts[0]))]
@@ -207,7 +207,7 @@ def repeat_stride(trial: Trial) -> Trial:
     what = f"one stride of {count / kinematics.rate_hz:.3f} s that ends as it began, repeated {TIMES} times"
     if left:
         what += f"; {', '.join(left)} excluded, because the time base differs"
-    spread = "the spread, which a single stride does not have"
+    spread = "the spread over strides, which a single stride does not have"
     note = Finding("note", "one stride", kinematics.source.file or trial.name, what, spread)
     return replace(trial, streams=kept, events=(), findings=(*trial.findings, note))
 

@@ -104,7 +104,7 @@ def reconstruction_sentences(done: Reconstruction) -> list[str]:
     units = listing(list(dict.fromkeys(channel.unit for channel in done.states)))
     what = counted(len(done.states), noun) if angles else f"{counted(len(done.states), 'channel')} [{units}]"
     sentences = [
-        f"The recommended model, {best}, reconstructs {what} from {sensors}: {rmse}relative L2 "
+        f"The recommended model, {best}, reconstructs {what} from {sensors}: {rmse}relative L2 error "
         f"{_plain(row['relative_l2'], 3)}, median R² {_plain(row['r2'], 2)} (mean over "
         f"{counted(len(done.participants), 'participant')})."
     ]
@@ -143,8 +143,8 @@ def _after_calibration(done: Reconstruction, best: str) -> list[str]:
     over: Any = done.over_participants()["rmse_deg"]
     before, after = float(over[best]), float(over[CALIBRATED.format(best)])
     return [
-        f"After correction with a few strides of the person whose states are known, the error is {_plain(after, 2)} "
-        f"deg instead of {_plain(before, 2)} deg ({100 * (after / before - 1):+.0f} %)."
+        f"After correction with a few measured strides of the person, the error is {_plain(after, 2)} deg instead of "
+        f"{_plain(before, 2)} deg ({100 * (after / before - 1):+.0f} %)."
     ]
 
 
@@ -321,7 +321,7 @@ def write_reconstruction_report(done: Reconstruction, folder: Path) -> Path:
 def method_sentences(done: Reconstruction) -> list[str]:
     """How the numbers were made."""
     return [
-        f"A window contains {done.history} (Eqs. 5.1-5.7). A window contains no missing values and only one trial.",
+        f"A window contains {done.history} (Eqs. 5.1-5.7). It lies within one trial and has no missing values.",
         f"Split of the windows: {done.split}. Scales and weights come from the training windows only. Penalties, "
         "widths and the epoch of the weights are chosen on the validation windows. Errors are those of the test "
         "windows, which are separated from the others by the length of a window and 0.3 s.",

@@ -38,7 +38,7 @@ SECTION = "5.3.3, Table 5.2"
 SUBJECT, CONDITION = "subject", "condition"
 ACROSS = {
     SUBJECT: "each person is reconstructed by models of the others; the next person is used for validation",
-    CONDITION: "walks of one condition by models of the person's other walks (last 15 % of each for validation)",
+    CONDITION: "each condition is reconstructed by models of the person's other walks (validation: their last 15 %)",
 }
 CALIBRATION_STRIDES = 10
 

@@ -129,9 +129,9 @@ def length_table(run: ResponseRun) -> Table | None:
         rows.append((f"{length:g}", str(int(of_length["n"].max())), *parts[0], *parts[1]))
     caption = (
         "R² [1] on the same held-out device walking by training length, paired over n = "
-        f"{counted(len(run.quantities), 'participant')}: exact two-sided signed rank, Holm-Sidak over the variables "
-        "of one length and comparison, alpha = 0.05. Largest shift: Hodges-Lehmann shift of the variable with the "
-        "largest change, second minus first. The CSV contains every test with its interval."
+        f"{counted(len(run.quantities), 'participant')}: exact two-sided signed-rank test, Holm-Sidak over the "
+        "variables of one length and comparison, alpha = 0.05. Largest shift: Hodges-Lehmann shift of the variable "
+        "with the largest change, second minus first. The CSV contains every test with its interval."
     )
     return Table("lengths", caption, _COLUMNS, tuple(rows), tests, _GROUPS)
 
@@ -157,7 +157,7 @@ def length_sentences(run: ResponseRun) -> list[str]:
         f"From {same:g} s on they do not differ significantly." if same is not None and exceptions else "",
         f"(ii) Exo against Exo with the entire training part: from {whole:g} s on no variable differs significantly."
         if whole is not None
-        else f"(ii) Exo against Exo with the entire training part: at {longest:g} s, the longest shorter part, at "
+        else f"(ii) Exo against Exo with the entire training part: even at {longest:g} s, the longest part tested, at "
         "least one variable differs.",
         f"n = {counted(int(over.lengths['n'].max()), 'participant')}: a non-significant difference does not show "
         "equality.",

@@ -192,7 +192,7 @@ def _residual_figure(response: ParticipantResponse, numbers: pd.DataFrame, name:
         f"shaded: {100 * CONFIDENCE:.0f} % interval at each point (Student's t over strides, corrected for the "
         "correlation of neighbouring strides)"
         if len(each) >= LEAST_STRIDES
-        else f"no interval, because it needs {LEAST_STRIDES} complete strides"
+        else f"no interval, because it requires {LEAST_STRIDES} complete strides"
     )
     caption = (
         f"{response.participant}: residual of the second derivative, measured minus predicted, over the stride of the "

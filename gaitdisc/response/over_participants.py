@@ -149,7 +149,7 @@ def responder_table(responses: Sequence[ParticipantResponse], seed: int = 0) -> 
     left_out = f"; excluded because of strides with missing points: {', '.join(absent)}" if absent else ""
     who = f"n = {len(complete)} participants{left_out}"
     if len(complete) < FEWEST_GROUPED:
-        verdict = f"Sub-groups were not tested, because this needs {FEWEST_GROUPED} participants ({who})"
+        verdict = f"Sub-groups were not tested, because the test requires {FEWEST_GROUPED} participants ({who})"
         return no_rows("responders"), verdict
     try:
         groups = find_groups(discrepancy_curves(complete), seed=seed)

@@ -30,7 +30,7 @@ LOWEST = -100.0  # percent; what a model makes more than twice as large stands a
 BASELINE_WORDS = {
     "ridge": "ridge with phase harmonics",
     "linear": "ridge on the network’s inputs",
-    "null": "null of the filters",
+    "null": "band-limited noise alone",
 }
 
 
@@ -126,8 +126,8 @@ def reduction_table(run: ResponseRun) -> Table | None:
                 cells.append(f"{middle}{'*' if test['different'] else ''}\n[{low}, {high}]")
         rows.append((label(str(variable)), str(of_variable["rms_reduction"].count()["augmented"]), *cells))
     interval = (
-        "Hodges-Lehmann [95 % interval, not corrected]; *: differs from 0, exact two-sided signed rank, Holm-Sidak "
-        "over the variables, alpha = 0.05"
+        "Hodges-Lehmann [95 % interval, not corrected]; *: differs from 0, exact two-sided signed-rank test, "
+        "Holm-Sidak over the variables, alpha = 0.05"
         if len(tests)
         else "median over participants; too few for a test"
     )
@@ -198,8 +198,8 @@ def baseline_table(run: ResponseRun) -> Table | None:
     rows.sort(key=lambda row: order.index(row[0]))
     caption = (
         "R² [1] of the network minus R² of a baseline without a network, on the held-out device walk, n = "
-        f"{counted(len(run.responses), 'participant')}: Hodges-Lehmann shift [95 % interval, not corrected]; higher "
-        "or lower: exact two-sided signed rank, Holm-Sidak over the variables of one model and baseline, alpha = "
+        f"{counted(len(run.responses), 'participant')}: Hodges-Lehmann shift [95 % interval, not corrected]; higher or "
+        "lower: exact two-sided signed-rank test, Holm-Sidak over the variables of one model and baseline, alpha = "
         "0.05. The ridge regression of the other tables is the one with phase harmonics."
     )
     groups = (("", 3), ("network minus baseline", 3))

@@ -125,8 +125,8 @@ def method_sentences(run: ResponseRun) -> list[str]:
         "The Discrepancy model g is fitted to the residual of the Nominal model on the device walk, the measured "
         "second derivative minus f (Eq. 4.4). The Augmented model is the sum f + g (Eq. 4.5).",
         f"The last {f'{held_out} s' if held_out else 'part'} of each walk is held out before any fit. R² = 1 − (sum "
-        "of squared residuals) / (sum of squares about the mean) on these samples: 1 is all of the variance, 0 is no "
-        "better than the mean, and a negative number is worse.",
+        "of squared residuals) / (sum of squares about the mean) on these samples: 1 if all of the variance is "
+        "explained, 0 if a model is no better than the mean, negative if it is worse.",
         f"{_filter_sentence(run)} A filter alone makes part of a second derivative predictable from the signal "
         "itself. The null gives this part: R² of band-limited noise that was filtered in the same way.",
     ]
@@ -154,6 +154,6 @@ def _filter_sentence(run: ResponseRun) -> str:
         )
     return (
         f"Angles were low-passed by a Butterworth filter of order {order} per pass, forwards and backwards and "
-        f"therefore without lag, {cutoff:g} Hz at −3 dB of one "
+        f"therefore without lag; cut-off {cutoff:g} Hz at −3 dB of one "
         f"pass{f' (both passes: {together})' if together else ''}{emg}."
     )

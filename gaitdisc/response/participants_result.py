@@ -55,7 +55,7 @@ class PairTests:
     def __post_init__(self) -> None:
         """Check columns once."""
         columns = {"tests": TEST_COLUMNS, "families": FAMILY_COLUMNS}
-        check_columns(self, columns, "paired tests need", "Compare the models again: `gaitdisc run` on the study.")
+        check_columns(self, columns, "paired tests must have", "Compare the models again: `gaitdisc run` on the study.")
 
     def of_pair(self, first: str, second: str) -> pd.DataFrame:
         """Tests of one pair of models, one row a variable."""
@@ -84,7 +84,7 @@ class OverParticipants:
     def __post_init__(self) -> None:
         """Check columns once."""
         again = "Compare the participants again: `gaitdisc run` on the study."
-        check_columns(self, TABLES, "comparisons over participants need", again)
+        check_columns(self, TABLES, "comparisons over participants must have", again)
 
     def enough_length(self, second: str = WHOLE) -> float | None:
         """Shortest length [s] from which no variable is shown to differ (no proof of equality); None without."""

@@ -95,8 +95,8 @@ def modalities_table(run: VariantRun) -> Table:
     caption = (
         f"Hodges-Lehmann shift of R² [1] of the Augmented model on the held-out device walk ({run.exo}) when the "
         f"Discrepancy model lacks a family of inputs, n = {counted(len(run.people), 'participant')}; negative: R² "
-        "falls. Star: exact two-sided signed rank test, Holm-Sidak over the variables of a row, alpha = 0.05. The "
-        "CSV contains both models, W, p, adjusted p and intervals."
+        "falls. Star: exact two-sided signed-rank test, Holm-Sidak over the variables of a row, alpha = 0.05. The CSV "
+        "contains both models, W, p, adjusted p and intervals."
     )
     return Table("modalities", caption, ("without", *map(label, shown.columns)), rows, run.tests)
 
@@ -180,8 +180,8 @@ def sensitivity_table(run: VariantRun) -> Table:
         f"{counted(len(run.people), 'participant')}; one setting changed at a time. R² of two settings refer to "
         "different targets, because the filter changes the predicted signal: compare the models, and each with its "
         "null. People: number of people with Nominal < Augmented in the median over variables; variables: number of "
-        "variables with a significantly higher Augmented model (exact signed rank, Holm-Sidak over the variables of a "
-        "setting, alpha = 0.05)."
+        "variables with a significantly higher Augmented model (exact signed-rank test, Holm-Sidak over the variables "
+        "of a setting, alpha = 0.05)."
     )
     heads = (("", 1), *((group, len(HEADINGS)) for group in groups), ("Nominal < Augmented", 2))
     columns = ("setting", *(HEADINGS * len(groups)), "people", "variables")
@@ -197,7 +197,7 @@ def sensitivity_sentences(run: VariantRun) -> tuple[str, ...]:
     failing = medians[~(medians["nominal"] < medians["augmented"])]
     cases = counted(len(medians), "case")
     sentences = [
-        f"In the medians, Nominal < Augmented holds in all {cases} (a setting and a group of variables)."
+        f"In the medians, Nominal < Augmented holds in all {cases} (each a setting and a group of variables)."
         if not len(failing)
         else f"In the medians, Nominal < Augmented fails in {len(failing)} of {cases}: "
         + ", ".join(f"{row.variant} ({row.variables})" for row in failing.itertuples())

@@ -27,7 +27,7 @@ class Part(NamedTuple):
 
 
 PARTS = (
-    Part(3, "tables", "ch3_tables", "every table of 3.4, printed from the included cells", 0.1, 0.1,
+    Part(3, "tables", "ch3_tables", "all tables of 3.4, from the included results", 0.1, 0.1,
          words=("all",), quick_words=("all",)),
     Part(3, "van_der_pol", "ch3_systems", "3.4.1, Figs. 3.2-3.5, 3.11", 20, 0.7,
          words=("van_der_pol", OUT), needs=METHODS),
@@ -36,7 +36,7 @@ PARTS = (
     Part(3, "measurement_bias", "ch3_systems", "3.4.4, Fig. 3.13", 8, 0.2,
          words=("measurement_bias", OUT), needs=METHODS),
     Part(3, "who_names", "ch3_who_names", "which method names the effect, 3.4 and 3.5", 30, 0.3, needs=METHODS),
-    Part(3, "seeds", "ch3_seeds", "cells of `tables` again, for every set, start and seed", 120, 0.3, needs=METHODS),
+    Part(3, "seeds", "ch3_seeds", "results of `tables` again, for every set, start and seed", 120, 0.3, needs=METHODS),
     Part(3, "further", "ch3_further", "methods, noise, starts and trajectories that 3.4 and 3.5 also mention", 40, 0.5,
          quick_words=(OUT, "--seeds", "1", "--tables", "variance"), needs=METHODS),
     Part(4, "ankle_exo", "ch4_ankle_exo", "the entire chapter, Figs. 4.2-4.4", 9, 0.7),
@@ -44,8 +44,8 @@ PARTS = (
          words=(OUT, "--tables", "band", "people", "terms", "search", "curve"), data="gait/exotendon_run"),
     Part(4, "outcomes", "ch4_further", "6.2.2: joint moments and metabolic power as outcomes, real people", 0.1, 0.1,
          words=(OUT, "--tables", "moments", "energy"), data="gait/ankle_exo_emg_grf"),
-    Part(5, "gait_individual", "ch5_gait", "5.3.3, Table 5.2 above, Fig. 5.4", 60, 0.3, words=("individual", OUT)),
-    Part(5, "gait_population", "ch5_gait", "5.3.3, Table 5.2 below, Fig. 5.5", 90, 0.7, words=("population", OUT)),
+    Part(5, "gait_individual", "ch5_gait", "5.3.3, upper Table 5.2, Fig. 5.4", 60, 0.3, words=("individual", OUT)),
+    Part(5, "gait_population", "ch5_gait", "5.3.3, lower Table 5.2, Fig. 5.5", 90, 0.7, words=("population", OUT)),
     Part(5, "sea_surface", "ch5_sea_surface", "5.3.2, Table 5.1, Figs. 5.1, 5.3", 5, 0.2, data="fields/sst_pacific"),
     Part(5, "turbulence", "ch5_turbulence", "5.3.1, Fig. 5.2, on substitute data", 8, 0.3),
     Part(5, "real_people", "ch5_further", "5.2, Fig. 5.1, 5.3.3, 6.2.3: the text's network, people, forecasts", 12, 0.7,

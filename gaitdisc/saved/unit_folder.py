@@ -35,7 +35,7 @@ T = TypeVar("T")
 Kind = TypeVar("Kind")
 Arrays = Mapping[str, Values]
 KEPT_FILES = 2  # of which the arrays stay in memory: both walks of one participant
-AGAIN = "Run the command that wrote it again. `gaitdisc run` keeps undamaged parts and computes the others again."
+AGAIN = "Repeat the command that wrote it. `gaitdisc run` keeps undamaged parts and computes the others again."
 CHANGED = "has changed since it was saved (SHA-256 differs)"
 
 

@@ -84,8 +84,8 @@ def short_run_findings(
             short[start:end] = end - start < need
         if short.any():
             segments, least_s = counted(len(runs(short)), "segment"), need / recording.rate_hz
-            what = f"too short: {segments} between gaps with fewer than {need} samples ({least_s:.3f} s)"
-            spoils = f"these segments, which are excluded: a filter of {cutoff_hz:g} Hz needs {need} samples"
+            what = f"{segments} between gaps shorter than {need} samples ({least_s:.3f} s)"
+            spoils = f"these segments, which are excluded: a filter of {cutoff_hz:g} Hz requires {need} samples"
             spans = spans_s(recording.time, short)
             findings.append(Finding("warning", "short run", file, what, spoils, channel=channel.name, spans=spans))
     return findings

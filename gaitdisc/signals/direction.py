@@ -130,7 +130,7 @@ def _from_swings(swings: Sequence[Values], up: Values, level: list[int], file: s
         )
     forward = np.zeros(3)
     forward[level] = line * np.sign(skew)
-    how = f"forward ({_show(forward)}) is inferred: heels move faster that way (skewness {abs(skew):.2f})"
+    how = f"forward ({_show(forward)}) is inferred: heels move faster in this direction (skewness {abs(skew):.2f})"
     return Direction(forward, up, how)
 
 

@@ -163,7 +163,7 @@ def emg_findings(emg: Recording, range_v: float | None = None) -> list[Finding]:
         if clipped and silent < SILENT_SHARE <= share:
             noise_mv = 1e3 * silent * limit.volts
             kind = "dead"
-            what = f"{at_rails}; the others are only noise (robust standard deviation {noise_mv:.3g} mV)"
+            what = f"{at_rails}; the other samples are only noise (robust standard deviation {noise_mv:.3g} mV)"
         elif share < WEAK_SHARE and (share < limit.dead_share or burst_ratio(x, emg.rate_hz) < BURST):
             least = DEAD_SHARE if share < DEAD_SHARE else WEAK_SHARE
             bursts = "" if share < limit.dead_share else " or bursts"
@@ -264,8 +264,8 @@ def other_unit_findings(
     if ratio < 1:
         how, looks, stated = f"{1 / ratio:.0f} times weaker", "V", "mV"
     what = (
-        f"EMG is {how} than in {other} (median of {len(common)} channels). The numbers look like {looks}, but {stated} "
-        f"is stated; or those of {other} look like {stated}, but {looks} is stated"
+        f"EMG is {how} than in {other} (median of {len(common)} channels). The values seem to be in {looks} instead of "
+        f"{stated}, or those of {other} in {stated} instead of {looks}"
     )
     return [Finding("warning", "EMG unit", trial, what, "EMG; state the unit in [channels], or export the file again")]
 

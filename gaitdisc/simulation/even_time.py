@@ -139,7 +139,7 @@ def _resample(trial: TrialColumns, time: Values, inputs: tuple[str, ...]) -> tup
     )
     if _roughness(moved.observed, trial.observed) <= _roughness(trial.observed, trial.observed):
         return moved, "the samples are resampled to even spacing"
-    return even, "the samples are evenly spaced and are used with even times"
+    return even, "the samples are evenly spaced, so their times are corrected"
 
 
 def _along(values: Values, time: Values, late_s: Values, wraps: tuple[bool, ...]) -> Values:

@@ -116,7 +116,7 @@ def _together(notes: list[Finding]) -> list[Finding]:
     for note in notes:
         alike.setdefault((note.kind, note.channel), []).append(note)
     return [
-        replace(some[0], what=some[0].what + (f"; also in {len(some) - 1} more trials" if len(some) > 1 else ""))
+        replace(some[0], what=some[0].what + (f"; further trials: {len(some) - 1}" if len(some) > 1 else ""))
         for some in alike.values()
     ]
 

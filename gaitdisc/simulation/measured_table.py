@@ -82,7 +82,7 @@ def gather_recordings(recordings: Sequence[Recording], simulation: Simulation) -
             if doubtful:
                 what = f"{doubtful} of {len(values)} samples are marked as unreliable"
                 findings[f"{name} {wanted}"] = Finding(
-                    "warning", "suspect", name, what, "everything that depends on these samples", wanted
+                    "warning", "suspect", name, what, "results that depend on these samples", wanted
                 )
             numbers[wanted] = values
         parts.append(_columns(name, np.array(recording.time), numbers, inputs, channels))

@@ -171,7 +171,7 @@ def refuse_units(simulation: Simulation) -> None:
         tree = parse(text)
         found = powers_in(tree, _list_units(simulation), None)
         if found is not None and find_dimension(found) != wanted:
-            raise _unlike(sensor, f"{text!r} has another kind of unit", "Correct the unit or expression.")
+            raise _unlike(sensor, f"{text!r} has a unit of another dimension", "Correct the unit or expression.")
         _refuse_factor(simulation, sensor, tree)
 
 
@@ -185,7 +185,7 @@ def _refuse_factor(simulation: Simulation, sensor: Sensor, tree: Tree) -> None:
         return
     text = written(name)
     if math.isnan(factor):
-        raise _unlike(sensor, f"{text!r} has another kind of unit, {unit}", "Correct the unit or expression.")
+        raise _unlike(sensor, f"{text!r} has a unit of another dimension, {unit}", "Correct the unit or expression.")
     if abs(abs(number) / factor - 1) > ROUNDED and (abs(number) == 1.0 or _is_of_units(abs(number), unit)):
         raise _unlike(sensor, f"{text!r} is in {unit}", f"Write {math.copysign(factor, number):.6g}*{text}.")
 

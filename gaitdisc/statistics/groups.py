@@ -67,7 +67,7 @@ def find_groups(features: NDArray[np.float64], clouds: int = 199, seed: int = 0)
     if count < 2:
         why = "no feature separates the participants"
     elif p > ALPHA:
-        why = f"{measured}; samples of a single normal distribution separate as well by chance"
+        why = f"{measured}; samples of a single normal distribution separate equally well by chance"
     elif stability < LEAST_STABILITY:
         why = f"{measured}; the groups change when a fifth of the participants is left out"
     else:

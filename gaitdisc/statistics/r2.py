@@ -72,7 +72,7 @@ def why_no_r2(measured: NDArray[np.float64], predicted: NDArray[np.float64]) -> 
 
 def _reason(measured: NDArray[np.float64], predicted: NDArray[np.float64]) -> str:
     if len(measured) < 2:
-        return f"{len(measured)} samples are too few"
+        return f"too few samples (n = {len(measured)})"
     missing = int(np.sum(~np.isfinite(measured) | ~np.isfinite(predicted)))
     if missing:
         return f"{missing} of {len(measured)} samples are missing"

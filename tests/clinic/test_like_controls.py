@@ -52,7 +52,7 @@ def test_a_child_is_not_called_out_for_its_size_but_for_slow_walking():
     unscaled = like_controls(controls(20), tuple(child.values()), None, 8)
     noted, _ = outstanding(child, unscaled.curves, of_values=unscaled.values)
     assert {one.words for one in noted} >= {"reduced walking speed", "short steps"}
-    assert says(" ".join(unscaled.words), "Nothing is scaled", "leg length of the person")
+    assert says(" ".join(unscaled.words), "No value is scaled", "leg length of the person")
     scaled = like_controls(controls(20), tuple(child.values()), CHILD_LEG, 8)
     noted, _ = outstanding(child, scaled.curves, of_values=scaled.values)
     assert not [one.words for one in noted if one.words]

@@ -107,7 +107,7 @@ def test_of_many_trials_the_first_are_named():
         measured, _ = with_spikes(measured, trial, trial)
     (finding,) = without_spikes(measured).findings
     assert "trial '3'" in finding.what and "trial '4'" not in finding.what
-    assert finding.what.endswith("; spikes also in 2 more trials")
+    assert finding.what.endswith("; further trials with spikes: 2")
 
 
 def test_a_wrong_number_is_found_as_well_with_spikes_in_one_trial_as_without():

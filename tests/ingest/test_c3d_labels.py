@@ -153,7 +153,7 @@ def test_labels_that_are_all_alike_are_made_unique_by_description_then_by_place(
 def test_two_channels_of_one_muscle_are_numbered_and_reported():
     assert emg_names([AnalogLabel(n, "R TA", "", "V") for n in (1, 2)]) == ["emg_ta_r_1", "emg_ta_r_2"]
     _, findings = _streams(["R TA", "R Tib Ant"], ["V", "V"])
-    assert "several channels are called emg_ta_r" in findings[0].what
+    assert "several EMG channels have the same name (emg_ta_r" in findings[0].what
 
 
 def test_a_force_is_no_emg_whatever_it_is_called():

@@ -59,7 +59,7 @@ def test_a_ground_force_that_cannot_be_is_refused_as_a_missing_one_is():
 def test_a_channel_beyond_its_range_throughout_has_a_wrong_unit():
     _, (finding,) = without_impossible({"markers": _of(Channel("RHEE.x", "marker", "m"), 2047.0, 2046.0, 2047.0)})
     assert says(finding.what, "2 more", "3 frames")
-    assert says(finding.spoils, "of the channel")
+    assert says(finding.spoils, "the entire channel", "unit")
 
 
 def test_emg_in_counts_of_a_converter_is_left_and_named():

@@ -119,8 +119,8 @@ def test_a_width_is_taken_from_both_markers_where_nobody_measured_it():
     plain = with_methods("helen_hayes", knee="chord", ankle="chord")
     found = calibrate_body(static_of(HELEN_HAYES), plain, BodyMeasures(marker_diameter_m=2 * RADIUS))
     widths = [finding.what for finding in found.findings if finding.kind == "width"]
-    assert f"the width of knee_r is {KNEE_WIDTH * 1000:.0f} mm between its two markers" in widths
-    assert f"the width of ankle_l is {ANKLE_WIDTH * 1000:.0f} mm between its two markers" in widths
+    assert f"the width of knee_r, between its two markers, is {KNEE_WIDTH * 1000:.0f} mm" in widths
+    assert f"the width of ankle_l, between its two markers, is {ANKLE_WIDTH * 1000:.0f} mm" in widths
     np.testing.assert_allclose(found.points["shank_r"]["ankle_r"], [0, -SHANK, 0], atol=1e-9)
 
 

@@ -129,7 +129,7 @@ def test_a_spring_is_named_written_into_the_model_and_met_by_its_own_runs(lab, t
     (effect,) = load(tmp_path).effects
     assert effect.estimates["stiffness"].low < 20.0 < effect.estimates["stiffness"].high
     said = [one.what for one in load(tmp_path).findings if one.kind in ("own runs", "written back")]
-    assert len(said) == 2 and "by MuJoCo itself, the errors are" in said[1]
+    assert len(said) == 2 and "runs by MuJoCo, the errors without" in said[1]
     found, augmented = discover(lab / "pendulum.toml", pd.read_csv(lab / "trials.csv"))
     assert [one.name for one in found.effects] == ["one_sided_spring"] and augmented.model == "pendulum.xml"
     (lab / "pendulum.toml").unlink()

@@ -82,8 +82,8 @@ def test_a_run_too_short_is_left_out_and_said():
     x[130:150] = np.nan
     assert np.isnan(low_pass(recording(x)).values[120:130, 0]).all()
     (finding,) = short_run_findings(recording(x))
-    assert says(finding.what, "1 segment", "fewer", "18 samples (0.180 s)")
-    assert "needs 18 samples" in finding.spoils
+    assert says(finding.what, "1 segment", "18 samples (0.180 s)")
+    assert "requires 18 samples" in finding.spoils
     assert finding.spans == ((1.2, 1.3),)
 
 

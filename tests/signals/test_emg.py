@@ -239,7 +239,7 @@ def test_walking_beside_standing_is_judged_by_a_thousand(stronger):
     (weak,) = said(1e-3 * stronger, 1.0, OVER_STANDING)
     assert says(weak, "weaker", "4 channels", "mV")
     (strong,) = said(1e3 * stronger, 1.0, OVER_STANDING)
-    assert "times stronger than in other" in strong and says(strong, "mV", "V is stated")
+    assert "times stronger than in other" in strong and says(strong, "mV instead of V")
 
 
 def test_one_walk_beside_another():

@@ -109,7 +109,7 @@ def test_trials_whose_clocks_shake_alike_have_one_finding():
     measured = _measured(*shaken)
     (finding,) = measured.findings
     assert measured.rate == 100.0
-    assert finding.kind == "clock" and finding.what.endswith("; also in 2 more trials")
+    assert finding.kind == "clock" and finding.what.endswith("; further trials: 2")
 
 
 def test_trials_are_padded_and_their_lengths_kept():

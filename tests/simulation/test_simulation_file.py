@@ -202,7 +202,7 @@ def test_an_observation_in_the_long_form_is_read(ankle_text):
         ("lowpass = 6.0", "lowpass = -6", "lowpass must be a number above 0 [Hz]; found lowpass = -6"),
         ("lowpass = 6.0", "cutoff = 6", "only keys of the simulation file are allowed; found 'cutoff'"),
         ("sd = 0.3", 'sd = "small"', "sd must be a finite number; found small. Write it without quotes"),
-        ('unit = "deg"', 'unit = "kg"', "'theta' has another kind of unit, rad. Correct the unit"),
+        ('unit = "deg"', 'unit = "kg"', "'theta' has a unit of another dimension, rad. Correct the unit"),
         ('expression = "57.2958*theta" ', "", "an observation needs an expression; it has none"),
         ('theta"   #', 'thetta"   #', "Did you mean 'theta'?"),
     ],

@@ -111,8 +111,8 @@ def test_units_that_fit(ankle, expression, unit):
         ("theta", "deg", r"its column, 'deg'; 'theta' is in rad. Write 57.2958\*theta."),
         ("-theta", "deg", r"'theta' is in rad. Write -57.2958\*theta."),
         ("57.2958*theta", "rad", r"its column, 'rad'; 'theta' is in rad. Write 1\*theta."),
-        ("theta", "m", r"its column, 'm'; 'theta' has another kind of unit. Correct the unit or expression."),
-        ("tau*omega", "N m", r"'tau\*omega' has another kind of unit"),
+        ("theta", "m", r"its column, 'm'; 'theta' has a unit of another dimension. Correct the unit or expression."),
+        ("tau*omega", "N m", r"'tau\*omega' has a unit of another dimension"),
     ],
 )
 def test_units_that_do_not_fit_are_refused_with_the_mend(ankle, expression, unit, words):

@@ -140,7 +140,7 @@ def test_it_is_nan_with_a_reason_where_it_means_nothing():
     assert says(missing, "1 of 4 samples")
     assert says(rounding, "the measured values", "100000")
     assert fine == ""
-    assert why_no_r2(y[:1], f[:1])[0] == "1 samples are too few"
+    assert why_no_r2(y[:1], f[:1])[0] == "too few samples (n = 1)"
     assert np.isnan(r2(y[:0], f[:0])).all()
 
 

@@ -129,7 +129,7 @@ def test_what_says_one_thing_is_one_sentence_of_its_highest_tier(noted, tier, pa
 
 def test_nothing_that_stands_out_and_why_nothing_can_be_said():
     few = outstanding_sentences(read_beside(made_person(each=2, changed={"knee_angle_l": -60.0}), made_controls(6)))
-    assert list(few) == [""] and says(" ".join(few[""]), "3 cycles", "2 left, 2 right", "6 controls", "smaller")
+    assert list(few) == [""] and says(" ".join(few[""]), "3 cycles", "2 left, 2 right", "few controls (6)", "missed")
     assert "there is no reference" in outstanding_sentences(read_beside(made_person(), None))[""][0]
 
 
