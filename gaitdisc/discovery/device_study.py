@@ -10,9 +10,9 @@ import numpy as np
 
 from gaitdisc.discovery.candidate import Candidate
 from gaitdisc.discovery.changed_moment import NORMAL_95, Changed, find_change, foot_mass
-from gaitdisc.discovery.joint_and_trials import as_walk, changes, nominal_moment, weighed
+from gaitdisc.discovery.joint_and_trials import FEWEST_TRIALS, STRIDES, as_walk, changes, nominal_moment, weighed
 from gaitdisc.discovery.result import Estimate
-from gaitdisc.errors import ChannelError, SchemaError
+from gaitdisc.errors import ChannelError, SchemaError, StrideError
 from gaitdisc.ingest.c3d import C3DReader
 from gaitdisc.ingest.public_words import PublicWords, list_words, of_trial
 from gaitdisc.ingest.study import Participant, Study
@@ -27,6 +27,12 @@ from gaitdisc.recording import Trial
 LEAST_R2 = 0.7  # two strides of a published walk have -2.4 and 0.70, 36 s of the embedded cohort 0.96
 AGREES = 1.25  # times what is left of Nominal strides; 0.97 to 1.12 in four made people where nothing was hidden
 FOOT_SHOWS_AT = ("knee_angle", "hip_flexion")
+FEWEST_STRIDES = FEWEST_TRIALS * STRIDES
+MEND = (
+    f"Record one walk of at least {FEWEST_STRIDES} strides of each condition, and set the second as device in "
+    "[conditions]. Of short trials, `gaitdisc run` pools the cycles, and `gaitdisc report STUDY --person P --before A "
+    "--after B` compares two sessions or conditions."
+)
 LEAST_FOOT_KG = 0.3  # three made people show up to 0.2 kg at these joints where there is none
 
 
@@ -93,7 +99,7 @@ class PersonWalks:
         """Return one joint of the Nominal walk and another, whatever the moment model explains."""
         if lacking := not_compared(against(self.study, condition), self.participant):
             needed = f"both walks of {self.participant.id} are required"
-            raise SchemaError(needed, lacking.removesuffix("."), "Name one trial of each condition.")
+            raise SchemaError(needed, lacking.removesuffix("."), MEND)
         nominal, device = (self._record(word, joint) for word in (self.study.conditions.nominal, condition))
         if joint not in self._models:
             self._models[joint] = nominal_moment(nominal)
@@ -105,6 +111,7 @@ class PersonWalks:
             with self._reader:
                 self._read[condition] = self._walks.read_walk(planned)
         read = self._read[condition]
+        check_length(read.trial, self.study.strides.min_s)
         check_kinetics(read.trial)
         mass_kg = None if read.body_weight_n is None else read.body_weight_n / GRAVITY
         public = of_trial(self._words, self.participant, planned)
@@ -137,6 +144,14 @@ def weigh_foot(walks: Mapping[str, DeviceWalks]) -> Estimate | None:
     half = NORMAL_95 * knee_spread
     named = hip > hip_spread and knee > max(LEAST_FOOT_KG, half)
     return Estimate(knee, knee - half, knee + half, "kg") if named else None
+
+
+def check_length(trial: Trial, shortest_s: float) -> None:
+    """Refuse a walk too short for the strides of a discovery, before faults whose mend would not help."""
+    time = trial.stream("kinematics").time
+    if (lasts_s := float(time[-1] - time[0])) < FEWEST_STRIDES * shortest_s:
+        needed = f"naming the effect of a device needs {FEWEST_STRIDES} strides in one trial"
+        raise StrideError(needed, f"{trial.name} lasts {lasts_s:.1f} s", MEND)
 
 
 def check_kinetics(trial: Trial) -> None:

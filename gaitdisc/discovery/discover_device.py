@@ -50,7 +50,7 @@ def discover_study(
     errors: dict[str, GaitdiscError] = {}
     walks = PersonWalks(read, person)
     for word in words:
-        of = f"{word}: " if len(words) > 1 else ""
+        of = f"{word}: " if word and len(words) > 1 else ""
         own = replace(request, progress=lambda step, of=of: request.progress(f"{of}{step}"))
         own.progress(f"comparing both walks of {participant} with the Nominal model")
         try:

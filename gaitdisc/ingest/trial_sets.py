@@ -71,7 +71,7 @@ def why_refused(study: Study, participant: Participant) -> str:
     without_device = bool(alike) and not any(person.trials_of(device or "") for person in alike)
     if device is not None and not without_device:
         if participant.id in study.one_condition_only():
-            return _one_walk_each(study, participant)
+            return f"{_one_walk_each(study, participant)} Correct the conditions in [[participants.trials]]."
     elif not trial_sets(study, participant):
         words = " or ".join(map(repr, study.conditions.words))
         found = f"{participant.id} has {len(participant.trials) or 'no'} trials of other conditions"
@@ -148,4 +148,4 @@ def _one_walk_each(study: Study, participant: Participant) -> str:
     others = sum(trial.condition not in both for trial in participant.trials)
     unused = f"; trials of other conditions: {others}" if others else ""
     needed = f"a comparison requires one trial of {both[0]!r} and one of {both[1]!r}"
-    return f"{needed}; {participant.id} has {found}{unused}. Correct the conditions in [[participants.trials]]."
+    return f"{needed}; {participant.id} has {found}{unused}."

@@ -18,6 +18,7 @@ from gaitdisc.discovery.device_study import (
     PersonWalks,
     check_calibrated,
     check_kinetics,
+    check_length,
     weigh_foot,
 )
 from gaitdisc.discovery.discover_device import (
@@ -33,16 +34,16 @@ from gaitdisc.discovery.folder import load_discovery, save_discovery
 from gaitdisc.discovery.joint_and_trials import nominal_moment
 from gaitdisc.discovery.page import write_discovery_report
 from gaitdisc.discovery.result import Discovery, Estimate, FoundEffect, GapSize, Runs
-from gaitdisc.errors import SchemaError
+from gaitdisc.errors import SchemaError, StrideError
 from gaitdisc.ingest.public_words import PublicWords
 from gaitdisc.ingest.study import Conditions, Participant, PlannedTrial, Study
 from gaitdisc.ingest.study_file import write_study
 from gaitdisc.recording import Finding, Recording, Trial
 
 
-def trial(*keys, findings=()):
+def trial(*keys, findings=(), lasts_s=0.03):
     channel = vocabulary().named("emg_sol_r")
-    one = Recording(np.arange(4) / 100, np.zeros((4, 1)), (channel,))
+    one = Recording(np.linspace(0, lasts_s, 4), np.zeros((4, 1)), (channel,))
     return Trial("W01_exo", dict.fromkeys(keys, one), findings=tuple(findings))
 
 
@@ -60,6 +61,12 @@ def test_forces_that_do_not_carry_the_body_and_moments_per_kg_that_say_newton_me
 def test_a_walk_without_emg_or_forces_says_which(has, lacks, mend):
     with pytest.raises(NoMomentsError, match=rf"{lacks}.*both.*W01_exo has no {lacks}.*{mend}"):
         check_kinetics(trial(has))
+
+
+def test_a_trial_of_a_few_strides_is_refused_for_its_length_and_sent_to_pooled_cycles():
+    with pytest.raises(StrideError, match=r"12 strides.*W01_exo lasts 4\.7 s.*--before A --after B"):
+        check_length(trial("kinematics", lasts_s=4.7), 0.4)
+    check_length(trial("kinematics", lasts_s=4.9), 0.4)
 
 
 def one_walk(word="nominal", **others):
