@@ -141,13 +141,6 @@ class JointFinding:
         pair = left[None, :, None], (left - predicted)[None, :, None]
         return compare_errors(*pair, np.array([self.joint.floor or 1.0]))
 
-    def with_noise_of(self, rest: Values, used: float = 0.0) -> JointFinding:
-        """The same with the noise that an explanation leaves (sample,), where that is more than now."""
-        if np.sqrt(np.mean(rest**2)) <= self.noise.size[0]:
-            return self
-        least = CRITERIA.model_error * float(np.std(self.joint.demanded))
-        return replace(self, noise=find_noise(rest[None, :, None], used=used, least=least))
-
     def _numbers(self, candidate: Candidate, some: NDArray[np.intp], refined: bool = True) -> dict[str, float] | None:
         """Numbers of a candidate that suit some of the samples; None where it does not act in them."""
         from scipy.optimize import minimize
@@ -209,6 +202,7 @@ def joint_finding(joint: ResidualMoment, candidates: tuple[Candidate, ...], join
     """Weigh every candidate at one of some joints; name the best where evidence and held-out time bear it out."""
     from scipy.stats import chi2
 
+    floor = CRITERIA.model_error * float(np.std(joint.demanded))
     found = JointFinding(joint, _noise_of_angles(joint), len(candidates) * joints)
     size = float((found._white(joint.left) ** 2).sum())
     found = replace(found, at_noise=bool(chi2.sf(size, len(joint.time)) > CHANCE / joints))
@@ -218,9 +212,9 @@ def joint_finding(joint: ResidualMoment, candidates: tuple[Candidate, ...], join
         best = tuple(one.candidate for one in coarse[:REFINED])
         ordered = found.weigh(best, refined=True)
         rest = min((joint.left - named.explained for named in ordered), key=np.linalg.norm, default=joint.left)
-        before, found = found, found.with_noise_of(rest, used=2)
-        if found is before:
+        if np.sqrt(np.mean(rest**2)) <= found.noise.size[0]:
             break
+        found = replace(found, noise=find_noise(rest[None, :, None], used=2, least=floor))
     near = [named for named in ordered if named.gained > max(ordered[0].gained - CRITERIA.margin, CRITERIA.margin)]
     proven = sorted(map(found.prove, near), key=lambda one: -one.held_out)
     alike = [named for named in proven if named.held_out > proven[0].held_out - CRITERIA.tie]  # of these the plainest
@@ -237,64 +231,54 @@ def joint_finding(joint: ResidualMoment, candidates: tuple[Candidate, ...], join
 
 
 def name_across_joints(joints: list[JointFinding], candidates: tuple[Candidate, ...]) -> list[JointFinding]:
-    """Name a number that acts at several joints, as a mass does, where it explains more than the best at each of them.
+    """Name a number that acts at several joints, as a mass does, where it leaves less than the best at each of them.
 
-    Either answer is weighed by what it leaves, as noise of unknown size, and is as likely beforehand.
+    What either answer leaves counts as white noise of unknown size; both kinds of answer are as likely beforehand.
     """
-    found, most, price = list(joints), CRITERIA.margin, 2 * float(np.log(max(2 * len(candidates), 1)))
+    found, most = joints, CRITERIA.margin
     for candidate in candidates:
-        places = [k for k, one in enumerate(joints) if one.weigh((candidate,), refined=False)]
-        acting, named = _across_joints([joints[k] for k in places], candidate)
-        cost = price + float(np.log(sum(len(one.explained) for one in named)))
-        gained, before, after = sum(one.gained for one in named) - cost, 0.0, 0.0
-        better = -cost
-        for one, each in zip(acting, named, strict=True):
-            left, own = one.joint.left, one.rivals[:1] if one.rivals and one.rivals[0].gained > 0 else ()
-            better += sum(one._price(len(rival.candidate.slots)) for rival in own)
-            sizes = [
-                max(float(np.mean(rest**2)), one.joint.floor**2)
-                for rest in (left - sum(rival.explained for rival in own), left - each.explained)
-            ]
-            better += len(left) / SAMPLES_A_NUMBER * float(np.log(sizes[0] / sizes[1]))
-            before += float((one._white(left) ** 2).sum())
-            after += float((one._white(left - each.predicted) ** 2).sum())
-        if gained > most and better > 0 and after < (1 - CLOSED) * before:
+        named = _fit_across_joints(joints, candidate)
+        gained = -2 * float(np.log(2 * len(candidates))) - float(
+            np.log(sum(len(one.explained) for one in named.values()))
+        )
+        before, after = 0.0, 0.0
+        for k, one in named.items():
+            joint, rivals = joints[k].joint, joints[k].rivals
+            own = rivals[0].explained if rivals and rivals[0].gained > 0 else 0.0
+            sizes = [max(float(np.mean((joint.left - part) ** 2)), joint.floor**2) for part in (own, one.explained)]
+            gained += len(joint.left) / SAMPLES_A_NUMBER * float(np.log(sizes[0] / sizes[1]))
+            gained += joints[k]._price(len(rivals[0].candidate.slots)) if np.any(own) else 0.0
+            before += float(np.sum((joint.left / joint.floor) ** 2))
+            after += float(np.sum(((joint.left - one.predicted) / joint.floor) ** 2))
+        if gained > most and after < (1 - CLOSED) * before:
             found, most = list(joints), gained
-            for k, one, each in zip(places, acting, named, strict=True):
-                whole = replace(each, gained=gained)
-                found[k] = replace(one, named=whole, rivals=(whole, *one.rivals))
+            for k, one in named.items():
+                whole = replace(one, gained=gained)
+                found[k] = replace(joints[k], named=whole, rivals=(whole, *joints[k].rivals))
     return found
 
 
-def _across_joints(acting: list[JointFinding], candidate: Candidate) -> tuple[list[JointFinding], list[Named]]:
-    """Fit one number at several joints, each weighed by its information, and predict each block of the time."""
+def _fit_across_joints(joints: list[JointFinding], candidate: Candidate) -> dict[int, Named]:
+    """Fit one number at all joints where it acts, weighed by their information, and predict each block of the time."""
+    first = [replace(one, noise=_noise_of_angles(one.joint)) for one in joints]
+    fitted = {k: one for k, joint in enumerate(first) if (one := joint._fitted(candidate, refined=False))}
+    weights = np.array([1 / float(one.covariance[0, 0]) for one in fitted.values()])
 
-    def fit(some: NDArray[np.intp]) -> tuple[dict[str, float], float]:
-        numbers = [one._numbers(candidate, some, refined=False) or candidate.idle for one in acting]
-        slopes = (one._white(one.joint.slope(candidate, candidate.idle, "value")) for one in acting)
-        weights = np.array([float((slope**2).sum()) for slope in slopes])
-        values = np.array([each["value"] for each in numbers])
-        return {"value": float(weights @ values / weights.sum())}, 1 / float(weights.sum())
+    def pool(some: NDArray[np.intp]) -> dict[str, float]:
+        numbers = [(first[k]._numbers(candidate, some, refined=False) or candidate.idle)["value"] for k in fitted]
+        return {"value": float(weights @ numbers / weights.sum())}
 
-    every = np.arange(len(acting[0].joint.time))
-    first = acting = [replace(one, noise=_noise_of_angles(one.joint)) for one in acting]
-    values, variance = fit(every)
-    for _ in range(2 * ROUNDS):
-        acting = [one.with_noise_of(one.joint.left - one.joint.explained(candidate, values)) for one in first]
-        values, variance = fit(every)
-    predicted = np.zeros((len(acting), len(every)))
-    for held, learned in acting[0].joint.blocks:
-        learnt, _ = fit(learned)
-        predicted[:, held] = [one.joint.explained(candidate, learnt)[held] for one in acting]
-    named = []
-    for one, each in zip(acting, predicted, strict=True):
-        explained = one.joint.explained(candidate, values)
-        sizes = [float((one._white(one.joint.left - part) ** 2).sum()) for part in (0.0, explained, each)]
-        gained, held_out = (_fall(sizes[0], size, len(every)) for size in sizes[1:])
-        named.append(
-            Named(candidate, values, np.array([[variance]]), explained, each, gained, held_out, one.test(each))
-        )
-    return acting, named
+    predicted = np.zeros((len(joints), len(joints[0].joint.time)))
+    for held, learned in joints[0].joint.blocks:
+        values = pool(learned)
+        for k in fitted:
+            predicted[k, held] = joints[k].joint.explained(candidate, values)[held]
+    values, variance = pool(np.arange(predicted.shape[1])), np.array([[1 / weights.sum()]])
+    whole = {k: replace(one, values=values, covariance=variance, predicted=predicted[k]) for k, one in fitted.items()}
+    return {
+        k: replace(one, explained=joints[k].joint.explained(candidate, values), test=joints[k].test(predicted[k]))
+        for k, one in whole.items()
+    }
 
 
 def _noise_of_angles(joint: ResidualMoment) -> Noise:
