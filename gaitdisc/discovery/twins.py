@@ -139,7 +139,7 @@ def search_twins(
     sources = [TwinSource(case, now, verdict.found.noise) for now in models]
     if any(source.draw(0) is None for source in sources):
         what = "a free run of the simulation departs from the record, so that records like these cannot be simulated"
-        finding = Finding("note", "twins", case.measured.source, what, "how often this answer is right")
+        finding = Finding("note", "twins", case.measured.source, what, "the reliability of this answer")
         return replace(found, findings=(*found.findings, finding))
     note_found("")
     answers = [*search_records(sources, model, request)]

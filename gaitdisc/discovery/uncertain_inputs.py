@@ -84,7 +84,7 @@ def weigh_input_errors(case: Case, verdict: Verdict) -> tuple[Case, Verdict]:
     now, proof = beyond_errors(case, best)
     verdict, dropped = without_names(replace(verdict, proof=proof or verdict.proof), best.now, now)
     what = f"the stated errors of {listing(erring)} explain {dropped} as well"
-    finding = Finding("note", "stated errors", case.measured.source, what, "the name, now an alternative explanation")
+    finding = Finding("note", "stated errors", case.measured.source, what, "this effect, which is no longer named")
     return case.noting(finding) if dropped else case, verdict
 
 
@@ -284,7 +284,7 @@ def weigh_unstated_errors(case: Case, verdict: Verdict) -> tuple[Case, Verdict]:
         return case, verdict
     verdict, dropped = without_names(replace(verdict, proof=proof), found, now)
     what = f"unstated errors of {listing([repr(name) for name in erring])} explain {dropped} as well"
-    finding = Finding("note", "unstated errors", case.measured.source, what, "the name, now an alternative explanation")
+    finding = Finding("note", "unstated errors", case.measured.source, what, "this effect, which is no longer named")
     return case.noting(finding), verdict
 
 

@@ -165,7 +165,7 @@ def without_stated(cycles: list[Cycle], said: Sequence[str], file: str) -> tuple
             found[at] = replace(found[at], reason=f"left out by the study: {reason or 'no reason is given'}")
         else:
             what = f"leave_out_cycles says {words!r}, but no such cycle begins there"
-            findings.append(Finding("warning", "cycle not found", file, what, "nothing; correct it with cycles.csv"))
+            findings.append(Finding("warning", "cycle not found", file, what, "nothing; take the time from cycles.csv"))
     return found, findings
 
 
