@@ -24,7 +24,7 @@ class Channel:
     Parameters
     ----------
     name : str
-        OpenSim's name (`ankle_angle_r`), `emg_<muscle>_<side>` for EMG, `<marker>.x` for a marker coordinate.
+        OpenSim's name (`ankle_angle_r`), `emg_<muscle>_<side>` for EMG, or `<marker>.x` for a marker coordinate.
     quantity : str
         One of `QUANTITIES`; `signal` is for all other quantities (a voltage, a synchronisation pulse).
     unit : str

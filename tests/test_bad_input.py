@@ -164,7 +164,7 @@ def test_a_participant_with_one_condition_only(folder, called):
 def test_a_held_out_part_longer_than_the_trial(folder, walk, called):
     written(folder, SOUND, held_out={"seconds": 90.0})
     said = called("run", folder, "--quiet", ends=REFUSED).stderr
-    assert says(said, "too short to hold out", "90 s") and "lasts 30.00 s" in said
+    assert says(said, "must be longer than", "90 s to be held out") and "lasts 30.00 s" in said
 
 
 def test_a_typo_in_the_study(folder, called):

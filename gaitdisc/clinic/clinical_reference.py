@@ -122,7 +122,7 @@ class ClinicalReference:
 def save_reference(reference: ClinicalReference, folder: Path) -> Path:
     """Save a reference as `reference.json`, whole, with a hash of its own."""
     if reference.published:
-        raise SchemaError("only a reference made of single legs can be saved", reference.title, "Keep this table.")
+        raise SchemaError("a saved reference must consist of single legs", reference.title, "Use the table itself.")
     data = {
         "format": FORMAT,
         "title": reference.title,
@@ -144,13 +144,13 @@ def load_reference(place: Path) -> ClinicalReference:
     if not path.is_file():
         raise SchemaError(
             f"a reference must be a folder with {FILE}",
-            f"{place} has none",
+            f"{place} has no such file",
             "Make it from the controls' recordings: gaitdisc reference CONTROLS --out FOLDER.",
         )
     data = read_sealed(path)
     if data.get("format") != FORMAT:
         raise SchemaError(
-            f"a reference of format {FORMAT} is needed", f"{path} has {data.get('format')!r}", "Compute it again."
+            f"a reference must have format {FORMAT}", f"{path} has {data.get('format')!r}", "Compute it again."
         )
     try:
         legs = {word: tuple(map(_leg, own)) for word, own in data["legs"].items()}

@@ -63,7 +63,7 @@ def load_laboratory(run_folder: Path) -> Laboratory:
     try:
         data = parse_toml(path.read_text(encoding="utf-8"))
     except (ValueError, OSError) as error:
-        raise SchemaError(f"{FILE} must be a TOML file", f"it is not: {str(error)[:200]}", "Correct it.") from error
+        raise SchemaError(f"{FILE} must be a TOML file", f"found: {str(error)[:200]}", "Correct it.") from error
     for key, value in data.items():
         if key not in KINDS or not isinstance(value, KINDS[key]):
             raise _refusal(f"{key} = {str(value)[:60]!r}")
@@ -85,7 +85,7 @@ def _ends(name: str, ends: Any) -> tuple[float, float]:
     numbers = isinstance(ends, list) and len(ends) == 2 and all(isinstance(end, int | float) for end in ends)
     if name not in BY_NAME or not numbers or not ends[0] < ends[1]:
         raise SchemaError(
-            f"an axis must be a curve with its two ends, the lower first: one of {', '.join(BY_NAME)}",
+            f"each axis must be given by one of {', '.join(BY_NAME)} and its two ends, the lower first",
             f"{FILE}, [axes]: {name} = {str(ends)[:60]}",
             "Write, for example, knee_flexion = [-15, 75].",
         )

@@ -94,7 +94,7 @@ def _read_xlsx(content: bytes, file: str) -> Curves:
         with zipfile.ZipFile(io.BytesIO(content)) as book:
             size = sum(part.file_size for part in book.infolist())
         if size > LARGEST_BYTES:
-            raise ValueError(f"unpacked it has {size >> 20} MiB, more than {LARGEST_BYTES >> 20}")
+            raise ValueError(f"unpacked, it has {size >> 20} MiB; at most {LARGEST_BYTES >> 20} MiB are read")
         sheets = pd.read_excel(io.BytesIO(content), sheet_name=None, header=None)
     except ImportError as error:
         remedy = "Install it: pip install 'gaitdisc[xlsx]'."

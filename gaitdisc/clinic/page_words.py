@@ -100,7 +100,7 @@ def read_words(path: Path, english: Sequence[str]) -> PageWords:
         raise SchemaError(
             form,
             f"{path.name} begins with {first}",
-            "Begin with: gaitdisc report CLINIC --language NEW.csv.",
+            "Write a new table: gaitdisc report CLINIC --language NEW.csv.",
         )
     known, other = set(english), {}
     for line, row in enumerate(rows[1:], 2):

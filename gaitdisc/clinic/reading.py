@@ -298,7 +298,7 @@ def _spans(first: LegCurves, second: LegCurves) -> tuple[list[DifferingSpan], in
     ]
     if not names:
         raise ComparisonError(
-            "a test needs an angle that all cycles of both sets have", "found none", "Record the same angles in both."
+            "a test needs an angle in all cycles of both sets", "found none", "Record the same angles in both sets."
         )
     sets: Mapping[str, np.ndarray] = {
         word: np.stack([leg.cycles[name] for name in names], axis=2) for word, leg in (("a", first), ("b", second))

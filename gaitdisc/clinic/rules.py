@@ -121,7 +121,7 @@ def rules_in(data: Mapping[str, list[dict[str, object]]]) -> tuple[Rule, ...]:
         said = words["name"] and (words["less"] or words["more"]) and known != (words["value"] in SPATIOTEMPORAL)
         if not said or not isinstance(least, float) or least <= 0:
             raise SchemaError(
-                "a rule must have name, least > 0, and less or more; also either variable, part and take, or value",
+                "a rule must have name, least (above 0), less or more, and either value or variable, part and take",
                 f"found {dict(entry)}",
                 "Correct rules.toml.",
             )

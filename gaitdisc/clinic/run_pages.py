@@ -142,7 +142,7 @@ def write_person(
     own = {title: cycles for title, cycles in people.items() if cycles[0].subject == person}
     if not own:
         known = ", ".join(dict.fromkeys(cycles[0].subject for cycles in people.values())) or "nobody"
-        raise SchemaError("the person must be in the run", f"{person!r} is not; it has {known}", "Name one of them.")
+        raise SchemaError("the person must be in the run", f"{person!r} is not; known: {known}", "Name one of them.")
     names = file_names(list(people))
     found = []
     for title, cycles in own.items():
@@ -178,7 +178,7 @@ def before_and_after(
     if not own:
         people = ", ".join(dict.fromkeys(pooled.subject for pooled in run.of(CYCLES)))
         raise SchemaError(
-            f"the person must be one with kept cycles ({people})", f"found {person!r}", "Name one of them."
+            "the person must have kept cycles in the run", f"{person!r} has none", f"Choose one of: {people}."
         )
     first, second = ([one for one in own if word in (one.pooled.session, one.pooled.condition)] for word in words)
     pairs = [
@@ -189,9 +189,9 @@ def before_and_after(
     if not pairs:
         there = ", ".join(one.pooled.where for one in own)
         raise SchemaError(
-            f"{person} needs kept cycles of {words[0]!r} and of {words[1]!r}, of one condition or of one session",
+            f"{person} must have kept cycles of {words[0]!r} and {words[1]!r} in one condition or in one session",
             f"found {there}",
-            "Name two sessions, or two conditions, of these.",
+            "Name two of these sessions, or two of these conditions.",
         )
     before, after = pairs[0]
     return PersonSession(" ".join((person, *words)), (after, before), (contrast(before, after),))

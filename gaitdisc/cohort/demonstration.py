@@ -47,7 +47,7 @@ def write_demonstration(
     laboratory: `angles` of a treadmill; `markers`, two belts and a static trial; or short trials `overground`
     """
     if laboratory not in LABORATORIES:
-        raise SchemaError(f"laboratory must be {', '.join(LABORATORIES)}", f"found {laboratory!r}", "Use one of these.")
+        raise SchemaError(f"the data must be {' or '.join(LABORATORIES)}", f"found {laboratory!r}", "Use one of these.")
     participants, markers = [], laboratory != "angles"
     for person in the_twelve()[:people]:
         walks = make_walks(person, duration_s, hidden, markers)

@@ -26,7 +26,7 @@ def angles(
     ] = None,
     widths: Annotated[
         tuple[float, float, float, float] | None,
-        typer.Option(help="Widths of left and right knee, left and right ankle [m], if the static file has none."),
+        typer.Option(help="Widths of left knee, right knee, left ankle, right ankle [m], if the static file has none."),
     ] = None,
 ) -> None:
     """Compute joint angles from markers or segments; joint widths come from the static C3D file, if it has any."""

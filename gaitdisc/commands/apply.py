@@ -12,7 +12,7 @@ from gaitdisc.errors import SchemaError
 
 def apply(
     model: Annotated[Path, typer.Argument(help="Folder of a model that `gaitdisc reconstruct` saved.")],
-    recording: Annotated[Path, typer.Argument(help="File with the model's sensors.")],
+    recording: Annotated[Path, typer.Argument(help="Recording with the model's sensors.")],
     calibrate: Annotated[
         Path | None, typer.Option(help="A walk of the same person that has all states, to correct the model.")
     ] = None,

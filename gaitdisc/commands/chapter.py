@@ -21,7 +21,7 @@ def chapter(
     part: Annotated[str, typer.Option(help="Compute only this part.")] = "",
     quick: Annotated[bool, typer.Option("--quick", help="Compute a small part of each study, as in its test.")] = False,
     data: Annotated[
-        Path | None, typer.Option(help="Folder of real recordings with gait/ and fields/; by default GAITDISC_DATA.")
+        Path | None, typer.Option(help="Folder of recordings with gait/ and fields/; by default GAITDISC_DATA.")
     ] = None,
     quiet: Quiet = False,
 ) -> None:

@@ -12,9 +12,9 @@ from gaitdisc.errors import LOG, SchemaError
 
 
 def compare(  # noqa: PLR0913, PLR0917 these are the options of a command
-    first: Annotated[Path, typer.Argument(metavar="SIM", help="File of a simulated walk or a condition, or a study.")],
+    first: Annotated[Path, typer.Argument(metavar="SIM", help="File of a simulated walk or condition, or a study.")],
     second: Annotated[
-        Path | None, typer.Argument(metavar="MEASURED", help="File of the measured walk or the other condition.")
+        Path | None, typer.Argument(metavar="MEASURED", help="File of the measured walk or other condition.")
     ] = None,
     out: Annotated[
         Path | None, typer.Option(help="Folder of the report; by default ./compare, or STUDY/compare.")
@@ -31,10 +31,10 @@ def compare(  # noqa: PLR0913, PLR0917 these are the options of a command
     smallest_angle: Annotated[float, typer.Option(min=0.0, help="Smallest angle difference to name [deg].")] = 2.0,
     smallest_moment: Annotated[float, typer.Option(min=0.0, help="Smallest moment difference to name [N m/kg].")] = 0.1,
     smallest_share: Annotated[
-        float, typer.Option(min=0.0, help="Smallest other difference to name, as a share of the range of the curve.")
+        float, typer.Option(min=0.0, help="Smallest other difference to name, as a fraction of the curve's range.")
     ] = 0.05,
     body_weight: Annotated[
-        float | None, typer.Option(min=1.0, help="Body weight [N], to which the share of forces refers.")
+        float | None, typer.Option(min=1.0, help="Body weight [N]; the fraction for forces refers to it.")
     ] = None,
 ) -> None:
     """Compare two walks over the stride: where they differ, by how much, and whether significantly."""

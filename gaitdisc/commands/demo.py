@@ -20,7 +20,7 @@ def demo(  # noqa: PLR0913, PLR0917 these are the options of a command
         str, typer.Option(help="Difference between the walks: spring, weak plantarflexor, stiff knee, drop foot, ...")
     ] = "spring",
     clinic: Annotated[
-        bool, typer.Option("--clinic", help="Simulate a week of a clinic instead: people, pages, index.")
+        bool, typer.Option("--clinic", help="Simulate a week of a clinic instead, with a page for each person.")
     ] = False,
     laboratory: Annotated[
         str,

@@ -41,9 +41,7 @@ def discover(  # noqa: PLR0913, PLR0917 these are the options of a command
     out: Annotated[Path, typer.Option(help="Folder for the results.")] = Path("found"),
     participant: Annotated[
         str,
-        typer.Option(
-            help="In a study: W01, W01:knee_angle, or all. The effect is searched in the walk with the device."
-        ),
+        typer.Option(help="In a study: W01, W01:knee_angle, or all. The walk with the device is searched."),
     ] = "",
     catalogue: Annotated[Path | None, typer.Option(help="Your own effects (TOML), added to the included ones.")] = None,
     effects: Annotated[

@@ -46,7 +46,7 @@ def export(
         from gaitdisc.reconstruction.onnx_file import write_onnx
 
         if len(files) != 1:
-            raise SchemaError("an .onnx file can contain one model", f"{len(files)} are named", "Name one folder.")
+            raise SchemaError("an .onnx file must contain one model", f"found {len(files)}", "Name one folder.")
         model = load_model(files[0])
         write_onnx(model, out)
         what = model.reconstructor.sensing
@@ -79,7 +79,7 @@ def _cycles(run_folder: Path, out: Path, parquet: bool, mot: bool) -> None:
         raise SchemaError(
             "tables of cycles need a run with pooled cycles",
             f"{run_folder.name} contains walks with fitted models",
-            "Their tables are in report/tables.",
+            "The tables of these walks are in report/tables.",
         )
     tables = {
         "cycles": all_cycles(run.cycles),

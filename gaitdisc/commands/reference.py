@@ -22,7 +22,7 @@ def reference(
     people: Annotated[int, typer.Option(min=0, help="Number of people in normal data.")] = 0,
     jobs: Jobs = 1,
 ) -> None:
-    """Process controls like a study, and save the mean cycles of their legs for `--reference`."""
+    """Process the controls as a study, and save the mean cycles of their legs for `--reference`."""
     from gaitdisc.clinic.clinical_reference import FILE, save_reference
     from gaitdisc.clinic.like_controls import described, list_groups
     from gaitdisc.clinic.normal_data import ENDINGS
@@ -63,7 +63,7 @@ def _keep_normal_data(file: Path, out: Path, people: int) -> None:
 
     if not people:
         remedy = f"Add it: gaitdisc reference {file} --out {out} --people 30."
-        raise SchemaError("normal data must come with a number of people", "it is not given", remedy)
+        raise SchemaError("the number of people in normal data must be given", "it is missing", remedy)
     claim_folder(out, PUBLISHED)
     table = read_normal_data(file, people)
     text = table.to_csv(index=False, float_format="%.6g")

@@ -69,7 +69,7 @@ def _people(
     if (before or after) and not (person and before and after):
         raise SchemaError(
             "a comparison needs --person, --before and --after",
-            f"they are person {person!r}, before {before!r}, after {after!r}",
+            f"found person {person!r}, before {before!r}, after {after!r}",
             "Name all three.",
         )
     if person:

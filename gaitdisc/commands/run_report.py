@@ -53,7 +53,7 @@ def report_on(work: Callable[[StudyProgress], ResponseRun], study: Study, folder
         Console().print(r2_text(done))
     for quantity in done.quantities:
         for length_s, reason in quantity.left_away.items():
-            LOG.info(f"left out: {quantity.participant}, training length {length_s:g} s: {reason}")
+            LOG.info(f"{quantity.participant}, training length {length_s:g} s, is left out: {reason}")
     if done.cycles:
         typer.echo(f"people: {folder / 'report' / 'index.html'}")
     end(done.refusals, len(done.reported), page, time.perf_counter() - started)

@@ -56,9 +56,9 @@ def common_curves(walks: Sequence[WalkSummary], wanted: Sequence[str] = ()) -> C
     shared = _moving(shared, by_channel, walks, findings)
     if not shared:
         raise ChannelError(
-            "walks can be compared only in channels that vary and that all of them have in the same unit",
+            "walks to be compared must share at least one channel that varies, in the same unit",
             f"{' and '.join(map(walk_name, walks[:2]))} have "
-            f"{' and '.join(str(len(walk.channels)) for walk in walks[:2])} channels, none of that kind"
+            f"{' and '.join(str(len(walk.channels)) for walk in walks[:2])} channels, but share no such channel"
             + (f": {findings[0].what}" if findings else ""),
             "Map the labels of both files to the same names in a study's [channels], and state the units.",
         )
@@ -86,7 +86,7 @@ def _list_shared(walks: Sequence[WalkSummary], wanted: Sequence[str], findings: 
             raise ChannelError(
                 f"channel {name!r} must be in all walks to be compared",
                 f"{', '.join(lacking)} lack{'s' if len(lacking) == 1 else ''} it"
-                + (f"; the nearest that all have is {nearest!r}" if nearest else ""),
+                + (f"; the most similar common name is {nearest!r}" if nearest else ""),
                 f"Choose one of: {', '.join(everywhere) or 'none'}.",
             )
     everything = {name for unit in units for name in unit}

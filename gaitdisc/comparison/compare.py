@@ -97,8 +97,8 @@ def compare_walks(
     fewest = FEWEST_IN_ONE if as_curve else FEWEST_IN_EACH
     if len(other) < fewest:
         raise ComparisonError(
-            f"{names[1]} is the reference, whose strides give the spread: it must have at least {fewest}",
-            f"it has {len(other)}, {names[0]} has {len(one)}",
+            f"{names[1]}, the reference, must have at least {fewest} strides, because they give the spread",
+            f"it has {len(other)}, and {names[0]} has {len(one)}",
             "Record longer. Name a walk of a single stride, such as a periodic simulation, first.",
         )
     correlation, shortest = stride_correlation(other), len(other)

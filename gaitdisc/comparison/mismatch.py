@@ -90,7 +90,7 @@ class Mismatch(Saved, file="mismatch.json"):
     curves : mapping of str to ndarray (phase, channel) [channel's unit]
         `first`, `second`: mean curves. `sd_first`, `sd_second`: standard deviations over strides; NaN for a single
         stride. `gap`: second minus first, with the limits `low` and `high` of its 1 - alpha band for all points and
-        channels together. `t` [1].
+        channels together. `t`: the test statistic [1].
     regions : DataFrame
         One row per region of the stride with a significant gap, columns `REGION_COLUMNS`: largest gap, its place, its
         size in stride-to-stride standard deviations of the second walk; mean gap; corrected p of the cluster.
@@ -213,7 +213,7 @@ class Mismatch(Saved, file="mismatch.json"):
         return _records(self.regions[self.regions["channel"] == name])
 
     def summary_of(self, name: str) -> dict[str, Any]:
-        """Row of `summary` of one channel.
+        """Row of `summary` for one channel.
 
         Parameters
         ----------

@@ -106,7 +106,7 @@ class Request:
     ) -> Request:
         """Read a catalogue, if there is one, and note the effects, the rate of false finds and the number of twins."""
         if not 0 < alpha < 1:
-            raise SchemaError("alpha must lie between 0 and 1", f"found {alpha:g}", "Use .05, for example.")
+            raise SchemaError("alpha must lie between 0 and 1", f"found {alpha:g}", "Use 0.05, for example.")
         if twins < 0:
             raise SchemaError("the number of twins must be 0 or more", f"found {twins}", "Use 20, for example.")
         return cls(read_catalogue(catalogue) if catalogue else (), effects, catalogue, alpha, progress, twins=twins)
@@ -212,7 +212,7 @@ def _shape(entry: Any, where: str) -> Shape:
         )
     needs = entry.get("needs", "")
     if needs not in NEEDS:
-        raise SchemaError('a shape may need only "angle"', f"{where} has {needs!r}", "Remove the line.")
+        raise SchemaError('"needs" of a shape may be only "angle"', f"{where} has {needs!r}", "Remove the line.")
     names = entry.get("names", {})
     numbers = [*name_factors(pieces), *constants]
     if not isinstance(names, dict) or not set(names) <= set(numbers) or not all(map(_is_name, names.values())):

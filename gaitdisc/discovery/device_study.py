@@ -161,13 +161,13 @@ def check_kinetics(trial: Trial) -> None:
         raise SchemaError(
             "moments need ground forces that balance the body weight within 12 %",
             f"{trial.name}: {wrong[0].what}",
-            "Correct mass_kg in the study file, or the scale of the plates. Otherwise an effect would be named after "
-            "this error.",
+            "Correct mass_kg in the study file, or the scale of the plates. Otherwise this error would be named as "
+            "an effect.",
         )
     per_kg = [finding for finding in trial.findings if finding.kind == "per body mass"]
     if per_kg:
         raise SchemaError(
-            "the unit of moments must be the one that is stated, N m",
+            "moments must have the stated unit, N m",
             f"{trial.name}: {per_kg[0].channel} {per_kg[0].what}",
             "Write their unit as N m/kg in [channels], or multiply them by the body mass.",
         )
@@ -190,7 +190,7 @@ def check_calibrated(model: MuscleMoment, nominal: JointRecord) -> None:
         strides = nominal.stride.max() + 1
         raise SchemaError(
             f"the moment model must explain at least {100 * LEAST_R2:.0f} % of the variance of held-out Nominal "
-            "strides before a device is named",
+            "strides before an effect of the device is named",
             f"the {JOINTS[nominal.joint]} of {nominal.subject} has R2 {model.r2:.2f}, with {strides} strides",
             "Record more strides, add muscles that span the joint, or check that EMG and forces share a clock.",
         )

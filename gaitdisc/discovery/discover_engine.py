@@ -303,6 +303,6 @@ def _list_warnings(*engines: Engine) -> tuple[Finding, ...]:
     """What MuJoCo warned of: it is said here, and in no file of the user's folder."""
     said = dict.fromkeys(what for one in engines for what in getattr(one, "warnings", ()))
     return tuple(
-        Finding("warning", "engine", "model", f"{engines[0].called} warns: {what}", "results that depend on such a run")
+        Finding("warning", "engine", "model", f"{engines[0].called} warns: {what}", "results of runs with this warning")
         for what in said
     )

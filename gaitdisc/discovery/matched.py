@@ -94,7 +94,7 @@ def _check_observed(measured: Measured, where: str) -> None:
     for name, least, most in zip(measured.channels, low, high, strict=True):
         if least == most:
             raise ShapeError(
-                f"an observed channel must vary: {name!r}",
+                f"the observed channel {name!r} must vary",
                 f"{where} has {least:g} in every sample",
                 "Remove the channel from the observations, or correct it.",
             )

@@ -73,8 +73,8 @@ def agreeing_trials(case: Case, measured: Measured) -> Measured:
             "warning",
             ODD_TRIAL,
             source,
-            f"trial {measured.trials[one.trial]!r} looks as if {one.change}: with this correction the error of the "
-            f"simulation falls from {one.errors[0]:.2g} to {one.errors[1]:.2g} standard deviations; in the other "
+            f"trial {measured.trials[one.trial]!r} looks as if {one.change}. With this correction, the error of the "
+            f"simulation falls from {one.errors[0]:.2g} to {one.errors[1]:.2g} standard deviations. In the other "
             f"trials the same correction raises the error from {one.errors[2]:.2g} to {one.errors[3]:.2g}",
             "this trial, which was left out; correct or remove it",
             one.channel,

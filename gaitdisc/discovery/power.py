@@ -111,7 +111,7 @@ def find_power_for(effect: str, case: Case, as_read: ScoredModel, model: Simulat
     (part,), fit = now.parts, now.fit
     if not part.candidate.idle:
         raise SchemaError(
-            "a plan needs an effect with a number for its size", f"{effect} has none", "Give another effect."
+            "each effect of a plan must have a number for its size", f"{effect} has none", "Give another effect."
         )
     slot, none = next(iter(part.candidate.idle.items()))
     name = now.names[0][slot]

@@ -248,10 +248,10 @@ class Discovery(Saved, file="discovery.json"):
     corrections : tuple of Correction
         Parameters that changed within their bounds.
     beside : mapping of str to float
-        For a device walk: model -> held-out error [unit of the last channel].
+        For a device walk: name of each model -> its held-out error [unit of the last channel].
     explanations : tuple of Explanation
         The first five explanations of the entire gap (single effects or sets): the named one, then those that close
-        most on held-out data.
+        most of the gap on held-out data.
     conditions : tuple of ConditionAnswer
         Answers for all conditions, if a study has several in addition to Nominal.
     given : str
@@ -259,7 +259,7 @@ class Discovery(Saved, file="discovery.json"):
     twins : Twins, optional
         Answers of the same search to simulated records that resemble the user's.
     hide : callable, optional
-        Returns the discovery as it is written: without words that may name a person.
+        Function that returns the discovery as it is saved, without words that may name a person.
     """
 
     verdict: str
@@ -289,11 +289,11 @@ class Discovery(Saved, file="discovery.json"):
 
     @property
     def public(self) -> Discovery:
-        """The discovery as it is written: without names of persons."""
+        """Return the discovery as it is saved, without names of persons."""
         return self.hide(self) if self.hide else self
 
     def to_frame(self) -> pd.DataFrame:
-        """Held-out runs as a table: run, trial, time [s], and each channel measured, simulated and augmented."""
+        """Held-out runs as a table: run, trial, time [s], and each channel as measured, simulated and augmented."""
         import pandas as pd
 
         return pd.DataFrame(self.runs.table(self.channels))

@@ -171,10 +171,10 @@ def balance(walk: Pass) -> list[Finding]:
         mass = engine.mass_kg
         raise SchemaError(
             f"the ground forces must carry the model's weight within {100 * WRONG_MASS:.0f} %",
-            f"{engine.path.name} moves {mass:.1f} kg, {engine.coordinates[up].called} lacks {mean:.0f} N on average: "
-            f"the forces carry {mass * (1 - share):.1f} kg",
+            f"{engine.path.name} moves {mass:.1f} kg, but the forces carry {mass * (1 - share):.1f} kg: "
+            f"{engine.coordinates[up].called} lacks {mean:.0f} N on average",
             "Scale the model to the walker's mass, or correct the scale of the force plates. Otherwise this error "
-            "is named as a missing effect.",
+            "would be named as a missing effect.",
         )
     return found
 
@@ -186,9 +186,9 @@ def refuse_other_motion(walk: Pass) -> None:
         one, size = walk.engine.coordinates[k], walk.size(walk.left[:, k])
         if one.unit == "m" and walk.strongest[k] > 0 and weight and size > OTHER_MOTION * weight:
             raise SchemaError(
-                f"residual forces must balance the motion within {100 * OTHER_MOTION:.0f} % of the weight",
-                f"the residual of {one.called} is {size:.0f} N (root mean square), the weight {weight:.0f} N",
-                "Compute the forces for this motion again: these belong to another one, or their computation failed.",
+                f"residual forces must be at most {100 * OTHER_MOTION:.0f} % of the weight",
+                f"the residual of {one.called} is {size:.0f} N (root mean square), and the weight is {weight:.0f} N",
+                "Compute the forces for this motion again: these are of another motion, or their computation failed.",
             )
 
 

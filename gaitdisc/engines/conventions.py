@@ -57,9 +57,9 @@ def refuse_other_units(mapping: Simulation, engine: Engine, measured: Measured, 
     if steep:
         one = engine.coordinates[steep[0]]
         raise SchemaError(
-            f"the angle {one.called!r} must stay within {STEEPEST:g} rad: at a right angle the other two coincide",
+            f"the angle {one.called!r} must stay within {STEEPEST:g} rad: at a right angle two axes coincide",
             f"column {_column(mapping, one)!r} makes it {largest[steep[0]]:.4g} rad",
-            "If these are degrees, say so in the mapping; else turn the axes of the model, so that x points ahead.",
+            "If these are degrees, state it in the mapping. Otherwise turn the axes of the model: x must point ahead.",
         )
     misfit, degrees = _Misfit(mapping, engine, measured, states), as_read.copy()
     degrees[far] = np.pi / 180
@@ -68,7 +68,7 @@ def refuse_other_units(mapping: Simulation, engine: Engine, measured: Measured, 
         if np.isfinite(one.high) or misfit.with_factors(degrees) < misfit.with_factors(as_read):
             raise SchemaError(
                 f"coordinate {one.called!r} must stay within {_limit(one):.3g} rad",
-                f"column {_column(mapping, one)!r} makes it {largest[k]:.4g} rad: these may be degrees",
+                f"column {_column(mapping, one)!r} makes it {largest[k]:.4g} rad, but may be in degrees",
                 f"State degrees in the mapping: gaitdisc new {engine.path.with_suffix('.toml').name} --from "
                 f"{engine.path.name} --degrees.",
             )

@@ -52,8 +52,8 @@ class OpensimModel:
         if described["dependent"]:
             raise SchemaError(
                 "every unlocked coordinate of the model must be free",
-                f"{self.path.name}: {described['dependent'][0]!r} depends on another one without a coupler",
-                "Write it as a CoordinateCouplerConstraint, take it out, or lock the coordinate.",
+                f"{self.path.name}: {described['dependent'][0]!r} depends on another one, but not by a coupler",
+                "Use a CoordinateCouplerConstraint, remove the dependence, or lock the coordinate.",
             )
         if not described["coordinates"]:
             raise SchemaError(

@@ -103,7 +103,7 @@ def read_tracked_motion(
         if largest > limit:
             raise SchemaError(
                 f"coordinate {one.called!r} must stay within {limit:.3g} {one.unit}",
-                f"{kinematics.name} has {largest:.4g} {one.unit}: these may be "
+                f"{kinematics.name} has {largest:.4g} {one.unit}, which may be "
                 f"{'degrees' if one.unit == 'rad' else 'millimetres'}",
                 "Write inDegrees=yes in the header of the file." if one.unit == "rad" else "Write metres.",
             )
@@ -201,7 +201,7 @@ def actuator_forces(tracked: Tracked, known: tuple[str, ...]) -> tuple[tuple[str
             near = nearest_word(name, known)
             raise ChannelError(
                 "every column of the forces file must be an actuator of the model",
-                f"{path.name} has {name!r}, which is not",
+                f"{path.name} has {name!r}, which is no actuator",
                 (f"Did you mean {near!r}? " if near else "")
                 + "If it is a reserve or residual actuator, name the file that defines it in [tracked] as actuators.",
             )
@@ -216,7 +216,7 @@ def actuator_forces(tracked: Tracked, known: tuple[str, ...]) -> tuple[tuple[str
     if not np.isfinite(values).all():
         row, column = (int(one[0]) for one in np.nonzero(~np.isfinite(values)))
         raise ReadError(
-            "forces must have no gaps", f"{path.name}: {names[kept[column]]!r} is empty in row {row + 1}", "Fill it."
+            "forces must have no gap", f"{path.name}: {names[kept[column]]!r} is empty in row {row + 1}", "Fill it."
         )
     return tuple(names[k] for k in kept[1:]), values
 

@@ -117,7 +117,7 @@ def whole_model(path: Path | str) -> tuple[Simulation, Engine]:
         raise SchemaError(
             f"{engine.called} can run only what the model's own file contains",
             f"{Path(path).name} also has: {'; '.join(absent)}",
-            "Take it out of the mapping, or write it into the model by hand.",
+            "Remove these from the mapping, or write them into the model by hand.",
         )
     return replace(mapping, definitions=written.definitions), written.engine
 

@@ -64,11 +64,11 @@ class C3DReader:
     def read(self, path: str | Path, channels: Mapping[str, str] | None = None) -> Trial:
         """Trial of one C3D file.
 
-        Streams: `markers` [m] as `<marker>.x`; `segments`, the poses of the group ROTATION (see `file_segments`);
-        `kinematics` [deg], the model's angles under names of the vocabulary, otherwise as `<label>.x`; `moments`, the
-        model's, internal, [N m/kg, N/kg, W/kg] if the file gives them per body mass, otherwise [N m, N, W]; `emg` [V];
-        `forces` [N, N m, m], ground on foot (see `force_plates`); `signals`, every other analog channel. The first
-        frame is at 0 s. Everything that names a person is removed: label prefixes and the groups SUBJECTS, TRIAL,
+        Streams: `markers` [m], as `<marker>.x`; `segments`, the poses of the group ROTATION (see `file_segments`);
+        `kinematics` [deg], the angles that a model wrote into the file, with names of the vocabulary or as `<label>.x`;
+        `moments`, internal moments, forces and powers of that model [N m/kg, N/kg, W/kg; or N m, N, W]; `emg` [V];
+        `forces` of the ground on the foot [N, N m, m] (see `force_plates`); `signals`, every other analog channel. The
+        first frame is at 0 s. Everything that names a person is removed: label prefixes and the groups SUBJECTS, TRIAL,
         MANUFACTURER.
 
         Parameters
@@ -76,8 +76,8 @@ class C3DReader:
         path : Path or str
             The C3D file.
         channels : mapping of str to str, optional
-            The study's own names, see `LabelMap`: label, description, `#<n>` for the n-th analog channel or
-            `<label>.x` -> name, or `name [unit]`.
+            Names of the study (see `LabelMap`): label, description, `#<n>` for the n-th analog channel, or `<label>.x`
+            -> `name` or `name [unit]`.
 
         Returns
         -------
@@ -166,7 +166,7 @@ def glance_at_c3d(path: Path) -> Trial:
     check_common_scales(header, parameters)
     layout, findings = find_layout(header, parameters)
     if not counts_agree(header, parameters, layout):  # reading all of it may refuse it
-        raise ReadError("header and parameters must agree", f"{header.file} has two counts", "Read the whole file.")
+        raise ReadError("header and parameters must agree", f"{header.file}: they do not", "Read the whole file.")
     rate_hz, _ = _rate(header, parameters, layout)
     step = max(layout.frames // GLANCES, 1)
     points, _ = read_frames(path, header, parameters, layout, step)
@@ -224,7 +224,7 @@ def _rate(header: C3DHeader, parameters: C3DParameters, layout: C3DLayout) -> tu
             f"{layout.samples_per_frame} samples per frame; {layout.samples_per_frame * rate:g} Hz is used"
         )
         severity = "note" if abs(of_analog - rate) < 1e-3 * rate else "warning"
-        findings.append(Finding(severity, "analog rate", header.file, what, "analog times, if this is wrong"))
+        findings.append(Finding(severity, "analog rate", header.file, what, "analog times if this is wrong"))
     return rate, findings
 
 

@@ -141,7 +141,7 @@ def _map_channel(text: str, signal: AnalogLabel, file: str) -> tuple[Channel, st
         channel = replace(channel, unit=inner_unit(unit))
     if inner_unit(unit) != channel.unit:
         raise UnitError(
-            f"analog channel #{signal.number} is mapped to {channel.name!r}, whose unit is {channel.unit}",
+            f"analog channel #{signal.number}, mapped to {channel.name!r}, must be convertible to {channel.unit}",
             f"{file} states {unit}",
             "Map another channel, or write the true unit in the study's [channels]: 'name [unit]'.",
         )

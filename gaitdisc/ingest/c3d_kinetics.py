@@ -76,7 +76,7 @@ def house_kinetics(
         findings.append(Finding("warning", "per body mass", file, what, "forces, moments and powers; correct the file"))
     if shown.mass_kg and mass_kg and abs(shown.mass_kg / mass_kg - 1) > AGREES:
         what = f"the plates show a body mass of {shown.mass_kg:.1f} kg, but the file states {mass_kg:.1f} kg"
-        findings.append(Finding("warning", "body mass", file, what, "all that depends on body mass; correct the mass"))
+        findings.append(Finding("warning", "body mass", file, what, "results per kg of body mass; correct the mass"))
     of_weight = [c.name for c in channels if _NORMALISED.fullmatch(c.name) and c.unit != "%"]
     if of_weight:
         channels = tuple(replace(c, unit="%") if c.name in of_weight else c for c in channels)

@@ -180,7 +180,7 @@ def _model_part(
     most = float(np.max(np.abs(values), initial=0.0, where=np.isfinite(values)))
     if kind.group == "ANGLES" and unit == "deg" and 0 < most < 3.2:
         what = f"no angle exceeds {most:.3g} deg, so the angles may be in radians"
-        findings.append(Finding("warning", "unit", file, what, "all angles if so; correct POINT:ANGLE_UNITS"))
+        findings.append(Finding("warning", "unit", file, what, "all angles if in radians; correct POINT:ANGLE_UNITS"))
     return (values, tuple(channels)), findings
 
 
@@ -208,8 +208,8 @@ def file_segments(path: Path, header: C3DHeader, parameters: C3DParameters, sour
     first = (start - 1) * BLOCK
     if first + size > header.size or not frames:
         raise ReadError(
-            f"{header.file} states {frames} frames of {used} segments in ROTATION",
-            f"{max(header.size - first, 0)} of {size} bytes follow block {start}",
+            f"{header.file} must contain the {frames} frames of {used} segments that ROTATION states",
+            f"only {max(header.size - first, 0)} of {size} bytes follow block {start}",
             "Export the trial again. This copy is incomplete.",
         )
     raw = np.memmap(path, np.uint8, "r", first, (size,)).tobytes()

@@ -166,7 +166,7 @@ def column_in_unit(label: str, channel: Channel, unit_text: str, file: str) -> C
         kind = "EMG" if channel.quantity == "emg" else channel.quantity.replace("_", " ")
         kind = f"{'an' if kind[0] in 'aE' else 'a'} {kind}"
         raise UnitError(
-            f"{file}: column {label!r} is {channel.name}, {kind} in {allowed[0]}",
+            f"{file}: column {label!r} is {channel.name} and must have the unit of {kind}, such as {allowed[0]}",
             f"its unit is {unit_text!r}",
             "Correct the unit in the header or in the study's [channels], or map the column to another name.",
         )

@@ -289,10 +289,10 @@ def _with_origin(
     turned = replace(plate, origin=-plate.origin)
     if plate.kind in (2, 4) and _beside(turned, values, units) < STRAY:
         what = f"force plate {plate.number}: ORIGIN points from the surface to the sensors; the sign is reversed"
-        return turned, [Finding("note", "plate origin", file, what, "nothing: the centre of pressure is now on it")]
+        return turned, [Finding("note", "plate origin", file, what, "nothing: the corrected force acts on the plate")]
     what = f"force plate {plate.number}: the centre of pressure lies outside the plate in {100 * beside:.0f} % of the "
     what += "loaded samples"
-    return plate, [Finding("warning", "centre of pressure", file, what, "joint moments; check zero, ORIGIN, units")]
+    return plate, [Finding("warning", "centre of pressure", file, what, "joint moments; check zero, ORIGIN and units")]
 
 
 def _report_exchanged(measured: Sequence[tuple[ForcePlate, Values, tuple[str, ...]]], file: str) -> list[Finding]:

@@ -255,7 +255,7 @@ def with_flexion_positive(streams: Mapping[str, Recording]) -> tuple[dict[str, R
             f"flexion is positive in {kept} and negative in {other} of one file; only the sign of the latter was "
             "reversed"
         )
-        findings.append(Finding("warning", "knee sign", file, what, "the knees if this is wrong; correct the file"))
+        findings.append(Finding("warning", "knee sign", file, what, "knee angles if this is wrong; correct the file"))
     return {key: recording for key, (recording, _) in moved.items()}, findings
 
 

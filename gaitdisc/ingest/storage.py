@@ -263,7 +263,7 @@ def naming_findings(columns: Sequence[Column], file: str) -> list[Finding]:
     findings = []
     for guess, labels in by_guess.items():
         what = f"{list_names(labels)}: {guess}"
-        findings.append(Finding("note", "guessed", file, what, "these channels if it is wrong; map them in [channels]"))
+        findings.append(Finding("note", "guessed", file, what, "the channels if this is wrong; map them in [channels]"))
     sides = {column.channel.side for column in columns if column.label.lower().startswith("ground_force_v")}
     if sides == {"r"} and any(column.label.startswith("1_ground_force_v") for column in columns):
         what = "ground_force_ is read as the right foot, 1_ground_force_ as the left, as in OpenSim's own examples"

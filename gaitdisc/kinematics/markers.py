@@ -158,7 +158,7 @@ def walking_frame(
         return WalkingFrame(_frames(np.tile(_level(stated, up), (len(origin), 1)), up), "forward as given")
     known = np.isfinite(origin).all(axis=1) & np.isfinite(facing).all(axis=1)
     if not known.any():
-        raise StrideError("the direction of walking needs the pelvis", "no frame has it", "Fill its marker gaps.")
+        raise StrideError("the direction of walking needs the pelvis", "no frame has it", "Fill the marker gaps.")
     faced = _level(facing[known].mean(axis=0), up)
     seen = np.flatnonzero(known)
     spread = seen - seen.mean()

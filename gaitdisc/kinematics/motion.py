@@ -283,14 +283,14 @@ def segment_angles(segments: Recording) -> tuple[Recording, tuple[Finding, ...]]
     sure = {segment: np.zeros(len(pelvis), bool) for segment in SEGMENTS}
     angles = angles_of_poses(replace(segments, suspect=None), poses, sure, walking)
     findings = [
-        Finding("note", "segments", file, f"angles from the poses of {len(SEGMENTS)} segments in the file", ""),
+        Finding("note", "segments", file, f"angles are computed from {len(SEGMENTS)} segments of the file", ""),
         Finding("note", "direction", file, walking.how, ""),
     ]
     counts = {segment: int((~poses[segment].known).sum()) for segment in SEGMENTS}
     for count in sorted(set(counts.values()) - {0}):
         which = ", ".join(LABELS[segment] for segment in SEGMENTS if counts[segment] == count)
         what = f"{which}: the pose is unknown in {count} of {len(pelvis)} frames"
-        findings.append(Finding("warning", "gap", file, what, "the segments' joints there"))
+        findings.append(Finding("warning", "gap", file, what, "the joints of these segments in these frames"))
     return angles, tuple(findings)
 
 
@@ -306,7 +306,7 @@ def _pose_in_file(segments: Recording, label: str, file: str) -> Pose:
     if len(wrong):
         raise ShapeError(
             "the axes of a segment must have length 1, be perpendicular and be right-handed",
-            f"{file}: {label} in frame {known[wrong[0]] + 1} differs from that by {skew[wrong[0]]:.2g}, its "
+            f"{file}: {label} in frame {known[wrong[0]] + 1} deviates by {skew[wrong[0]]:.2g}, and its "
             f"determinant is {np.linalg.det(some[wrong[0]]):.3g}",
             "Export the trial again.",
         )

@@ -80,7 +80,7 @@ def force_balance(
     if set(found) != {"l", "r"}:
         raise ChannelError(
             "the balance of forces needs both legs and the pelvis",
-            f"there is {'the leg ' + ', '.join(found) if found else 'no leg'}",
+            f"found {'only leg ' + ', '.join(found) if found else 'no leg'}",
             "Provide the markers of both legs.",
         )
     needed = np.zeros(loads["r"].wrench.force.shape)

@@ -42,19 +42,19 @@ def compare(
 ) -> Mismatch:
     """Compare two walks over the stride: where they differ, by how much, and whether significantly.
 
-    Both are filtered identically and cut at the same event of the stride. A permutation test over strides limits the
-    probability of any false region in any channel to 5 %.
+    Both walks are filtered identically and cut at the same event of the stride. A permutation test over strides limits
+    the probability of any false region in any channel to 5 %.
 
     Parameters
     ----------
     first, second : path, Trial, DataFrame or Recording
         A simulated and a measured walk, or two conditions; the gap is second minus first.
     channels : sequence of str, or str
-        Channels to compare; by default all that both have.
+        Channels to compare; by default all that both walks have.
     cutoff_hz : float
         Cut-off of the low-pass of angles and moments [Hz], at -3 dB of one pass.
     detector : str
-        Detector of initial contact in both: `auto`, `force`, `events`, `markers` or `angles`.
+        Detector of initial contact in both walks: `auto`, `force`, `events`, `markers` or `angles`.
     smallest_deg : float
         Smallest difference of an angle that is reported [deg].
     smallest_n_m_per_kg : float
@@ -68,7 +68,7 @@ def compare(
     Raises
     ------
     GaitdiscError
-        If a file cannot be read or is not a walk, or the two have no channels in common.
+        If a file cannot be read or is not a walk, or the two walks have no channels in common.
 
     References
     ----------
@@ -90,7 +90,7 @@ def compare(
 
 
 def paired_tests(first: pd.DataFrame, second: pd.DataFrame, alpha: float = 0.05) -> pd.DataFrame:
-    """Test each column of the second table against the first; both have one row per participant.
+    """Test each column of the second table against the first; both tables have one row per participant.
 
     The test is Wilcoxon's exact signed-rank test of the pairs, with Holm's step-down and Sidak's levels over the
     columns.
@@ -106,8 +106,8 @@ def paired_tests(first: pd.DataFrame, second: pd.DataFrame, alpha: float = 0.05)
     -------
     DataFrame
         One row per variable: n, w, p, medians, Hodges-Lehmann `shift` (second minus first) with its 95 % interval `low`
-        and `high`, `rank_biserial`, `p_adjusted`, `different`, and who was left out. A variable with fewer than six
-        participants is not tested and not counted.
+        and `high`, `rank_biserial`, `p_adjusted`, `different`, and the participants left out. A variable with fewer
+        than six participants is not tested and not counted.
 
     Raises
     ------
@@ -158,22 +158,23 @@ def permutation_clusters(
         One row per person, stride or block of strides, without gaps: `strides.normalised(recording)`, or a DataFrame
         with one column per point of the stride.
     paired : bool
-        Whether row k of both (in DataFrames: rows with one index) belongs to one person; otherwise the sets are
-        independent.
+        Whether row k of both sets (in DataFrames: rows with the same index) belongs to one person; otherwise the sets
+        are independent.
     channels : sequence of str, or str, optional
         Names of the channels; by default their numbers.
     alpha : float
         Probability of a false positive anywhere.
     permutations : int
-        Maximum number; all possible permutations if there are fewer.
+        Maximum number of permutations; all of them if fewer are possible.
     seed : int
         Seed of the random permutations.
 
     Returns
     -------
     DataFrame
-        One row per cluster: channel, first_point and last_point (both inside), sign of second minus first (1 where the
-        second set lies above), mass, p; empty where nothing differs. `attrs` holds threshold, permutations and exact.
+        One row per cluster: channel, first_point and last_point (both included), sign of second minus first (1 where
+        the second set lies above), mass, p; empty where nothing differs. `attrs` holds threshold, permutations and
+        exact.
 
     Raises
     ------

@@ -57,7 +57,7 @@ def discover(
         support or refute them together.
     alpha : float, optional
         Maximum false-positive rate: the p-value of a named effect on held-out data is below it. For a tracked walk it
-        is .05.
+        is 0.05.
     twins : int, optional
         Number of records like yours that are simulated with the identified effect, and as many without it. All are
         searched like yours; `found.twins` has the answers. Not available for models of MuJoCo and OpenSim.
@@ -65,7 +65,7 @@ def discover(
     Returns
     -------
     found : Discovery
-        The verdict, a sentence, the effects with intervals, other explanations, and the gap of both models.
+        Verdict, summary in one sentence, effects with intervals, other explanations, and the gap of both models.
     augmented : Simulation
         The model with the identified effect; `simulate` runs it. For a MuJoCo or OpenSim model, its mapping.
 

@@ -39,7 +39,7 @@ def lowpass(
 
     A Butterworth filter runs forwards and backwards. Gaps up to `max_gap_s` are interpolated by a cubic spline and
     marked suspect; longer gaps stay NaN, and the segments between them are filtered separately. 1.8 periods of the
-    cut-off at both ends of each run are marked suspect. A heading that passes 180 deg is unwrapped, filtered and
+    cut-off at both ends of each segment are marked suspect. A heading that passes 180 deg is unwrapped, filtered and
     wrapped again.
 
     Parameters
@@ -59,7 +59,7 @@ def lowpass(
     Returns
     -------
     Recording, DataFrame, Series or ndarray
-        As `signal`; segments too short for the filter are NaN.
+        In the form of `signal`; segments too short for the filter are NaN.
 
     Raises
     ------
@@ -67,9 +67,8 @@ def lowpass(
         If the cut-off is not between 0 and half the rate, the signal is too short for it, or an array comes without
         its rate.
 
-    References
-    ----------
-    Ebers (2023), section 4.2.1. Differs: the two passes, the meaning of the cut-off and the edges are stated here.
+    References ---------- Ebers (2023), section 4.2.1. Differs: the two passes, the meaning of the cut-off and the
+    edges, which the text does not state.
 
     Examples
     --------
@@ -107,7 +106,7 @@ def highpass(
     Returns
     -------
     Recording, DataFrame, Series or ndarray
-        As `signal`; segments too short for the filter are NaN.
+        In the form of `signal`; segments too short for the filter are NaN.
 
     Raises
     ------
@@ -148,7 +147,7 @@ def envelope(
     Returns
     -------
     Recording, DataFrame, Series or ndarray
-        As `emg`, in the same unit. The low-pass can give small negative values after a burst; these are kept.
+        In the form and unit of `emg`. The low-pass can give small negative values after a burst; these are kept.
 
     Raises
     ------
@@ -157,10 +156,9 @@ def envelope(
     ChannelError
         If a channel of a Recording is not EMG.
 
-    References
-    ----------
-    Ebers (2023), section 4.2.1: high-passed at 40 Hz, rectified, low-passed at 10 Hz, "fourth-order Butterworth
-    filters". Differs: order 4 in each of two passes, no lag; the text states neither.
+    References ---------- Ebers (2023), section 4.2.1: high-passed at 40 Hz, rectified, low-passed at 10 Hz,
+    "fourth-order Butterworth filters". Differs: order 4 in each of two passes, without lag, because the text states
+    neither.
 
     Examples
     --------
@@ -187,8 +185,8 @@ def differentiate(signal: Signal, order: int = 1, rate_hz: float | None = None) 
     Returns
     -------
     Recording, DataFrame, Series or ndarray
-        As `signal`, per second; units of a Recording, and of a table's `attrs` and labels, are adapted (`deg/s`). NaN
-        at two samples of each end and within two samples of a missing one.
+        In the form of `signal`, per second; units of a Recording, and of a table's `attrs` and labels, are adapted
+        (`deg/s`). NaN at two samples of each end and within two samples of a missing one.
 
     Raises
     ------
@@ -227,8 +225,8 @@ def _in_its_form(
         recording = make_recording(timed, kind)  # of a trial it says which stream to give
         if rate_hz is not None and not abs(_times(2, rate_hz)[1] * recording.rate_hz - 1) < 1e-3:
             raise SamplingError(
-                "a signal with times takes its rate from them",
-                f"its times give {recording.rate_hz:g} samples per second, but rate_hz is {rate_hz:g}",
+                "rate_hz must agree with the times of the signal",
+                f"the times give {recording.rate_hz:g} samples per second, but rate_hz is {rate_hz:g}",
                 "Omit rate_hz, or correct the times (they are in seconds).",
             )
         made = done(recording)

@@ -38,7 +38,7 @@ def angles(
         `plug_in_gait`, `oxford_foot`, `helen_hayes`, `rajagopal`, `gait2354`, or a `.toml` file; by default recognised
         by the labels.
     joints : str, optional
-        `free` (segments fitted apart), `held` (joined at their centres) or `planar`; by default as in the marker set.
+        `free` (each segment fitted separately), `held` (joined at joint centres) or `planar`; by default the set's.
     forward : sequence of 3 floats, optional
         Direction of walking in the laboratory's axes; by default from the pelvis.
 

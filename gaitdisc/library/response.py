@@ -33,8 +33,8 @@ def fit_response(
 ) -> ResponseRun:
     """Fit Nominal, Exo, Discrepancy and Augmented models of one person to two walks.
 
-    Both walks are filtered, cut into strides and differentiated; models are fitted to the first part of each and scored
-    on the last, which is held out. Each network is compared with ridge regressions and with filtered noise.
+    Both walks are filtered, cut into strides and differentiated; models are fitted to the first part of each walk and
+    tested on the last part, which is held out. Each network is compared with ridge regressions and with filtered noise.
 
     Parameters
     ----------
@@ -62,7 +62,7 @@ def fit_response(
     ChannelError
         If an angle or muscle is missing or unusable.
     StrideError
-        If a recording is not a walk, its sides are exchanged, or its gait changes late.
+        If a recording is not a walk, its sides are exchanged, or its gait changes towards the end.
     SamplingError
         If a walk is too short.
 
@@ -78,7 +78,7 @@ def fit_response(
     """
     trials = {word: replace(make_trial(one), condition=word) for word, one in ((WITHOUT, nominal), (WITH, exo))}
     if not 0 < held_out_share < 1:
-        raise SamplingError("held_out_share must lie in 0 to 1", f"it is {held_out_share!r}", "Write 0.1 for 10 %.")
+        raise SamplingError("held_out_share must be between 0 and 1", f"it is {held_out_share!r}", "Use 0.1 for 10 %.")
     inputs = _angles(trials, several(outputs), None if angles is None else several(angles))
     models = Models(angles=inputs, emg=several(emg), outputs=several(outputs), seed=seed)
     person = trials[WITH].subject or trials[WITHOUT].subject or "P01"

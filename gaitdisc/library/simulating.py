@@ -213,7 +213,7 @@ def _start(simulation: Simulation, start: Mapping[str, float] | Sequence[float] 
         if np.shape(start) != (len(names),):
             raise ShapeError(
                 f"the start must have a number for each state: {', '.join(names)}",
-                f"found {np.shape(start)}",
+                f"found an array of shape {np.shape(start)}",
                 "Give one number per state, or name them: start={'state': value}.",
             )
         start = dict(zip(names, start, strict=True))

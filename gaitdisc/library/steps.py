@@ -30,12 +30,12 @@ def contacts(trial: Walk, detector: str = "auto") -> dict[str, Contacts]:
     trial : Trial, path, DataFrame or Recording
         A walk: a trial from `read`, its files, or a recording.
     detector : str
-        `auto`, `force`, `events`, `markers` or `angles`.
+        Detector of initial contact: `auto`, `force`, `events`, `markers` or `angles`.
 
     Returns
     -------
     dict of str to Contacts
-        By side, `r` and `l`; `time` holds the contacts [s], on the trial's clock.
+        Contacts of each side, `r` and `l`; `time` contains their times [s] on the trial's clock.
 
     Raises
     ------
@@ -63,7 +63,7 @@ def contacts_by_detector(trial: Walk) -> dict[str, dict[str, Contacts]]:
     Returns
     -------
     dict of str to dict of str to Contacts
-        Detector (`force`, `events`, `markers`, `angles`), then side; without detectors for which the walk has no data.
+        Contacts by detector (`force`, `events`, `markers`, `angles`), then by side, without detectors that lack data.
         Unlike in `contacts`, times from markers and angles are not shifted to those of a plate.
 
     Examples
@@ -94,7 +94,7 @@ def cycles(
     side : str
         The foot whose contacts begin the cycles, `r` or `l`.
     detector : str
-        `auto`, `force`, `events`, `markers` or `angles`.
+        Detector of initial contact: `auto`, `force`, `events`, `markers` or `angles`.
     recording : Recording or DataFrame, optional
         Recording that will be cut; cycles with a gap that cannot be filled are excluded.
     min_s, max_s : float
@@ -128,7 +128,7 @@ def cycles(
     )
     if side not in found:
         raise StrideError(
-            f"cycles of side {side!r} begin at its initial contacts",
+            f"cycles of side {side!r} need initial contacts of this side",
             f"contacts were found for side {', '.join(sorted(found)) or 'none'}",
             "Use the other side ('r' or 'l'), or another detector.",
         )

@@ -62,7 +62,7 @@ def make_trial(walk: Walk) -> Trial:
 
 
 def example_walks(duration_s: float = 20.0) -> dict[str, Trial]:
-    """Two walks of one simulated person on a treadmill, as a laboratory would record them.
+    """Simulate two walks of one person on a treadmill, as a laboratory would record them.
 
     Parameters
     ----------

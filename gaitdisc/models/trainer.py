@@ -154,8 +154,8 @@ def choose_device(wanted: str) -> torch.device:
     if wanted == "cpu" or (wanted == "cuda" and there):
         return torch.device(wanted)
     raise TrainingError(
-        f"the requested device is {wanted!r}",
-        "torch sees " + ("a GPU and the CPU" if there else "no GPU, only the CPU"),
+        f"torch must find the requested device, {wanted!r}",
+        "it finds " + ("a GPU and the CPU" if there else "no GPU, only the CPU"),
         "Use device 'auto', which uses a GPU if there is one.",
     )
 

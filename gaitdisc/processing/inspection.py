@@ -78,7 +78,7 @@ class Inspection:
         Parameters
         ----------
         notes : bool
-            Whether notes are included; notes about shifted contacts always are.
+            Whether notes are included; notes about shifted contacts are always included.
         """
         kinds: dict[tuple[str, str], list[Finding]] = {}
         for finding in self.findings:

@@ -56,14 +56,14 @@ class PooledCycles(Saved, file="cycles.json"):
     Parameters
     ----------
     subject, group, session, condition : str
-        Pseudonym; words of the study, empty where there are no groups or sessions.
+        Pseudonym, and the study's words for the others; empty if the study has no groups or sessions.
     trials : int
         Number of trials with at least one cycle, kept or not.
     detectors : mapping of str to int
         Detector of the contacts -> number of trials.
     contact_offset_s, foot_off_offset_s : float, optional
-        Shift of contacts and foot offs from markers or angles towards later times, the median over steps that a plate
-        or the file's events also recorded [s]; None without a shift.
+        Shift of contacts and foot offs from markers or angles [s], positive towards later times: the median difference
+        over steps that a plate or the file's events also recorded. None without a shift.
     offset_steps : int
         Number of contacts that both detectors found.
     over_ground : bool
@@ -71,8 +71,8 @@ class PooledCycles(Saved, file="cycles.json"):
     channels : tuple of Channel
         Channels of `curves`.
     curves : ndarray (cycle, phase, channel) [channel's unit]
-        Every kept cycle on 101 points, in the order of the kept rows of `cycles`; NaN if a channel has no value, or if
-        moments and powers have no plate under the foot.
+        Every kept cycle on 101 points, in the order of the kept rows of `cycles`; NaN where a channel has no value, as
+        moments and powers of a foot that is not on a plate.
     cycles : DataFrame
         One row per cycle, kept or left out: `CYCLE_COLUMNS`.
     findings : tuple of Finding
@@ -84,10 +84,10 @@ class PooledCycles(Saved, file="cycles.json"):
     leg_m : float, optional
         Leg length, measured or estimated from the stature [m]; None if both are unknown.
     age_years : int, optional
-        Whole years.
+        Age in whole years.
     raw_emg : mapping of str to ndarray (sample, channel) [channel's unit], optional
-        Side -> raw EMG of the cycle whose envelopes lie nearest to their means, from contact to contact; its channels
-        are the leg's EMG channels of `channels`, in this order. Empty where the files have envelopes.
+        Side -> raw EMG of the cycle whose envelopes lie nearest to their means, from contact to contact, with the leg's
+        EMG channels in the order of `channels`. Empty if the files contain envelopes.
 
     Raises
     ------
@@ -159,7 +159,7 @@ class PooledCycles(Saved, file="cycles.json"):
         return int((self.kept["side"] == side).sum())
 
     def to_frame(self) -> pd.DataFrame:
-        """Every cycle with its times, events and the reason if it is left out; one row each."""
+        """One row per cycle: times, events, and the reason if the cycle is left out."""
         return self.cycles
 
     def __repr__(self) -> str:
@@ -174,7 +174,7 @@ class PooledCycles(Saved, file="cycles.json"):
         Returns
         -------
         DataFrame
-            channel, unit, side (of the cycles), percent, n (cycles with a value there), mean, sd (NaN for one cycle).
+            Columns channel, unit, side (of the cycles), percent, n (cycles with a value), mean, sd (NaN for one cycle).
         """
         curves, feet = self.curves, self.kept["side"].to_numpy()
         means = []

@@ -104,7 +104,7 @@ def processed(trial: Trial, study: Study, body_weight_n: float | None = None) ->
     side = study.strides.side
     if side not in choice.contacts:
         raise StrideError(
-            f"percent stride must follow a side with contacts; side {side!r} is requested",
+            f"percent stride of side {side!r} needs contacts of this side",
             f"{trial.name}: {choice.detector} finds contacts of side {', '.join(choice.contacts)} only",
             "Change side in [strides].",
         )

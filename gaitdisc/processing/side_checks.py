@@ -62,9 +62,9 @@ def _feet_on_plates(trial: Trial) -> tuple[dict[str, FootPath], list[Platform], 
     heels, pelvis = find_marker_names(markers)
     if toes is None or "forces" not in trial.streams:
         raise ChannelError(
-            "plates are compared with the feet, which needs toe markers and forces",
-            f"{trial.name} has no toes or no forces",
-            "Name the markers.",
+            "a comparison of plates with the feet needs toe markers and forces",
+            f"{trial.name} lacks toe markers or forces",
+            "Name the markers in [channels].",
         )
     return foot_paths(markers, heels, dict(zip("rl", toes, strict=True))), platforms(trial), pelvis
 

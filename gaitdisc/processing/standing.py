@@ -230,7 +230,7 @@ class Standing:
             hips, findings = functional_hips(self.circled, body)
         except GaitdiscError as error:
             file = self.circled.source.file or "the functional trial"
-            said = Finding("warning", "functional hip", file, str(error).rstrip("."), "hips by 1 to 2 cm")
+            said = Finding("warning", "functional hip", file, str(error).rstrip("."), "hip joint centres, by 1 to 2 cm")
             return replace(body, findings=(*body.findings, said))
         own = calibrate_body(static, chosen, measures, hips) if hips else body
         return replace(own, findings=(*own.findings, *findings))

@@ -164,7 +164,7 @@ def without_stated(cycles: list[Cycle], said: Sequence[str], file: str) -> tuple
             at = near[min(near)]
             found[at] = replace(found[at], reason=f"left out by the study: {reason or 'no reason is given'}")
         else:
-            what = f"leave_out_cycles contains {words!r}, but no such cycle exists"
+            what = f"leave_out_cycles contains {words!r}, but no cycle begins there"
             findings.append(Finding("warning", "cycle not found", file, what, "nothing; correct it with cycles.csv"))
     return found, findings
 

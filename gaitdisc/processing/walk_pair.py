@@ -105,7 +105,7 @@ def _common_contacts(trials: list[Trial], detector: str) -> tuple[str, list[Mapp
         "two walks can be compared over strides that the same detector finds in both: force, events, markers or hip "
         "angles",
         ". ".join(reasons),
-        "Use walks that both have hip flexion, or both forces, or both markers.",
+        "Use two walks with hip flexion, with forces or with markers.",
     )
 
 

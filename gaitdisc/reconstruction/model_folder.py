@@ -64,7 +64,7 @@ class SensingModel:
         what = self.reconstructor.sensing
         if abs(recording.rate_hz / what.rate_hz - 1) > RATE_TOLERANCE:
             raise SamplingError(
-                f"the model uses sensors at {what.rate_hz:g} Hz",
+                f"the sensors must have the rate of the model, {what.rate_hz:g} Hz",
                 f"{recording.source.file or 'the recording'} has {recording.rate_hz:g} Hz",
                 "Resample the recording to this rate.",
             )
@@ -72,7 +72,7 @@ class SensingModel:
             found = recording.channels[recording.index(channel.name)]
             if found.unit != channel.unit:
                 raise UnitError(
-                    f"the model uses {channel.name} in {channel.unit}",
+                    f"{channel.name} must be in {channel.unit}, the unit of the model",
                     f"{recording.source.file or 'the recording'} has it in {found.unit}",
                     "State the unit in the study's [channels].",
                 )
@@ -142,7 +142,7 @@ def load_model(folder: Path) -> SensingModel:
         raise SchemaError(
             f"{folder.name}/{WEIGHTS} must match {folder.name}/{NAME}",
             f"the weights use {len(weights.inputs)} numbers and estimate {', '.join(weights.outputs[:3])}; the model "
-            f"has {readings * len(what.sensors)} and {', '.join(what.states[:3])}",
+            f"file states {readings * len(what.sensors)} and {', '.join(what.states[:3])}",
             "Both files must come from one model. Copy them together, or run `gaitdisc reconstruct` again.",
         )
     return SensingModel(WindowModel(kind, what, weights, *numbers), tuple(channels), half)

@@ -96,7 +96,7 @@ def phase_average(trials: Sequence[Samples]) -> PhaseAverage:
     if not len(durations) or filled.mean() < LEAST_FILLED:
         raise StrideError(
             "the mean stride needs strides in the training part",
-            f"it has {len(durations)}, and {int((counts == 0).sum())} of {POINTS} percent values have no sample",
+            f"it has {len(durations)} strides, and {int((counts == 0).sum())} of {POINTS} points have no sample",
             "Record longer, or reconstruct the present state (ahead 0).",
         )
     sums = np.zeros((POINTS, y.shape[1]))

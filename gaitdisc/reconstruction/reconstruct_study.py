@@ -170,7 +170,7 @@ def search_study(study: Study, most: int, settings: ReconstructionSettings | Non
     if settings.targets != STATES or settings.ahead_s:
         raise SchemaError(
             "a sensor search is possible only for the present states",
-            f"{settings.targets} are to be reconstructed {settings.ahead_s:g} s ahead",
+            f"requested: {settings.targets}, {settings.ahead_s:g} s ahead",
             "Search without --targets and --ahead. Then name the sensors with --sensors.",
         )
     walks = read_walks(study, (), settings.condition_read)

@@ -34,7 +34,7 @@ class Reconstruction(Saved, file="reconstruction.json"):
     Parameters
     ----------
     title : str
-        Of the study.
+        Title of the study.
     sensors, states : tuple of Channel
         Sensors and reconstructed states.
     split : str
@@ -44,11 +44,11 @@ class Reconstruction(Saved, file="reconstruction.json"):
     models : mapping of str to str
         Name of each model -> its description.
     errors : DataFrame
-        participant, model, state, unit, rmse, low, high, relative_l2, r2.
+        Columns participant, model, state, unit, rmse, low, high, relative_l2, r2.
     summary : DataFrame
-        participant, model, strides, n_fitted, and `MEASURES`.
+        Columns participant, model, strides, n_fitted, and `MEASURES`.
     curves : DataFrame
-        participant, model, state, percent, measured, measured_sd, reconstructed, rmse.
+        Columns participant, model, state, percent, measured, measured_sd, reconstructed, rmse.
     refusals : tuple of Refusal
         Persons and walks left out, with reasons.
     findings : tuple of Finding
@@ -56,7 +56,7 @@ class Reconstruction(Saved, file="reconstruction.json"):
     provenance : Provenance
         Settings, seed, files, versions.
     search : DataFrame, optional
-        Best set of sensors of every size, after a search: sensors, names, loss, rmse_deg, fits, seconds.
+        Best set of sensors of every size, after a search; columns sensors, names, loss, rmse_deg, fits, seconds.
     """
 
     title: str
@@ -82,7 +82,7 @@ class Reconstruction(Saved, file="reconstruction.json"):
     def recommended(self) -> str:
         """Recommended model: the cheapest whose error on the validation part is within 2 % of the smallest.
 
-        The test part is not used. A calibrated model is recommended by its error before calibration; the floors of a
+        The test part is not used. A calibrated model is recommended by its error before calibration; the baselines of a
         forecast are never recommended. `gaitdisc reconstruct` saves a model of this kind for every participant.
         """
         every = self.summary.groupby("model")["check_loss"].mean()

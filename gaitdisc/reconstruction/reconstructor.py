@@ -48,7 +48,7 @@ class Reconstructor(Saved, file="model.json"):
     spacing_s : float
         Time between two readings of a window [s].
     ahead_s : float
-        0 for the current state; a positive value is a forecast [s].
+        Time from the last reading to the estimated state [s]; 0 for the current state.
     seed : int
         Seed of all random numbers.
 
@@ -88,7 +88,7 @@ class Reconstructor(Saved, file="model.json"):
         """Fit the model to one trial, or to several.
 
         Penalties, epochs and the interval are chosen on the last 15 % of each trial, separated from the rest by one
-        window and 0.3 s. Filter `x` and `y` first, and hold out your test data before you call this.
+        window and 0.3 s. Filter `x` and `y` first, and hold out your test data before you call `fit`.
 
         Parameters
         ----------
@@ -202,14 +202,14 @@ class Reconstructor(Saved, file="model.json"):
         Returns
         -------
         Samples
-            Windows without states; percent stride of the last reading of each window.
+            Windows without states, with the percent stride of the last reading of each window.
         """
         what = self.model.reconstructor.sensing
         read = self._recording(_read(x, self.rate_hz, "readings"), what.sensors)
         return cut_windows(read, what.sensors, (), what.lags, np.asarray(percent, float))
 
     def get_params(self, deep: bool = True) -> dict[str, Any]:  # noqa: ARG002
-        """Settings by name, for scikit-learn's `clone` and `Pipeline`.
+        """Return the settings by name, for scikit-learn's `clone` and `Pipeline`.
 
         Parameters
         ----------
@@ -228,7 +228,7 @@ class Reconstructor(Saved, file="model.json"):
         """
         if unknown := sorted(set(settings) - set(SETTINGS)):
             raise TrainingError(
-                f"settings of a Reconstructor are {', '.join(SETTINGS)}", f"found {unknown[0]!r}", "Name one of these."
+                f"settings must be among {', '.join(SETTINGS)}", f"found {unknown[0]!r}", "Name one of these."
             )
         self.__init__(**{**self.get_params(), **settings})  # type: ignore[misc]
         return self
@@ -247,7 +247,7 @@ class Reconstructor(Saved, file="model.json"):
         if self._model is None:
             known = sys.modules.get("sklearn.exceptions")  # whose tools look for its own class
             UnfittedError = type("TrainingError", (TrainingError, *([known.NotFittedError] if known else [])), {})
-            raise UnfittedError("a model must be fitted to predict", "fit was not called", "Call fit(x, y) first.")
+            raise UnfittedError("a prediction needs a fitted model", "fit was not called", "Call fit(x, y) first.")
         return self._model
 
     @property

@@ -243,7 +243,7 @@ def _moving(walks: Sequence[SensedWalk], sensors: Sequence[str]) -> tuple[tuple[
         what = f"{channel.name} {why} of {len(walks)} walks"
         if channel.name in sensors:
             raise ChannelError("a sensor must vary in every walk", what, "Choose another sensor.")
-        findings.append(Finding("note", "left out", "the study", what, "this state, not reconstructed", channel.name))
+        findings.append(Finding("note", "left out", "the study", what, "this state; it is left out", channel.name))
     return tuple(kept), findings
 
 

@@ -82,7 +82,7 @@ def cut_windows(
     if len(read) <= lags.reach + lags.ahead:
         forth = f" and {lags.ahead / recording.rate_hz:.2f} s ahead" if lags.ahead else ""
         raise SamplingError(
-            f"a window extends back {lags.reach / recording.rate_hz:.2f} s{forth}",
+            f"a recording must be longer than a window: {lags.reach / recording.rate_hz:.2f} s back{forth}",
             f"{recording.source.file or 'the recording'} lasts {recording.duration_s:.2f} s",
             "Use fewer lags, or a longer trial.",
         )

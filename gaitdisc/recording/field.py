@@ -212,7 +212,7 @@ class Field:
         absent = [name for name in quantities if name not in self.quantities]
         if absent or not quantities:
             raise ChannelError(
-                f"the field has the quantities {', '.join(self.quantities)}",
+                f"the quantities must be among {', '.join(self.quantities)}",
                 f"requested: {', '.join(absent) or 'none'}",
                 "Name one or more of these.",
             )

@@ -87,18 +87,18 @@ class Source:
 
 @dataclass(frozen=True, eq=False)
 class Recording:
-    """Channels with evenly spaced times in common. The arrays are read-only, and time is their first axis.
+    """Channels that share evenly spaced times. The arrays are read-only, and time is their first axis.
 
     Parameters
     ----------
     time : ndarray (time,) [s]
         Evenly spaced, increasing.
     values : ndarray (time, channel) [each channel's unit]
-        NaN where nothing was measured, never 0.
+        Values of the channels; NaN, never 0, where nothing was measured.
     channels : sequence of Channel
         One channel per column, with different names.
     subject, condition : str
-        Pseudonym of the person; `nominal`, `exo` or the study's own word.
+        Pseudonym of the person; condition, as `nominal`, `exo` or another word of the study.
     source : Source
         File, hash and reader.
     suspect : ndarray of bool (time, channel), optional
@@ -111,7 +111,7 @@ class Recording:
     SamplingError
         If time is not evenly spaced (a step differs from the mean by more than 0.1 %).
     ChannelError
-        If two channels have one name.
+        If two channels have the same name.
 
     Examples
     --------
@@ -191,7 +191,7 @@ class Recording:
 
     @property
     def duration_s(self) -> float:
-        """Length in seconds, counting the last sample's own step."""
+        """Duration [s], including the step after the last sample."""
         return len(self.time) / self.rate_hz if len(self.time) > 1 else 0.0
 
     def index(self, name: str) -> int:
@@ -264,7 +264,7 @@ class Recording:
         Parameters
         ----------
         start_s, end_s : float
-            On the recording's own clock [s].
+            Start and end on the recording's own clock [s].
         """
         first, last = np.searchsorted(self.time, [start_s - 1e-9, end_s - 1e-9])
         rows = slice(int(first), int(last))
@@ -318,7 +318,7 @@ class Recording:
         return table
 
     def to_xarray(self) -> xr.DataArray:
-        """Labelled array (time, channel) with the units as a coordinate; needs xarray installed."""
+        """Labelled array (time, channel) with the units as a coordinate; requires xarray."""
         import xarray as xr
 
         units = ("channel", [channel.unit for channel in self.channels])

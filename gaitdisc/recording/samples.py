@@ -72,7 +72,7 @@ class Samples:
     y : ndarray (sample, output)
         Outputs.
     inputs, outputs : tuple of str
-        Their names.
+        Names of the inputs and of the outputs.
     time : ndarray (sample,) [s]
         Time of each sample; excluded samples appear as larger steps.
     phi : ndarray (sample,) [% stride]
@@ -272,7 +272,7 @@ class Trajectory:
         last = len(self.time) - held - round(seam_s * self.rate_hz)
         if held < 1 or last < 1:
             raise SamplingError(
-                f"the trial is too short to hold out its last {held_out_s:g} s, and the {seam_s:g} s before them",
+                f"a trial must be longer than the {held_out_s:g} s to be held out and the {seam_s:g} s before them",
                 f"{self.subject} {self.condition} lasts {len(self.time) / self.rate_hz:.2f} s",
                 "Shorten [held_out] in the study, or remove it to hold out 12.5 %.",
             )

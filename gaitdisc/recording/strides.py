@@ -38,7 +38,7 @@ class Strides:
     Parameters
     ----------
     start, end : ndarray (stride,) [s]
-        Initial contacts, and the next ones of the same foot; in order, not overlapping.
+        Initial contact at the start and at the end of each stride, in order and without overlap.
     side : str
         `r` or `l`.
     detector : str
@@ -105,7 +105,7 @@ class Strides:
         return self.end - self.start
 
     def phi(self, time: Values) -> Values:
-        """Percent stride, 0 <= phi < 100, NaN outside of the strides.
+        """Percent stride at each time, 0 <= phi < 100; NaN outside the strides.
 
         Parameters
         ----------
@@ -120,7 +120,7 @@ class Strides:
         return np.where(inside, np.minimum(phi, np.nextafter(100.0, 0.0)), np.nan)
 
     def number(self, time: Values) -> NDArray[np.intp]:
-        """Number of the stride, from 0, (time,); -1 outside of the strides.
+        """Number of the stride at each time, from 0, (time,); -1 outside the strides.
 
         Parameters
         ----------
@@ -141,7 +141,7 @@ class Strides:
         Parameters
         ----------
         recording : Recording or DataFrame
-            Channels with times on the trial's clock; a DataFrame has times [s] in a column `time` or such an index.
+            Channels with times on the trial's clock; a DataFrame has times [s] in a column or index `time`.
         """
         if not isinstance(recording, Recording):
             table: Any = recording
@@ -173,7 +173,7 @@ class Strides:
         Parameters
         ----------
         start_s, end_s : float
-            On the trial's clock [s].
+            Start and end on the trial's clock [s].
         """
         inside = (self.start >= start_s) & (self.end <= end_s)
         return Strides(self.start[inside], self.end[inside], self.side, self.detector, self.dropped)

@@ -251,13 +251,13 @@ class Trial:
     def on_one_base(self, rate_hz: float, keys: tuple[str, ...] | None = None) -> Recording:
         """Resample streams to one time base, the period that all of them cover.
 
-        Linear interpolation: streams slower than `rate_hz` gain no information, and faster streams must have been
-        low-passed before (an EMG envelope at 10 Hz, kinematics at 6 Hz), or they alias.
+        Streams are interpolated linearly. Slower streams gain no information; faster ones must have been low-passed
+        before (an EMG envelope at 10 Hz, kinematics at 6 Hz), or they alias.
 
         Parameters
         ----------
         rate_hz : float
-            Rate of the result.
+            Sampling rate of the result [Hz].
         keys : tuple of str, optional
             Streams to bring together, in this order; all of them by default.
 

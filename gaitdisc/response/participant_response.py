@@ -122,7 +122,7 @@ class ParticipantResponse:
         if not arrays:
             raise SchemaError(
                 "a prediction needs the weights of `nominal`, `exo`, `discrepancy` or `augmented`",
-                f"the response of {self.participant} has none of {name!r}",
+                f"the response of {self.participant} has no weights of {name!r}",
                 "Choose one of these, or fit again a response that an older version saved without weights.",
             )
         from gaitdisc.models.feedforward import FeedForward

@@ -76,8 +76,8 @@ def list_parts(chapter: int, name: str = "") -> tuple[Part, ...]:
         )
 
         raise SchemaError(
-            f"the parts of chapter {chapter} are {', '.join(names)}",
-            f"{name!r} is not among them" + hint_nearest(name, names),
+            f"the part of chapter {chapter} must be one of {', '.join(names)}",
+            f"found {name!r}" + hint_nearest(name, names),
             "Name one of them, or omit the name to compute all.",
         )
     return tuple(part for part in parts if name in ("", part.name))

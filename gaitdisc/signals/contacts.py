@@ -32,7 +32,7 @@ class Contacts:
     Parameters
     ----------
     time : ndarray (contact,) [s]
-        On the trial's clock, increasing.
+        Initial contacts on the trial's clock, increasing.
     side : str
         `r` or `l`.
     detector : str
@@ -96,9 +96,9 @@ class Contacts:
         Returns
         -------
         Agreement
-            `difference_s` of each pair (other minus these); `missed` and `extra` [s]. Contacts more than `within_s`
-            before the first or after the last of the other detector are ignored, because a plate records only two steps
-            of a walk.
+            `difference_s` of each pair (other minus these); the unpaired contacts of these, `missed`, and of the other,
+            `extra` [s]. Contacts more than `within_s` before the first or after the last of the other detector are
+            ignored, because a plate records only two steps of a walk.
 
         Raises
         ------

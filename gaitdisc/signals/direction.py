@@ -124,8 +124,8 @@ def _from_swings(swings: Sequence[Values], up: Values, level: list[int], file: s
     skew = float(np.mean((velocity - velocity.mean()) ** 3) / velocity.std() ** 3)
     if abs(skew) < FEWEST_SKEW:
         raise StrideError(
-            f"the direction of walking is where the heels move fastest, with a skewness of at least {FEWEST_SKEW:g}",
-            f"{file or 'the recording'} has {skew:+.2f}",
+            f"the heels must move fastest in the direction of walking, with a skewness of at least {FEWEST_SKEW:g}",
+            f"in {file or 'the recording'} the skewness is {skew:+.2f}",
             "Give the direction of walking in the study's [strides].",
         )
     forward = np.zeros(3)

@@ -109,7 +109,7 @@ def marker_side_findings(markers: Recording) -> list[Finding]:
         f"left and right are exchanged in the labels of {len(wrong)} of {len(across)} pairs, or the frame is mirrored: "
         f"{said}"
     )
-    spoils = "every side; correct the labels"
+    spoils = "both sides; correct the labels"
     return [Finding("warning", "sides", markers.source.file, what, spoils, ", ".join(wrong[0]))]
 
 
@@ -140,7 +140,7 @@ def sway_findings(kinematics: Recording, strides: Sequence[Strides]) -> list[Fin
         f"left and right are exchanged in all angles, or pelvis_tz points to the left: the pelvis is {-size:.0f} mm "
         "nearer to the swing foot than to the stance foot (median of the strides)"
     )
-    return [Finding("warning", "sides", kinematics.source.file, what, "every side; correct the labels", "pelvis_tz")]
+    return [Finding("warning", "sides", kinematics.source.file, what, "both sides; correct the labels", "pelvis_tz")]
 
 
 def load_findings(kinematics: Recording, forces: Recording) -> list[Finding]:
@@ -170,7 +170,7 @@ def load_findings(kinematics: Recording, forces: Recording) -> list[Finding]:
         f"the air ({said})"
     )
     file = f"{forces.source.file}, {kinematics.source.file}"
-    return [Finding("warning", "sides", file, what, "every side; exchange the forces or the angles")]
+    return [Finding("warning", "sides", file, what, "both sides; exchange the forces or the angles")]
 
 
 def _aside(apart: Values, right: Values) -> float:

@@ -232,7 +232,7 @@ def _check_inputs(simulation: Parts) -> None:
         place, errors = ("inputs", one.name), one.gain is not None or one.sd is not None
         _check_positive(one, {"gain": "1", "sd": one.unit, "wander": "s"}, place)
         if one.wander is not None and not errors:
-            raise SimulationError("wander needs gain or sd beside it", "the input has neither", "Add one.", place)
+            raise SimulationError("an input with wander must also have gain or sd", "it has neither", "Add one.", place)
         if errors and one.wraps:
             raise SimulationError("the phase of the stride must be exact", "it has gain or sd", "Remove them.", place)
 

@@ -187,7 +187,7 @@ def _bridge_inputs(
         whole = _between(np.arange(len(empty), dtype=float), ~empty, filled[:, column], name == "phase")
         filled[:, column] = whole % 1.0 if name == "phase" else whole
         what = f"trial {trial.name!r}: {int(empty.sum())} samples are missing, at most {longest / rate:.3g} s in a row"
-        findings.append(Finding("warning", "bridged", source, what, "the simulated motion there", name))
+        findings.append(Finding("warning", "bridged", source, what, "the simulated motion in this gap", name))
     return replace(trial, inputs=filled)
 
 

@@ -35,7 +35,7 @@ def simulation_from_function(
     inputs: Sequence[str] | str = (),
     parameters: Mapping[str, float] | None = None,
 ) -> Simulation | PythonSimulation:
-    """Make a simulation of a Python function that returns the time derivative of each state.
+    """Make a simulation from a Python function that returns the time derivative of each state.
 
     The first arguments are the states, one for each derivative that the function returns. Arguments after them without
     a default are inputs, columns of the data; those with a default are parameters, and the default is their value (or a
@@ -59,9 +59,9 @@ def simulation_from_function(
         Measured column and its expression of states, inputs and parameters: `{"height": "level + offset"}`. By default
         each state is measured under its own name, as far as the data have such a column.
     states, inputs : sequence of str, or str, optional
-        Names of the elements of both vectors, if the function takes vectors.
+        Names of the elements of the vectors of states and of inputs, if the function takes vectors.
     parameters : mapping of str to float, optional
-        Parameters of such a function and their values.
+        Names and values of the parameters, if the function takes them as a dict.
 
     Returns
     -------

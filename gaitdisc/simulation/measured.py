@@ -153,7 +153,7 @@ def _constant(
             still = [trial for trial, one in values if np.ptp(finite_values(one)) == 0]
             if len(still) == len(trials) and kind == "observed":
                 raise ShapeError(
-                    f"an observed channel must vary: {name!r}",
+                    f"the observed channel {name!r} must vary",
                     f"{source} has {getattr(trials[0], kind)[0, column]:g} in every sample",
                     "Remove the channel from [observations], or correct the column.",
                 )

@@ -21,7 +21,7 @@ class Simulation(Parts):
     title : str
         Title in one line.
     states : tuple of State
-        In the order of the state vector.
+        States in the order of the state vector.
     inputs : tuple of Input
         Measured signals that drive the simulation.
     parameters : tuple of Parameter
@@ -37,7 +37,7 @@ class Simulation(Parts):
     effects : tuple of Term
         The added effects and their places.
     sensors : tuple of Sensor
-        How observed channels were recorded, if the file states it.
+        Sensors of the observed channels, if the file states them.
     source : Path, optional
         File of the simulation.
     layout : str
@@ -92,7 +92,7 @@ class Simulation(Parts):
         return {parameter.name: parameter.value for parameter in self.parameters}
 
     def sensor(self, channel: str) -> Sensor:
-        """How an observed channel was recorded; without details if the file states none.
+        """Sensor of an observed channel; without details if the file states none.
 
         Parameters
         ----------
@@ -143,7 +143,7 @@ class Simulation(Parts):
         return replace(self, parameters=tuple(changed))
 
     def with_starts(self, starts: Mapping[str, float]) -> Simulation:
-        """Simulation with another `initial` of some states.
+        """Simulation with other initial values of some states.
 
         Parameters
         ----------
@@ -153,7 +153,7 @@ class Simulation(Parts):
         Raises
         ------
         SimulationError
-            If there is no state of that name, or a start is not finite.
+            If there is no state of that name, or a value is not finite.
         """
         _refuse_unknown(starts, "a state", [state.name for state in self.states])
         changed = (
@@ -168,9 +168,9 @@ class Simulation(Parts):
         Parameters
         ----------
         state : State
-            Name, unit, start.
+            State with its name, unit and initial value.
         equation : str
-            Its time derivative, in the names of the simulation and its own name.
+            Expression of its time derivative, in the names of the simulation and the new state.
         """
         return replace(self, states=(*self.states, state), equations=(*self.equations, (state.name, equation)))
 
@@ -192,7 +192,7 @@ class Simulation(Parts):
         Parameters
         ----------
         parameter : Parameter
-            Name, value, unit.
+            Parameter with its name, value and unit.
         """
         if all(each.name != parameter.name for each in self.parameters):
             return replace(self, parameters=(*self.parameters, parameter))
@@ -224,7 +224,7 @@ class Simulation(Parts):
         Raises
         ------
         SimulationError
-            If there is no observation of a name.
+            If a name belongs to no observation.
         """
         has = dict(self.observations)
         _refuse_unknown(names, "an observation", has)

@@ -81,7 +81,7 @@ def read_simulation(path: Path | str) -> Simulation:
     except UnicodeDecodeError as error:
         raise ReadError(
             "a simulation file must be UTF-8 text",
-            f"{path.name} is not at byte {error.start}",
+            f"{path.name} has another byte at offset {error.start}",
             "Save it as UTF-8.",
         ) from error
     return parse_simulation(text, path.name, path)
@@ -140,8 +140,8 @@ def _simulation(table: Mapping[str, Any], text: str, source: Path | None) -> Sim
     model = _text(table, "model", ())
     if model and lines["equations"]:
         raise SimulationError(
-            "the equations must be in the file or in a model of an engine",
-            f"it has both, and model = {model!r}",
+            "the equations must be either in the file or in a model of an engine",
+            f"the file has both equations and model = {model!r}",
             "Remove one of them.",
             ("equations",),
         )

@@ -47,7 +47,7 @@ def sign_flips(n: int, plan: PermutationPlan) -> tuple[NDArray[np.float64], bool
     if plan.alpha * count < 1:
         raise ComparisonError(
             f"a permutation test at level {plan.alpha:g} needs at least {int(np.ceil(1 / plan.alpha))} permutations",
-            f"it has {count}",
+            f"{count} are requested",
             "Raise the number of permutations, or the level.",
         )
     signs = np.ones((len(turned), n))

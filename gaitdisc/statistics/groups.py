@@ -52,7 +52,7 @@ def find_groups(features: NDArray[np.float64], clouds: int = 199, seed: int = 0)
         missing = int(np.sum(~np.isfinite(features)))
         raise ComparisonError(
             f"sub-groups need at least {FEWEST} participants with complete features",
-            f"found {features.shape}" + (f", {missing} values missing" if missing else ""),
+            f"found features of shape {features.shape}" + (f", {missing} values missing" if missing else ""),
             "Exclude participants with missing features by name.",
         )
     rng = np.random.default_rng(seed)

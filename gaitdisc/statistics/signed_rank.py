@@ -49,7 +49,7 @@ def signed_rank(
         Pairs that are left out, with the reason. Other missing numbers are refused, because silently dropping one of 11
         pairs doubles the smallest possible p.
     level : float
-        Level of the interval.
+        Confidence level of the interval.
 
     Returns
     -------

@@ -27,7 +27,7 @@ def test_a_participant_of_a_study(study, called):
     [
         (["{exo}"], "a comparison needs two recordings, or a study; exo.mot is one recording. Name the measured walk"),
         (["{exo}", "{exo}"], "are identical files"),
-        (["{exo}", "{natural}", "--channel", "ankle_ange_r"], "the nearest that all have is 'ankle_angle_r'"),
+        (["{exo}", "{natural}", "--channel", "ankle_ange_r"], "the most similar common name is 'ankle_angle_r'"),
         (["{exo}", "{natural}", "--detector", "force"], "strides that the same detector finds in both"),
     ],
 )

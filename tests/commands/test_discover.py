@@ -236,7 +236,7 @@ def test_a_simulation_that_blows_up_names_the_parameter(refusal):
     [
         ("column", "the simulation needs a measured column 'x'; column.csv has trial, time, y."),
         ("short", "a trial needs 20 samples; short.csv, trial '1' has 10."),
-        ("constant", "an observed channel must vary: 'x'; constant.csv has 1 in every sample."),
+        ("constant", "the observed channel 'x' must vary; constant.csv has 1 in every sample."),
         ("nan", "nan.csv, line 9 (trial '1'), column 'x'"),
         ("absent", "measured data must be a table; absent.csv: No such file"),
     ],

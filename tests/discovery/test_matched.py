@@ -69,7 +69,7 @@ WRONG = {
     ),
     "constant": (
         lambda m: with_value(m, 0.25, slice(None)),
-        r"an observed channel must vary: 'x'; walk.csv has 0.25 in every sample. Remove the channel",
+        r"the observed channel 'x' must vary; walk.csv has 0.25 in every sample. Remove the channel",
     ),
     "short": (short, r"a trial must have at least 16 samples; walk.csv, trial '1' has 9. Remove it, or record longer."),
 }

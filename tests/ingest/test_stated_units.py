@@ -143,5 +143,5 @@ def test_a_real_trc_whose_header_states_the_other_unit_is_refused(gait_data, tmp
     lines[2] = lines[2].replace("\tmm\t", "\tm\t")
     path = tmp_path / "walk.trc"
     path.write_text("\n".join(lines) + "\n")
-    with pytest.raises(UnitError, match="which looks like mm"):
+    with pytest.raises(UnitError, match="as if they were in mm"):
         read_trc(path)

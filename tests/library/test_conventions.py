@@ -10,7 +10,7 @@ from gaitdisc.response.fit_response import _log_tenths
 # Messages of checks whose data cannot be a series in time, each with the reason.
 NOT_A_SERIES = {
     "states must be an array (time, column)": "y of one dimension: a state is a column, as a sensor is",
-    "a window extends back": "fewer samples than one window of history",
+    "a recording must be longer than a window": "fewer samples than one window of history",
 }
 OTHERS = {  # checks that fail for another reason
     "check_estimators_nan_inf": "NaN is a missing reading, which a window may contain",

@@ -123,7 +123,7 @@ def test_an_engine_runs_its_model_and_what_the_mapping_adds(engine_pendulum):
     write_simulation(
         mapping.with_effect(gd.Term("pivot_moment", "port", "push", "-delay(pivot, 0.1)")), engine_pendulum
     )
-    with pytest.raises(SchemaError, match=r"pendulum.toml.*pivot_moment.*write it into"):
+    with pytest.raises(SchemaError, match=r"pendulum.toml.*pivot_moment.*write them into"):
         gd.simulate(engine_pendulum, time, {"drive": drive}, start)
 
 

@@ -144,7 +144,7 @@ def test_the_paired_tests_have_their_section_and_the_same_bytes(tested_maker, tm
     )
     run = tested_maker(6, ("hip_flexion_r",))
     text = write_report(run, tmp_path / "a").read_text(encoding="utf-8")
-    assert text.index("What the models explain") < text.index("Which model explains more") < text.index(">P01</h2>")
+    assert text.index("Explained variance") < text.index("Which model explains more") < text.index(">P01</h2>")
     assert "tables/tests-augmented-exo.csv" in text
     assert "figures/comparison.csv" in text
     write_report(run, tmp_path / "b")

@@ -152,7 +152,7 @@ def test_walks_that_do_not_belong_together(nominal, exo, settings):
 
 
 def test_walks_that_are_too_short_or_unusable_at_the_end(nominal, exo, settings):
-    with pytest.raises(SamplingError, match=r"too short to hold out.*60 s"):
+    with pytest.raises(SamplingError, match=r"must be longer than the 60 s to be held out"):
         fit_response(nominal, exo, replace(settings, held_out_s=60.0))
     usable = exo.usable.copy()
     usable[-800:, 1] = False

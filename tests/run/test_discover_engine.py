@@ -42,7 +42,7 @@ def test_a_mapping_is_written_by_new_and_not_over_an_edited_one(lab, tmp_path):
 
 def test_degrees_for_radians_and_a_column_that_is_not_there_are_refused(lab, tmp_path):
     said = CliRunner().invoke(app, ["discover", str(lab / "pendulum.xml"), str(lab / "trials.csv")])
-    assert said.exit_code != 0 and "these may be degrees" in str(said.exception)
+    assert said.exit_code != 0 and "rad, but may be in degrees" in str(said.exception)
     table = pd.read_csv(lab / "trials.csv").rename(columns={"drive": "torque"})
     table.to_csv(tmp_path / "other.csv", index=False)
     said = CliRunner().invoke(app, ["discover", str(lab / "pendulum.xml"), str(tmp_path / "other.csv")])

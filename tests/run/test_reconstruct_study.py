@@ -108,8 +108,8 @@ def test_sensors_are_searched_for_all_participants_together(study):
 @pytest.mark.parametrize(
     ("settings", "found"),
     [
-        (ReconstructionSettings(targets="emg"), "emg are to be reconstructed 0 s ahead"),
-        (ReconstructionSettings(ahead_s=0.1), "states are to be reconstructed 0.1 s ahead"),
+        (ReconstructionSettings(targets="emg"), "requested: emg, 0 s ahead"),
+        (ReconstructionSettings(ahead_s=0.1), "requested: states, 0.1 s ahead"),
     ],
 )
 def test_no_search_for_what_is_not_a_present_state(study, settings, found):

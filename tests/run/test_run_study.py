@@ -188,5 +188,5 @@ def test_an_excluded_person_is_left_out_with_the_reason(study, tmp_path):
 def test_a_held_out_part_longer_than_the_trial_is_refused(study, tmp_path):
     held = study.held_out.model_copy(update={"seconds": 60.0, "share": None})
     unit = compute_unit(study.model_copy(update={"held_out": held}), study.participants[0], tmp_path, lambda _: None)
-    assert says(unit.refusals[0].reason, "too short to hold out", "60 s")
+    assert says(unit.refusals[0].reason, "must be longer than", "60 s to be held out")
     assert len(unit.walks) == 2

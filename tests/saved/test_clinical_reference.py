@@ -52,7 +52,7 @@ def test_another_form_is_refused_with_its_place(tmp_path, text, words):
 
 
 def test_it_is_kept_as_its_table_and_saved_as_no_legs(tmp_path):
-    with pytest.raises(SchemaError, match="Keep this table"):
+    with pytest.raises(SchemaError, match="Use the table itself"):
         save_reference(load_reference(written_table(tmp_path, published_table())), tmp_path / "run")
 
 

@@ -73,7 +73,7 @@ def test_files_that_cannot_be_read(tmp_path):
     with pytest.raises(ReadError, match="is a folder"):
         read_simulation(tmp_path)
     (tmp_path / "latin.toml").write_bytes(b'title = "caf\xe9"')
-    with pytest.raises(ReadError, match="not at byte 12"):
+    with pytest.raises(ReadError, match="another byte at offset 12"):
         read_simulation(tmp_path / "latin.toml")
 
 
@@ -164,7 +164,7 @@ def test_the_errors_of_an_input_are_read_and_written_back(ankle_text):
         ("wander = 0.5", "wander = 0", "a number above 0 [s]; found wander = 0"),
         ("sd = 3.0", "sd = nan", "a finite number; found nan"),
         ("sd = 3.0", 'sd = "3 N m"', "a finite number; found 3 N m. Write it without quotes"),
-        ("gain = 0.1\nsd = 3.0", "", "[inputs] motor: wander needs gain or sd beside it; the input has neither"),
+        ("gain = 0.1\nsd = 3.0", "", "[inputs] motor: an input with wander must also have gain or sd; it has neither"),
         ('[inputs.motor]\nunit = "N m"', "[inputs.phase]", "the phase of the stride must be exact; it has gain or sd"),
         ("wander", "wanders", "Did you mean 'wander'?"),
     ],
