@@ -153,7 +153,7 @@ def without_stated(cycles: list[Cycle], said: Sequence[str], file: str) -> tuple
     >>> cycles = [Cycle("l", 2.305, 3.4, ("force", "force"))]
     >>> found, unknown = without_stated(cycles, ("left 2.31 stumbled", "right 9.1"), "P01 fast")
     >>> found[0].reason, unknown[0].what
-    ('left out by the study: stumbled', "leave_out_cycles says 'right 9.1', but no such cycle begins there")
+    ('left out by the study: stumbled', "leave_out_cycles contains 'right 9.1', but no cycle begins there")
     """
     found, findings = list(cycles), []
     for words in said:
