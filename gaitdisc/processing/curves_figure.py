@@ -127,9 +127,9 @@ def _figure(run: StudyRun, participant: str, numbers: pd.DataFrame, name: str) -
         counts.append(f"{fewest if fewest == most else f'{fewest}-{most}'} strides ({word})")
     caption = (
         f"{participant}: walking curves of every channel over the stride, mean ± standard deviation over strides, n = "
-        f"{', '.join(counts)}; entire walks (training and test). Grey, dashed: {run.nominal}; solid: {run.exo} (red: "
-        "left side, blue: right side, black: no side). 0 %: initial contact of the channel's own foot. Arrows give "
-        "the positive direction; left and right of one joint share a scale."
+        f"{', '.join(counts)}; entire walks, not split. Grey, dashed: {run.nominal}; solid: {run.exo} (red: left side, "
+        "blue: right side, black: no side). 0 %: initial contact of the channel's own foot. Arrows give the positive "
+        "direction; left and right of one joint share a scale."
     )
     return Figure(name, caption, alt, numbers, drawn)
 

@@ -125,8 +125,8 @@ def _caption(participant: str, numbers: pd.DataFrame) -> str:
     ]
     return (
         f"{participant}: every stride of each walk, from initial contact to the next of the same foot, n = "
-        f"{' and '.join(parts)}; entire walks (training and test). Light bars: kept; black, taller bars: dropped, with "
-        "the letter of its reason in the table below. Under each strip: duration of every stride [s] over time. Red "
+        f"{' and '.join(parts)}; entire walks, not split. Light bars: kept; black, taller bars: dropped, with the "
+        "letter of its reason in the table below. Under each strip: duration of every stride [s] over time. Red "
         "triangles: left; blue discs: right; crosses: dropped."
     )
 

@@ -116,7 +116,7 @@ def test_why_there_is_no_profile():
     assert says(find_profile({"l": _leg("l", bare, 43.0)}, controls)[1], "the pelvis turns", "43 deg")
     without = [replace(leg, curves={"knee_flexion": np.zeros(101)}) for leg in controls]
     assert (
-        "fewer than two people of the reference have pelvis tilt"
+        "fewer than two people of the reference have curves of pelvis tilt"
         in find_profile({"l": _leg("l", dict.fromkeys(PROFILE, 1.0))}, without)[1]
     )
 

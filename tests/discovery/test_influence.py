@@ -94,6 +94,6 @@ def test_an_answer_that_takes_two_inputs_nearly_away_is_said():
     (said,) = nearly_off(effects, "walk.csv")
     assert (said.severity, said.kind) == ("warning", "inputs switched off")
     assert said.line().startswith("warning: walk.csv")
-    assert says(said.what, "'net' (0.13 times)", "'others' (-0.2 times)")
+    assert says(said.what, "'net' (gain 0.13)", "'others' (gain -0.2)")
     assert says(said.spoils, "one recording into one input")
     assert nearly_off(effects[1:], "walk.csv") == ()

@@ -29,7 +29,7 @@ def test_the_sentence_says_where_the_sizes_end():
     found, seldom = (
         f"Viscous damping at load is {word} in 19 of 20 records like these" for word in ("found", "not found")
     )
-    assert counted(0, 4, 10).sentence.startswith(f"{found} from a damping of ")
+    assert counted(0, 4, 10).sentence.startswith(f"{found} if the damping is at least ")
     assert counted(10, 10, 10).sentence == f"{found} even with a damping of 1.0 N s/m."
     assert counted(0, 1, 9).sentence == f"{seldom} with a damping of up to 4.0 N s/m."
     assert counted(0, 0, 0, instead="gravity@load").sentence == (

@@ -152,7 +152,7 @@ def test_moments_come_with_a_mass_and_are_refused_without_forces(files):
     trial = gd.read(walk)
     found = gd.moments(trial, static, mass_kg=45.8)  # of HC030A
     assert {"N m/kg", "W/kg"} <= {channel.unit for channel in found.channels}
-    with pytest.raises(GaitdiscError, match="plates that agree within 5 %"):
+    with pytest.raises(GaitdiscError, match="plates must agree within 5 %"):
         gd.moments(trial, static, mass_kg=70.0)
     bare = gd.Trial("bare", {"markers": trial.stream("markers")})
     with pytest.raises(GaitdiscError, match="forces"):

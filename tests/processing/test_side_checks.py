@@ -28,7 +28,7 @@ def test_belts_whose_places_are_exchanged_are_named(belts):
     forces = {key: belts.stream(key) for key in ("markers", "forces")}
     (finding,) = side_findings(replace(belts, streams=forces, surfaces=swapped), {})
     assert finding.kind == "swapped plates"
-    assert "plate_1 and plate_2 are exchanged" in finding.what
+    assert "the channels of plate_1 and plate_2 are swapped" in finding.what
 
 
 def test_forces_that_bear_the_other_foots_name_are_found_in_a_published_walk(gait_data):
@@ -85,7 +85,7 @@ def test_two_plates_that_are_exchanged_have_no_foot_under_their_force(plates):
     moved = replace(walk, surfaces=swapped)
     said = plate_words(moved)
     assert sum(len(one.spans) for one in said) == 2 and all(one.severity == "warning" for one in said)
-    assert any("exchanged" in one.what or "cm from the nearest foot" in one.what for one in said)
+    assert any("swapped" in one.what or "cm from the nearest foot" in one.what for one in said)
     assert standing_weight_n(replace(static, surfaces=swapped)) is None  # nobody stands on the plate that is loaded
 
 
