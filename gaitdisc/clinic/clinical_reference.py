@@ -122,7 +122,7 @@ class ClinicalReference:
 def save_reference(reference: ClinicalReference, folder: Path) -> Path:
     """Save a reference as `reference.json`, whole, with a hash of its own."""
     if reference.published:
-        raise SchemaError("a saved reference must consist of single legs", reference.title, "Use the table itself.")
+        raise SchemaError("a reference without single legs cannot be saved", reference.title, "Use the table itself.")
     data = {
         "format": FORMAT,
         "title": reference.title,

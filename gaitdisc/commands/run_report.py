@@ -81,7 +81,7 @@ def vary(place: Path, out: Path | None, question: str, jobs: int, cluster: str, 
 def say_renewed(renewed: Sequence[str]) -> None:
     """Say which files of an earlier run were not used."""
     for line in renewed:
-        LOG.info(f"not used, computed again: {line}")
+        LOG.info(f"{line}; computed again")
 
 
 def work_with_bar(work: Callable[[StudyProgress], Result], people: list[str], quiet: bool) -> Result:
@@ -163,7 +163,7 @@ def say_new_recordings(study: Study) -> None:
     for path in each:
         if path.suffix.lower() in endings and path.resolve() not in owners and not is_people_table(path):
             who = next((folders[folder] for folder in path.parents if folder in folders), "")
-            beside = f"beside those of {who}" if who else "of somebody new or in a new folder"
+            beside = f"in the folder of {who}" if who else "in another folder"
             found[beside] = found.get(beside, 0) + 1
     new = ", ".join(f"{count} {beside}" for beside, count in sorted(found.items()))
     if new:

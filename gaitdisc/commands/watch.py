@@ -33,7 +33,7 @@ def watch(
     from gaitdisc.run.watched_folder import WatchedFolder
 
     if not recordings.is_dir():
-        raise ReadError("the path must be a folder of recordings", f"{recordings} is none", "Create the folder.")
+        raise ReadError("the path must be a folder of recordings", f"{recordings} is not a folder", "Create it.")
     file = study if study.suffix == ".toml" else study / "study.toml"
     looked: Looked = {}
     said: set[str] = set()

@@ -62,7 +62,7 @@ class C3DReader:
         self.process.close()
 
     def read(self, path: str | Path, channels: Mapping[str, str] | None = None) -> Trial:
-        """Trial of one C3D file.
+        """Read one C3D file as a trial.
 
         Streams: `markers` [m], as `<marker>.x`; `segments`, the poses of the group ROTATION (see `file_segments`);
         `kinematics` [deg], the angles that a model wrote into the file, with names of the vocabulary or as `<label>.x`;

@@ -262,7 +262,7 @@ def write_recording(recording: Recording, path: Path | str, overwrite: bool = Fa
     Returns
     -------
     Path
-        The file.
+        Path of the written file.
 
     Raises
     ------

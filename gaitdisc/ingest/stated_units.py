@@ -49,13 +49,13 @@ def plausible_unit(
         which = next(names[i] for i in bounded if _largest(values[:, i]) == most)
         raise UnitError(
             f"{file} states radians (inDegrees=no), so no joint angle may exceed {FULL_TURN:.2f} rad",
-            f"{which} reaches {most:.4g} rad, as if it were in degrees",
+            f"{which} reaches {most:.4g} rad, which looks like degrees",
             "Write inDegrees=yes in its header, or export it again.",
         )
     if stated == "deg" and like_rad and moving:
         raise UnitError(
             f"{file} states degrees, so hips and knees of a moving trial must vary by more than {WALKING_RAD[1]:g} deg",
-            f"their widest range is {reach:.3g} deg, and no joint angle exceeds {most:.3g} deg, as if in radians",
+            f"the widest range is {reach:.3g} deg and the largest angle {most:.3g} deg, which looks like radians",
             "Write inDegrees=no (or [rad]) in its header, or export it again.",
         )
     if stated:
@@ -118,7 +118,7 @@ def refuse_other_unit(unit: str, far: float, file: str, where: str) -> None:
         raise UnitError(
             f"markers in {unit} must be {'less' if unit == 'm' else 'more'} than {METRES_AT_MOST:g} {unit} from the "
             "origin",
-            f"those of {file} are {far:.4g} {unit} away, as if they were in {'mm' if unit == 'm' else 'm'}",
+            f"those of {file} are {far:.4g} {unit} away, which looks like {'mm' if unit == 'm' else 'm'}",
             f"Correct {where} of the file.",
         )
 

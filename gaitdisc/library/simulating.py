@@ -70,7 +70,7 @@ def simulate(
         A simulation file, the result of `read_simulation`, or a Python function (`simulation_from_function`); a MuJoCo
         or OpenSim model, or its mapping, which the engine runs.
     time : array_like (time,) [s]
-        Evenly spaced, increasing.
+        Times, evenly spaced and increasing.
     inputs : Recording, DataFrame or mapping of str to array_like (time,), optional
         Inputs of the simulation by name [the input's unit]. A Recording, or a DataFrame with times, is interpolated
         linearly at `time`; a mapping may also contain a number or a function of time.

@@ -202,7 +202,7 @@ class Field:
         Parameters
         ----------
         quantities : sequence of str
-            Names.
+            Names of the quantities.
 
         Raises
         ------

@@ -92,7 +92,7 @@ class Recording:
     Parameters
     ----------
     time : ndarray (time,) [s]
-        Evenly spaced, increasing.
+        Times, evenly spaced and increasing.
     values : ndarray (time, channel) [each channel's unit]
         Values of the channels; NaN, never 0, where nothing was measured.
     channels : sequence of Channel
@@ -183,7 +183,7 @@ class Recording:
 
     @property
     def rate_hz(self) -> float:
-        """Sampling rate; NaN for fewer than two samples."""
+        """Sampling rate [Hz]; NaN for fewer than two samples."""
         if len(self.time) < 2:
             return float("nan")
         rate = mean_rate(self.time)

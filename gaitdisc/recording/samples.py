@@ -78,7 +78,7 @@ class Samples:
     phi : ndarray (sample,) [% stride]
         Percent stride of each sample.
     subject : str
-        Pseudonym.
+        Pseudonym of the person.
 
     Raises
     ------

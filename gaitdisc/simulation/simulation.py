@@ -205,7 +205,7 @@ class Simulation(Parts):
         Parameters
         ----------
         name : str
-            Measured column.
+            Name of the measured column.
         expression : str
             Expression in the names of the simulation.
         """
@@ -219,7 +219,7 @@ class Simulation(Parts):
         Parameters
         ----------
         names : sequence of str
-            Measured columns.
+            Names of the measured columns.
 
         Raises
         ------
@@ -237,7 +237,7 @@ class Simulation(Parts):
         Parameters
         ----------
         name : str
-            Input.
+            Name of the input.
         expression : str
             Expression of states, inputs, parameters and `t`: `1.2*tau`, `delay(tau, 0.05)`.
 

@@ -39,7 +39,7 @@ def write_simulation(simulation: Simulation | PythonSimulation, path: Path | str
     Returns
     -------
     Path
-        The file.
+        Path of the written file.
 
     Raises
     ------

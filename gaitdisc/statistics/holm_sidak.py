@@ -45,7 +45,7 @@ def holm_sidak(p: ArrayLike, alpha: float = 0.05) -> StepDown:
     p : array_like (test,)
         p-values of one family of tests, 0 to 1.
     alpha : float
-        Family-wise level.
+        Family-wise error rate.
 
     Returns
     -------

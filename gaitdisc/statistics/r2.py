@@ -27,6 +27,7 @@ def r2(measured: ArrayLike, predicted: ArrayLike) -> NDArray[np.float64]:
     Returns
     -------
     ndarray (column,)
+        R2 of each column.
 
     Raises
     ------

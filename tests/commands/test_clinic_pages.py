@@ -72,7 +72,7 @@ def test_recordings_that_the_study_does_not_name_are_counted_by_pseudonym_and_no
     ]
     say_new_recordings(Study(conditions=Conditions(nominal="walk"), participants=tuple(people)).placed(tmp_path))
     said = capsys.readouterr().err
-    assert says(said, "New recordings", "2 beside those of P01", "gaitdisc watch") and "P02" not in said
+    assert says(said, "New recordings", "2 in the folder of P01", "gaitdisc watch") and "P02" not in said
     assert "anna" not in said and "w2" not in said
 
 
@@ -87,7 +87,7 @@ def test_recordings_of_somebody_new_beside_the_others_are_counted(tmp_path, caps
     study = Study(conditions=Conditions(nominal="walk"), participants=tuple(people))
     say_new_recordings(study.placed(tmp_path / "study"))
     said = capsys.readouterr().err
-    assert says(said, "1 beside those of P01", "1 of somebody new or in a new folder") and "carl" not in said
+    assert says(said, "1 in another folder", "1 in the folder of P01") and "carl" not in said
 
 
 def test_a_reference_stays_with_the_run(tmp_path):

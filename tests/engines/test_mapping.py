@@ -83,7 +83,7 @@ def test_equations_beside_a_model_are_refused(pendulum):
     file = pendulum.with_suffix(".toml")
     write_mapping(read_model(pendulum), file)
     file.write_text(file.read_text() + '\n[equations]\npivot = "pivot_speed"\n')
-    with pytest.raises(GaitdiscError, match="the equations must be in the file"):
+    with pytest.raises(GaitdiscError, match="the equations must be either in the file"):
         read_simulation(file)
 
 

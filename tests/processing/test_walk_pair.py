@@ -102,7 +102,7 @@ def test_no_strides_in_common_is_refused_in_words():
     with pytest.raises(StrideError, match=r"plates has contacts by force\. angles by force: "):
         walk_pair(forces, angles, detector="force")
     assert says(str(refused.value), "no hip angle in common")
-    assert says(refused.value.remedy, "both", "both forces")
+    assert says(refused.value.remedy, "two walks with hip flexion, with forces")
 
 
 def test_standing_is_refused(gait_data):

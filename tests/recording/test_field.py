@@ -44,7 +44,7 @@ def test_snapshots_and_quantities_are_kept_as_asked():
     sea = field().snapshots(slice(1, None)).selected(["v"])
     assert (len(sea), sea.quantities, sea.units) == (2, ("v",), ("m/s",))
     assert sea.values[0, 0, 0] == 9.0
-    with pytest.raises(ChannelError, match="quantities u, v"):
+    with pytest.raises(ChannelError, match="quantities must be among u, v"):
         field().selected(["w"])
 
 

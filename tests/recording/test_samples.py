@@ -96,7 +96,7 @@ def test_the_dissertation_holds_out_30_of_240_s():
 
 
 def test_a_held_out_part_longer_than_the_trial():
-    with pytest.raises(SamplingError, match=r"too short.*30 s.*0.3 s.*P01.*10.00 s"):
+    with pytest.raises(SamplingError, match=r"longer than.*30 s.*0.3 s.*P01.*10.00 s"):
         trajectory(1000).split(30.0)
     with pytest.raises(SamplingError):
         trajectory(1000).split(0.0)
