@@ -80,9 +80,7 @@ def _keep_normal_data(file: Path, out: Path, people: int) -> None:
     typer.echo(f"  curves: {', '.join(table['variable'].unique()).replace('_', ' ')}")
     angles = table.loc[table["variable"].isin(PROFILE), "sd"]
     if angles.median() < PEOPLE_DEG:
-        words = (
-            f"  the standard deviation of the angles is {angles.median():.1f} deg in the median, but people differ by"
-        )
+        words = f"  the standard deviation of the angles is {angles.median():.1f} deg in the median; people differ by"
         typer.echo(f"{words} more than {PEOPLE_DEG:g}: these may be cycles of one person")
     typer.echo("  bands and profile scores are computed, but no deviation is reported, because limits need single legs")
     typer.echo(f"reference: {path}. Its first line is printed on each page: write there who these people are.")
