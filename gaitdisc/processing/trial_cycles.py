@@ -134,7 +134,7 @@ def with_plates(cycles: list[Cycle], plates: PlateLoadings) -> list[Cycle]:
         off = one.foot_off if np.isfinite(one.foot_off) else one.start + 0.5 * one.duration_s
         steps = [span.shared(Span(one.start, off)).seconds for span in plates.belts.get(one.side, ())]
         carried = sum(max(0.0, seconds) for seconds in steps) > 0.5 * (off - one.start)
-        found.append(replace(one, kinetic=carried or stance))
+        found.append(replace(one, kinetic=bool(carried or stance)))
     return found
 
 
