@@ -136,7 +136,9 @@ def choose_light(pooled: PooledCycles, legs: dict[str, LegCurves]) -> tuple[str,
 
 
 def _remedy(one: Finding) -> str:
-    """What to do: what a finding ends with, or where to look."""
+    """What to do: what a finding ends with, or where to look; of angles that are not there, why."""
+    if one.spoils.startswith("angles from "):
+        return one.what
     _, there, remedy = one.spoils.rpartition("; ")
     where = f" of {label(one.channel)}" if one.channel else ""
     return remedy if there else f"look at the curves{where} before you use {one.spoils or 'them'}"

@@ -64,6 +64,7 @@ def _each(own: Sequence[Noted], tier: int, say: Callable[[str], str]) -> str:
         if one.other:  # words of a rule say which way
             way = "apart from" if one.words != one.rule else "more than" if one.value > 0 else "less than"
             value += f" {say(way)} {say(SIDE_WORDS[one.other])}"
+            cycles += f"; {say('neither leg stands out by itself')}" if one.words == one.rule else ""
         found.append(f"{say(SIDE_WORDS[one.side])} {value} ({cycles}{less})".strip())
     return ", ".join(found)
 

@@ -14,6 +14,8 @@ from gaitdisc.errors import SchemaError
 if TYPE_CHECKING:
     from gaitdisc.saved.study_run import StudyRun
 
+PEOPLE_DEG = 2.0  # six young people have 2.9 deg, without their own means 2.4 (studies/results/recordings.md)
+
 
 def reference(
     controls: Annotated[Path, typer.Argument(help="Study of controls, its run, or normal data (.gcd, .xlsx).")],
@@ -33,6 +35,12 @@ def reference(
     if controls.suffix.lower() in ENDINGS:
         _keep_normal_data(controls, out, people)
         return
+    if controls.is_file() and controls.suffix.lower() != ".toml":
+        raise SchemaError(
+            "controls must be a study, its run, or normal data (.gcd, .xlsx)",
+            f"{controls.name} ends in {controls.suffix!r}",
+            "Save a workbook as .xlsx. A published table (.csv) is given as it is: gaitdisc run STUDY --reference.",
+        )
     claim_folder(out, FILE)
     run = _find_run(controls, jobs)
     cycles = tuple(one for one in run.of(CYCLES) if not group or one.group == group)
@@ -59,6 +67,7 @@ def _keep_normal_data(file: Path, out: Path, people: int) -> None:
     from gaitdisc.clinic.clinical_reference import PUBLISHED
     from gaitdisc.clinic.normal_data import read_normal_data
     from gaitdisc.own_files import claim_folder
+    from gaitdisc.processing.leg_curves import PROFILE
     from gaitdisc.whole_file import write_whole
 
     if not people:
@@ -69,6 +78,10 @@ def _keep_normal_data(file: Path, out: Path, people: int) -> None:
     text = table.to_csv(index=False, float_format="%.6g")
     path = write_whole(out / PUBLISHED, f"# normal data of {people} people, from {file.name}\n{text}")
     typer.echo(f"  curves: {', '.join(table['variable'].unique()).replace('_', ' ')}")
+    angles = table.loc[table["variable"].isin(PROFILE), "sd"]
+    if angles.median() < PEOPLE_DEG:
+        words = f"  the standard deviation of the angles is {angles.median():.1f} deg in the median; people differ by"
+        typer.echo(f"{words} more than {PEOPLE_DEG:g}: these may be cycles of one person")
     typer.echo("  bands and profile scores are computed, but no deviation is reported, because limits need single legs")
     typer.echo(f"reference: {path}. Its first line is printed on each page: write there who these people are.")
 

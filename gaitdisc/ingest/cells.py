@@ -147,7 +147,7 @@ def check_counts(
         if wrong:
             what = f"the header states {' and '.join(map(str, wrong))} {kind}, but the file has {there}"
             findings.append(
-                Finding("warning", "wrong count", file, what, "nothing here, but other programs may refuse the file")
+                Finding("warning", "wrong count", file, what, "nothing here; other programs may refuse the file")
             )
     return findings
 

@@ -92,16 +92,20 @@ def draft_study(
     if not folder.is_dir():
         raise ReadError(f"{folder.name} must be a folder", "it does not exist, or is a file", "Correct the path.")
     notes: list[str] = []
-    files = recording_files(folder) if files is None else files
+    if files is None:
+        files = recording_files(folder)
+        endings = Counter(path.suffix.lower() for path in folder.rglob("*.*") if path.is_file())
+        unread = [f"{count} {ending}" for ending, count in sorted(endings.items()) if ending not in (*ENDINGS, "")]
+        _note(notes, "not read, because of their ending: ", unread)
     tables = [path for path in files if is_people_table(path)]
     measured = read_people(folder, tables, notes)
     others = [path for path in files if path not in tables]
     found = _read_drafts(folder, others, notes, {} if looked is None else looked, progress)
     if not found:
-        unread = f"; {notes[0]}" if notes else ""
+        left_out = f"; {notes[-1].removesuffix('.')}" if notes else ""
         raise ReadError(
             f"{folder.name} must contain recordings: files that end in {', '.join(ENDINGS)}",
-            f"none of its files can be read{unread}",
+            f"none of its files can be read{left_out}",
             "Name the folder that contains them.",
         )
     groups: dict[str, set[str]] = {}

@@ -276,6 +276,10 @@ def read_events(lines: Sequence[str], file: str) -> tuple[Event, ...]:
             elif min(named, timed) >= 0:
                 whole = ((n, row) for n, row in rows if len(row) >= len(labels))
                 cells = [(n, *event_kind(row[named], row[aside] if aside >= 0 else ""), row[timed]) for n, row in whole]
+            if named >= 0 > timed and any(label.startswith("frame") for label in labels):
+                needed = f"{file}: events must have a column of times, such as 'time [s]'"
+                remedy = "Write seconds: the frame less the file's first, divided by the frame rate."
+                raise ReadError(needed, f"line {top + 1} is {line.strip()[:60]!r}", remedy)
             if any(kind in STEPS for _, kind, _, _ in cells):
                 unit_s = 1e-3 if timed >= 0 and "ms" in labels[timed] else 1.0
                 steps = (cell for cell in cells if cell[1] in STEPS and cell[3].strip())

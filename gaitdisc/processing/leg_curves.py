@@ -110,7 +110,7 @@ def _percent_per_newton(pooled: PooledCycles) -> float | None:
         name = f"ground_force_{side}_vy"
         if name not in names or pooled.channels[names.index(name)].unit != "N" or not (feet == side).any():
             return None
-        carried += float(np.nanmean(pooled.curves[feet == side, :, names.index(name)]))
+        carried += float(mean_where_known(pooled.curves[feet == side, :, names.index(name)].ravel()))
     return 100.0 / carried if carried > LIGHTEST_N else None
 
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import itertools
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 
@@ -34,6 +34,7 @@ SHORTEST_STRIDE_M = 0.1  # below it the line of a stride has no direction
 SAME_START_S = 0.1  # by which the start that a study gives of a cycle may differ
 EDGE_S = 0.06  # by which markers and a plate may differ about one event
 LEGS = ("hip_", "knee_", "ankle_", "subtalar_")
+BELT_RISE = 0.1  # of a foot's largest force, above which its own force is there
 LOADED_PERCENT = 10.0  # of body weight: the foot is on the plate
 # Plug-in Gait: tilt positive forwards, obliquity positive with the named side up, rotation with it forwards.
 PLUG_IN_GAIT = {
@@ -92,7 +93,8 @@ def cut_cycles(contacts: Timed, offs: Timed) -> list[Cycle]:
 class PlateLoadings:
     """When the plates of a trial were loaded."""
 
-    belts: frozenset[str] = frozenset()  # sides that have a force of their own, as on a split belt
+    # side -> when its foot loaded a force of its own: a belt, or the plates that it stepped on
+    belts: Mapping[str, tuple[Span, ...]] = field(default_factory=dict)
     # from when to when a plate was loaded, whole in the recording [s]; empty where there are belts
     spans: tuple[Span, ...] = ()
 
@@ -102,27 +104,37 @@ def plate_loadings(trial: Trial, rise_n: float = RISE_N) -> PlateLoadings:
     if "forces" not in trial.streams:
         return PlateLoadings()
     forces = trial.stream("forces").selected_by(lambda channel: channel.quantity == "vertical_force")
-    belts = frozenset(channel.side for channel in forces.channels if channel.side)
-    spans = []
-    for force in () if belts else forces.values.T:
+    belts = any(channel.side for channel in forces.channels)
+    found: dict[str, list[Span]] = {}
+    for channel, force in zip(forces.channels, forces.values.T, strict=True):
         known = finite_values(force)
-        upward = -force if len(known) and -known.min() > known.max() else force
-        found = loaded(upward, forces.rate_hz, rise_n)
-        spans += [Span(float(forces.time[a]), float(forces.time[b - 1])) for a, b in found if a > 0 and b < len(force)]
-    return PlateLoadings(belts, tuple(spans))
+        if not len(known) or (belts and not channel.side):
+            continue
+        upward = -force if -known.min() > known.max() else force
+        rise = BELT_RISE * np.abs(known).max() if belts else rise_n  # a foot's own force may be in N/kg
+        spans = found.setdefault(channel.side, [])
+        for start, end in loaded(upward, forces.rate_hz, rise):
+            if belts or (start > 0 and end < len(force)):
+                spans.append(Span(float(forces.time[start]), float(forces.time[end - 1])))
+    plates = tuple(found.pop("", ()))
+    return PlateLoadings({side: tuple(spans) for side, spans in found.items()}, plates)
 
 
 def with_plates(cycles: list[Cycle], plates: PlateLoadings) -> list[Cycle]:
-    """Same cycles, kinetic where the foot alone loaded one plate, or its own belt, for the whole stance.
+    """Same cycles, kinetic where the foot alone loaded one plate for the whole stance, or has a force of its own.
 
-    One plate is loaded from this contact to this foot off, for no longer than a stance, and no other begins then.
+    One plate is loaded from this contact to this foot off, for no longer than a stance, and no other begins then. A
+    force of its own is there for more than half of the stance: over ground a foot also steps beside its plates.
     """
     found = []
     for one in cycles:
         begun = [span for span in plates.spans if abs(span.start - one.start) <= EDGE_S]
         alone = len(begun) == 1 and abs(begun[0].end - one.foot_off) <= EDGE_S
         stance = alone and begun[0].seconds <= LONGEST_STANCE * one.duration_s
-        found.append(replace(one, kinetic=one.side in plates.belts or stance))
+        off = one.foot_off if np.isfinite(one.foot_off) else one.start + 0.5 * one.duration_s
+        steps = [span.shared(Span(one.start, off)).seconds for span in plates.belts.get(one.side, ())]
+        carried = sum(max(0.0, seconds) for seconds in steps) > 0.5 * (off - one.start)
+        found.append(replace(one, kinetic=bool(carried or stance)))
     return found
 
 

@@ -8,6 +8,7 @@ from typer.testing import CliRunner
 from gaitdisc.cli import app
 from gaitdisc.clinic.clinical_reference import load_reference
 from gaitdisc.clinic.normal_data import read_normal_data
+from gaitdisc.commands.reference import reference
 from gaitdisc.errors import SchemaError
 
 PERCENT = np.linspace(0, 100, 51)
@@ -33,7 +34,8 @@ def _xlsx(path):
 def test_a_gcd_becomes_a_reference_by_one_command(tmp_path):
     given = ["reference", str(_gcd(tmp_path / "normal.gcd")), "--out", str(tmp_path / "ref")]
     assert "number of people" in str(CliRunner().invoke(app, given).exception)
-    assert "hip moment" in CliRunner().invoke(app, [*given, "--people", "12"]).stdout
+    said = CliRunner().invoke(app, [*given, "--people", "12"]).stdout
+    assert "hip moment" in said and "0.5 deg in the median" in said and "cycles of one person" in said
     (group,) = load_reference(tmp_path / "ref").published
     assert group.people == 12 and set(group.bands) == {"knee_flexion", "hip_moment", "ankle_power"}
     np.testing.assert_allclose(group.bands["hip_moment"].mean[25], -1.0, atol=3e-3)  # Plug-in Gait's is of extensors
@@ -44,6 +46,12 @@ def test_a_workbook_of_polygon_holds_mean_less_and_more_one_deviation(tmp_path):
     table = read_normal_data(_xlsx(tmp_path / "normal.xlsx"), 30)
     assert set(table["variable"]) == {"knee_flexion"} and len(table) == 51
     np.testing.assert_allclose(table[["mean", "sd"]], np.column_stack([KNEE, np.full(51, 0.5)]), atol=1e-9)
+
+
+def test_a_file_of_another_ending_is_no_study_of_controls(tmp_path):
+    (tmp_path / "normal.xls").touch()
+    with pytest.raises(SchemaError, match=r"normal.xls ends in '.xls'. Save a workbook as .xlsx"):
+        reference(tmp_path / "normal.xls", tmp_path / "ref")
 
 
 @pytest.mark.parametrize("name", ["a.xlsx", "a.gcd"])

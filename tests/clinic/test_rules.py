@@ -128,7 +128,9 @@ def test_legs_that_differ_more_than_those_of_controls_are_noted_where_neither_is
         assert sides.value == pytest.approx(-1.5 * less, abs=0.2) and sides.limits.mean == pytest.approx(0.0)
         assert sides.limits.people == 20 and [one.tier for one in numbers if not one.other] == [0, 0]
     (said,) = write_noted(outstanding(legs, even, table)[0][:1], 2)
-    assert said.startswith("Knee in swing: left") and says(said, "deg less than right", "limits", "20 people")
+    assert said.startswith("Knee in swing: left") and says(
+        said, "deg less than right", "neither leg stands out", "limits", "20 people"
+    )
     few = {
         side: replace(leg, cycles={name: each[:2] for name, each in leg.cycles.items()}) for side, leg in legs.items()
     }

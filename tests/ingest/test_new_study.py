@@ -107,6 +107,9 @@ def test_the_way_to_the_folder_does_not_matter_but_hidden_folders_are_passed_ove
 def test_folders_without_recordings_are_refused(tmp_path):
     with pytest.raises(ReadError, match="none must be a folder"):
         draft_study(tmp_path / "none")
+    (tmp_path / "plates.forces").touch()
+    with pytest.raises(ReadError, match=r"none.*; not read, because of their ending: 1 \.forces\. Name"):
+        draft_study(tmp_path)
     (tmp_path / "a.mot").write_text("x")
     with pytest.raises(ReadError, match=r"none.*left.*a\.mot"):
         draft_study(tmp_path)

@@ -67,6 +67,11 @@ def test_a_table_of_events_gives_contacts_and_foot_offs(tmp_path, text, times):
         ("event,time\nheel strike,1.0\n", ReadError, "line 2: each initial contact must have a side; it has none"),
         ("event,time\nleft heel strike,soon\n", ReadError, "line 2: the time of an event must be a number.*'soon'"),
         (
+            "event;frame;side\nHS;124;R\n",
+            ReadError,
+            "events must have a column of times.*'event;frame;side'.*frame rate",
+        ),
+        (
             "time,foo\n0,1\n1,2\n",
             UnitError,
             r"column 'foo' must have a unit; neither .*\. Write 'foo \[unit\]' in the header",

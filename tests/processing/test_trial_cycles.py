@@ -77,11 +77,17 @@ def test_a_kinetic_cycle_has_one_foot_on_one_plate_for_the_whole_stance(spans, k
     assert [one.kinetic for one in right] == kinetic
 
 
-def test_each_foot_s_own_belt_is_kinetic_throughout():
+@pytest.mark.parametrize(("standing", "right"), [(1.0, [True, True]), (700.0, [True, True]), (0.0, [True, False])])
+def test_a_foot_s_own_force_makes_kinetic_the_cycles_that_it_carries(standing, right):
+    """A belt throughout, in newtons or in body weights; over ground nothing is under the second step."""
     time = np.arange(400) / 100
-    belts = tuple(Channel(f"ground_force_{side}_vy", "vertical_force", "N", side) for side in "rl")
-    trial = Trial("belts", {"forces": Recording(time, np.ones((400, 2)), belts)})
-    assert all(one.kinetic for one in with_plates(cut_cycles(CONTACTS, OFFS), plate_loadings(trial)))
+    own = tuple(Channel(f"ground_force_{side}_vy", "vertical_force", "N", side) for side in "rl")
+    forces = np.column_stack([np.where(time < 1.8, max(standing, 1.0), standing), np.ones(400)])
+    cycles = with_plates(
+        cut_cycles(CONTACTS, OFFS), plate_loadings(Trial("own", {"forces": Recording(time, forces, own)}))
+    )
+    assert [one.kinetic for one in cycles if one.side == "r"] == right
+    assert all(one.kinetic for one in cycles if one.side == "l")
 
 
 def _feet(speed, turned=False):
