@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import csv
 import itertools
+import math
 import re
 from collections.abc import Iterable, Sequence
 from pathlib import Path
@@ -54,13 +55,13 @@ def write_csv(
     """
     with whole_file(path) as part:
         for number, rows in enumerate(itertools.chain([table], rest)):
-            safe, quoting = _quoted(rows)
+            safe, quoting = _quoted(rows, float_format)
             how = {"index": False, "lineterminator": "\n", "float_format": float_format, "quoting": quoting}
             safe.to_csv(part, mode="a", header=not number, **how)
 
 
-def _quoted(table: pd.DataFrame) -> tuple[pd.DataFrame, int]:
-    """Table of which no cell is a formula, and how its words are quoted."""
+def _quoted(table: pd.DataFrame, float_format: str | None) -> tuple[pd.DataFrame, int]:
+    """Table of which no cell is a formula, its numbers as they are written, and how its words are quoted."""
     import pandas as pd
 
     safe, words = table.copy(deep=False), {quote(str(name)) for name in table.columns}
@@ -76,7 +77,14 @@ def _quoted(table: pd.DataFrame) -> tuple[pd.DataFrame, int]:
                 safe.isetitem(place, pd.array(cells, dtype=object))
             words.update(cell for cell in cells if isinstance(cell, str))
     safe.columns = [quote(str(name)) for name in table.columns]
-    return safe, csv.QUOTE_NONNUMERIC if any(map(_OTHER_SEPARATORS.search, words)) else csv.QUOTE_MINIMAL
+    if any(map(_OTHER_SEPARATORS.search, words)):
+        return safe, csv.QUOTE_NONNUMERIC
+    if float_format:  # a fifth of the time that pandas takes
+        for place in range(len(table.columns)):
+            if table.dtypes.iloc[place].kind == "f":
+                cells = ["" if math.isnan(value) else float_format % value for value in table.iloc[:, place]]
+                safe.isetitem(place, pd.array(cells, dtype=object))
+    return safe, csv.QUOTE_MINIMAL
 
 
 def read_csv(path: Path, words: Sequence[str] = (), skiprows: int = 0) -> pd.DataFrame:

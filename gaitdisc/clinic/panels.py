@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from html import escape
+from math import isfinite
 from typing import Any
 
 import numpy as np
@@ -186,9 +187,9 @@ def _x(panel: Panel, percent: Any) -> Any:
 
 
 def _points(panel: Panel, values: Sequence[float] | NDArray[np.float64]) -> str:
-    step = 100 / (len(values) - 1)
-    held = np.clip(values, TOP, BOTTOM)  # a band or a single cycle may go beyond a fixed axis
-    return " ".join(f"{_x(panel, k * step):.1f} {value:.1f}" for k, value in enumerate(held) if np.isfinite(value))
+    across = _x(panel, np.arange(len(values)) * (100 / (len(values) - 1))).tolist()
+    held = np.clip(values, TOP, BOTTOM).tolist()  # a band or a single cycle may go beyond a fixed axis
+    return " ".join(f"{x:.1f} {y:.1f}" for x, y in zip(across, held, strict=True) if isfinite(y))
 
 
 def _path(panel: Panel, line: Line, y) -> str:

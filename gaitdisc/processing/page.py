@@ -131,8 +131,10 @@ def save_cycle_blocks(run: StudyRun, folder: Path) -> list[Block[SavedFigure]]:
     people = list(dict.fromkeys(pooled.subject for pooled in run.of(CYCLES)))
     names, count = file_names(people), len(run.of(CYCLES))
     sets = {who: [pooled for pooled in run.of(CYCLES) if pooled.subject == who] for who in people}
-    parts = [(of_person, names[who], folder, count) for who, of_person in sets.items()]
-    draw_side_by_side(_save, [part for part in parts if read_part(folder, *_part(*part)) is None], MOST_HERE)
+    parts = [(own, names[who], hash_content(own, names[who]), folder, count) for who, own in sets.items()]
+    new = [part for part in parts if read_part(folder, f"cycles-{part[1]}", part[2]) is None]
+    if len(new) > MOST_HERE:
+        draw_side_by_side(_save, new, MOST_HERE)
     return [save_block(first, folder), *(_save(*part) for part in parts)]  # all stand by now
 
 
@@ -153,12 +155,8 @@ def person_block(sets: Sequence[PooledCycles], name: str, drawn: bool = True) ->
     return Block(f"cycles-{name}", sets[0].subject, (f"{'; '.join(parts)}.",), tuple(figures), tuple(tables))
 
 
-def _part(sets: Sequence[PooledCycles], name: str, *_: object) -> tuple[str, str]:
-    return f"cycles-{name}", hash_content(sets, name)
-
-
-def _save(sets: Sequence[PooledCycles], name: str, folder: Path, count: int) -> Block[SavedFigure]:
-    part, key = _part(sets, name)
+def _save(sets: Sequence[PooledCycles], name: str, key: str, folder: Path, count: int) -> Block[SavedFigure]:
+    part = f"cycles-{name}"
     block = person_block(sets, name, (kept := read_part(folder, part, key)) is None)
     save_tables(block.tables, folder)
     here, most = folder / "figures", largest_inline(count)
@@ -196,21 +194,19 @@ def _figure(pooled: PooledCycles, numbers: pd.DataFrame, joints: list[str], name
     drawn, cells = panels_for(len(joints), COLUMNS, 1.15, Room(left=0.6, across=0.64, down=0.46))
     stems = {channel: sideless(channel) for channel in numbers["channel"].unique()}
     shown = numbers[numbers["channel"].map(stems).isin(joints)].reset_index(drop=True)
-    by_joint = dict(list(shown.groupby(shown["channel"].map(stems), sort=False)))
-    for axes, joint in zip(cells, joints, strict=True):
-        own = by_joint[joint]
-        for channel, side in own[["channel", "side"]].drop_duplicates().itertuples(index=False):
-            curve = own[(own["channel"] == channel) & (own["side"] == side)]
-            of_side = (pooled.kept["side"] == side).to_numpy()
-            every = curves[of_side, :, columns.index(channel)]
-            every = every[np.isfinite(every).any(axis=1)]
-            draw_cycles(axes, every, curve["mean"].to_numpy(), curve["sd"].to_numpy(), str(side))
-            off = pooled.kept.loc[of_side, "stance_percent"].mean()
-            if np.isfinite(off):
-                colour = SIDES[str(side)].colour
-                axes.axvline(float(off), color=colour, linewidth=0.7, linestyle=(0, (1.5, 1.5)), zorder=0)
-        axes.set_title(label(joint), fontsize=7.4)
-        label_curve(axes, str(own["channel"].iloc[0]), str(own["unit"].iloc[0]))
+    of_side = {side: (pooled.kept["side"] == side).to_numpy() for side in FEET}
+    offs = {side: float(pooled.kept.loc[rows, "stance_percent"].mean()) for side, rows in of_side.items()}
+    panels = dict(zip(joints, cells, strict=True))
+    for (channel, unit, side), curve in shown.groupby(["channel", "unit", "side"], sort=False):
+        axes, word = panels[stems[channel]], str(side)
+        if not axes.get_title():
+            axes.set_title(label(stems[channel]), fontsize=7.4)
+            label_curve(axes, str(channel), str(unit))
+        every = curves[of_side[word], :, columns.index(channel)]
+        every = every[np.isfinite(every).any(axis=1)]
+        draw_cycles(axes, every, curve["mean"].to_numpy(), curve["sd"].to_numpy(), word)
+        if np.isfinite(offs[word]):
+            axes.axvline(offs[word], color=SIDES[word].colour, linewidth=0.7, linestyle=(0, (1.5, 1.5)), zorder=0)
     for axes in cells[-COLUMNS:]:
         axes.set_xlabel("cycle [%]", labelpad=1)
     cycle = {"color": "#666666", "linewidth": 0.5}

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
+from functools import cached_property
 from operator import itemgetter
 
 import numpy as np
@@ -138,7 +139,7 @@ class PooledCycles(Saved, file="cycles.json"):
         """Session and condition."""
         return " ".join(part for part in (self.session, self.condition) if part)
 
-    @property
+    @cached_property
     def kept(self) -> pd.DataFrame:
         """Rows of the cycles that are kept, in the order of `curves`."""
         return self.cycles[self.cycles["kept"].astype(bool)].reset_index(drop=True)

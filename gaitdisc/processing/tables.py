@@ -82,13 +82,13 @@ def all_spatiotemporal(cycles: Sequence[PooledCycles]) -> pd.DataFrame:
     """Spatiotemporal values of everybody: n, mean and standard deviation over kept cycles, by side."""
     rows = []
     for pooled in cycles:
+        who, feet = _who(pooled).values(), pooled.kept["side"].to_numpy()
         for side in FEET:
-            own = pooled.kept[pooled.kept["side"] == side]
             for value in SPATIOTEMPORAL:
-                known = own[value].dropna()
-                spread = float(known.std()) if len(known) > 1 else np.nan
-                mean = float(known.mean()) if len(known) else np.nan
-                rows.append((*_who(pooled).values(), value, side, len(known), mean, spread))
+                own = pooled.kept[value].to_numpy(float)[feet == side]
+                known = own[~np.isnan(own)]
+                spread = float(known.std(ddof=1)) if len(known) > 1 else np.nan
+                rows.append((*who, value, side, len(known), float(known.mean()) if len(known) else np.nan, spread))
     return pd.DataFrame(rows, columns=pd.Index([*WHO, "value", "side", "n", "mean", "sd"]))
 
 
@@ -168,14 +168,14 @@ def offset_words(pooled: PooledCycles) -> str:
 def spatiotemporal_table(sets: Sequence[PooledCycles], name: str) -> Table:
     """Spatiotemporal values of one person, mean ± standard deviation (n) for each foot, session and condition."""
     numbers = all_spatiotemporal(sets)
-    known = {key: rows.iloc[0] for key, rows in numbers.groupby(["value", "side", "session", "condition"])}
+    known = {(row.value, row.side, row.session, row.condition): row for row in numbers.itertuples(index=False)}
     rows = []
     for value, (words, unit, digits) in VALUES.items():
         cells = []
         for pooled in sets:
             for side in FEET:
                 own = known[value, side, pooled.session, pooled.condition]
-                cells.append(mean_cell(float(own["mean"]), float(own["sd"]), int(own["n"]), digits))
+                cells.append(mean_cell(own.mean, own.sd, own.n, digits))
         if set(cells) != {NONE}:
             rows.append((f"{words} [{unit}]", *cells))
     columns = ("value", *(f"{SIDE_WORDS[side]}" for _ in sets for side in FEET))

@@ -101,7 +101,7 @@ def _svg(drawn: matplotlib.figure.Figure) -> bytes:
     drawn.savefig(stream, format="svg", metadata=nothing, dpi=PNG_DOTS_PER_INCH)
     text = re.sub(r"<!DOCTYPE[^>]*>\s*", "", stream.getvalue())
     # a hundredth of a point cannot be seen, and the digits beyond it are half of the page
-    text = re.sub(r'(?<= d=")[^"]+(?=")', lambda path: re.sub(r"(\.\d\d)\d+", r"\1", path.group()), text)
+    text = re.sub(r'(?<= d=")[^"]+(?=")', lambda path: re.sub(r"(?<=\.\d\d)\d+", "", path.group()), text)
     return text.encode("utf-8")
 
 

@@ -7,6 +7,7 @@ import re
 from collections.abc import Callable, Mapping, Sequence
 from concurrent.futures.process import BrokenProcessPool
 from dataclasses import dataclass
+from functools import cache
 from pathlib import Path
 from typing import Any, Generic, TypeVar
 
@@ -33,6 +34,7 @@ def page_text(template: str, shown: Mapping[str, Any]) -> str:
     return _template(template).render(version=__version__, **shown)
 
 
+@cache
 def _template(name: str) -> Any:
     import jinja2
 
