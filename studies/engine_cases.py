@@ -93,6 +93,7 @@ def searched(case: Case, model: Path, table: Path) -> dict[str, object]:
             interval = f"{estimate.value:.4g} ({estimate.low:.4g} to {estimate.high:.4g})"
             row |= {"true": case.number, "found": interval, "inside": estimate.low <= case.number <= estimate.high}
     row["tied"] = sum(one.tied for one in found.rivals)
+    row["floor"] = " ".join(f"{size[2]:.3g}" for size in found.held_out.channels.values())
     row["native"] = sum("is written into" in note for note in answer.written.notes)
     return row | {"cpu s": round(seconds, 1)}
 

@@ -39,6 +39,7 @@ from gaitdisc.whole_file import write_whole
 _NOTHING = Discovery("no_gap", "")
 NARROW = 0.4  # of the window that guesses states: what is expanded around need not be smooth, but must not be bent
 SMOOTH = 1.2  # of it with muscles: what their fibres make of a wrong speed is far from a straight line
+MANY = 6  # coordinates, beyond which no shape at a port is of another coordinate or a difference, except a coupling
 MOVED = 0.02  # share by which a parameter moves at most for its slopes to hold
 
 
@@ -150,8 +151,14 @@ def search_expansion(fit: EngineFit, request: Request, read: dict[Path, str]) ->
     request.progress(f"computing the accelerations of {engine.path.name} along the record with {engine.called}")
     linear, driven = expand(mapping, engine, data, states)
     request = replace(request, added=saturations(mapping, getattr(engine, "servos", {})))
-    if not request.effects:  # a limit is the input's own, and of no force
-        request = replace(request, possible=lambda one: (one.kind, one.name) != ("port", "input_saturation"))
+    own = {one.port: ("", one.name) for one in engine.coordinates} if len(engine.coordinates) > MANY else {}
+
+    def is_searched(one: Candidate) -> bool:  # a limit is the input's own, and of no force
+        plain = one.kind != "port" or one.place not in own or one.role in own[one.place]
+        return (one.kind, one.name) != ("port", "input_saturation") and (plain or one.name == "linear_coupling")
+
+    if not request.effects:
+        request = replace(request, possible=is_searched)
     found, answer = find_missing(linear, driven, request, read)
     now, own = answer.values(), {k: one for k, one in mapping.values().items() if engine.as_force(k) is None}
     moved = {name: now[name] for name, value in own.items() if abs(now[name] - value) > MOVED * abs(value)}

@@ -176,12 +176,15 @@ def base_runs(engine: Engine, fit: EngineFit) -> OwnRuns:
     """Run a model as read along every trial."""
     mapping, data, recorded = fit.mapping, fit.measured, fit.low_pass.filtered
     at = spread_stretches(data, find_rhythm(data.observed, data.rate).samples, engine.fibres, fit.low_pass.margin)
-    known = recall(hash_content((mapping, data, data.drive, fit.low_pass), engine.path.read_text(encoding="utf-8")))
-    if known is None:
-        driven = Driven(engine, mapping, data.drive.inputs, {}, recorded, fit.progress)
-        known = residual_by(driven, data, at, fit.states).tolist()
-        keep(known)
-    left = np.array(known)
+    given = hash_content((mapping, data, data.drive, fit.low_pass), engine.path.read_text(encoding="utf-8"))
+    driven, runs = Driven(engine, mapping, data.drive.inputs, {}, recorded, fit.progress), []
+    for trial in np.unique(at.trial):  # each is kept as it ends
+        known = recall(given, str(trial))
+        if known is None:
+            known = residual_by(driven, data, at.among(at.trial == trial), fit.states).tolist()
+            keep(known)
+        runs += known
+    left = np.array(runs)
     sensors = {name: mapping.sensor(name) for name in data.channels}
     given = np.array([sensor.sd or np.nan for sensor in sensors.values()], float)
     floor = np.where(np.isnan(given), sensor_noise(data.observed), given)

@@ -29,7 +29,7 @@ SLOWEST, FASTEST = 10.0, 300.0  # [1/s] at which a fibre settles at least, and a
 JUMP = 5  # points
 SLOPES_HZ = 50.0  # at which slopes of a model with muscles are computed: they change as slowly as the motion
 INEXACT = 0.02  # of a channel's spread, as white noise: a half percent in which some 20 samples err together
-MOST_MIXED = 2000  # columns of what a parameter changes with a coordinate
+MOST_MIXED = 200  # columns of what a parameter changes with a coordinate
 STILL = 1e-9  # of a column's size, below which it is one number
 
 
@@ -48,7 +48,7 @@ def expand(
     values: parameters around which to expand; the simulation's own where absent
     """
     own, drive = simulation.values() | dict(values or {}), measured.drive
-    motions = compute_motion(engine, measured, states)
+    motions = [compute_motion(engine, drive, states, trial) for trial in range(len(states))]
     at = Motion.joined(motions)
     paths = [np.gradient(one.v, 1 / drive.rate, axis=0) for one in motions]
     stride = 1 if at.z is None else max(round(drive.rate / SLOPES_HZ), 1)
@@ -69,11 +69,11 @@ def expand(
     return linear, replace(measured, drive=Drive.of(trials, drive.rate, drive.time0))
 
 
-def compute_motion(engine: Engine, measured: Measured, states: Values) -> list[Motion]:
-    """Motion of each trial with what the engine computes along smoothed states (trial, sample, state)."""
-    n, drive = len(engine.coordinates), measured.drive
-    trials = zip(states, drive.inputs, drive.samples, strict=True)
-    return [engine.along(x[:samples, :n], x[:samples, n:], u[:samples], drive.rate) for x, u, samples in trials]
+def compute_motion(engine: Engine, drive: Drive, states: Values, trial: int) -> Motion:
+    """Motion of a trial with what the engine computes along smoothed states (trial, sample, state)."""
+    samples = drive.samples[trial]
+    q, v = np.split(states[trial, :samples], 2, axis=1)
+    return engine.along(q, v, drive.inputs[trial, :samples], drive.rate)
 
 
 class _Columns:

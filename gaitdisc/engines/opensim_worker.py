@@ -6,6 +6,7 @@ import os
 import pickle
 import sys
 from collections.abc import Callable, Iterator
+from contextlib import suppress
 from functools import partial
 from typing import Any, BinaryIO
 
@@ -207,11 +208,13 @@ class _Answers:
         return not np.allclose(*found, rtol=1e-9, atol=0.0)
 
     def rates(self, q: Any, v: Any, u: Any, z: Any, values: dict[str, float], forces: Any) -> Any:
+        """NaN where a fibre has no equilibrium: far from all records, say."""
         one = self.with_values(values)
-        found = np.empty((len(q), q.shape[1] + len(one.fibres)))
+        found = np.full((len(q), q.shape[1] + len(one.fibres)), np.nan)
         for point in range(len(q)):
-            one.tense(q[point], v[point], u[point], None if z is None else z[point])
-            found[point] = one.rates([*u[point], *forces[point]])
+            with suppress(*[RuntimeError] if z is None else []):
+                one.tense(q[point], v[point], u[point], None if z is None else z[point])
+                found[point] = one.rates([*u[point], *forces[point]])
         return found
 
     def equilibria(self, q: Any, u: Any) -> Any:

@@ -51,6 +51,10 @@ class Stretches:
     period: float  # of the motion [samples]
     margin: int = 0  # samples at either end that are not compared, as a filter does not know what is beyond
 
+    def among(self, some: NDArray[np.bool_]) -> Stretches:
+        """Return some of them (run,)."""
+        return replace(self, trial=self.trial[some], first=self.first[some])
+
 
 @dataclass(frozen=True)
 class OwnRuns:
@@ -66,8 +70,7 @@ class OwnRuns:
 
     def among(self, some: NDArray[np.bool_]) -> OwnRuns:
         """Return some of them (run,)."""
-        at = replace(self.at, trial=self.at.trial[some], first=self.at.first[some])
-        return replace(self, before=self.before[some], after=self.after[some], at=at)
+        return replace(self, before=self.before[some], after=self.after[some], at=self.at.among(some))
 
     @property
     def leave_mere_noise(self) -> bool:
@@ -141,7 +144,8 @@ def residual_by(
     near: run -> the start (state,) of a model that is hardly another, where it begins then; these are put in
     """
     engine, n, lags = model.engine, len(model.engine.coordinates), model.lags
-    recorded = compute_motion(engine, replace(measured, drive=replace(measured.drive, inputs=model.controls)), states)
+    drive = replace(measured.drive, inputs=model.controls)
+    recorded = {trial: compute_motion(engine, drive, states, trial) for trial in np.unique(at.trial)}
     plain, expressions = replace(model.mapping, model=""), dict(model.mapping.observations)
     seen_as = [expressions[name] for name in measured.channels]
     size = np.nanstd(measured.observed, axis=(0, 1))
