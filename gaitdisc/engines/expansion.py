@@ -29,7 +29,7 @@ SLOWEST, FASTEST = 10.0, 300.0  # [1/s] at which a fibre settles at least, and a
 JUMP = 5  # points
 SLOPES_HZ = 50.0  # at which slopes of a model with muscles are computed: they change as slowly as the motion
 INEXACT = 0.02  # of a channel's spread, as white noise: a half percent in which some 20 samples err together
-MOST_MIXED = 200  # columns of what a parameter changes with a coordinate
+MOST_MIXED = 400  # columns of what a parameter changes with a coordinate: with more a search takes minutes
 STILL = 1e-9  # of a column's size, below which it is one number
 
 

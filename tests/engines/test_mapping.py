@@ -104,7 +104,7 @@ def test_a_mapping_of_recorded_forces_goes_to_its_file_and_back(tmp_path):
     read = read_tracked(tmp_path / "walk.toml")
     assert read is not None and [one.resolve() for one in read.files] == [one.resolve() for one in given.files]
     assert (read.noise_deg, read.start_s, read.end_s) == (0.5, 0.7, float("inf"))
-    with pytest.raises(GaitdiscError, match=r"which is not.*.tracked. as actuators"):
+    with pytest.raises(GaitdiscError, match=r"which is no actuator.*.tracked. as actuators"):
         draft_tracked(model, LOADS, forces)  # its reserves are in no file that is named
 
 
