@@ -12,12 +12,13 @@ import pandas as pd
 from threadpoolctl import threadpool_limits
 
 from gaitdisc.discovery.discover import discover
-from gaitdisc.discovery.result import Discovery
+from gaitdisc.discovery.result import Discovery, Estimate
 from gaitdisc.errors import GaitdiscError, ShapeError
 from gaitdisc.model import Model
 from gaitdisc.simulation.compiled_simulation import Drive
 from gaitdisc.simulation.evaluating import Points, evaluate
 from gaitdisc.simulation.measured import Measured
+from gaitdisc.simulation.running import compile_simulation
 from gaitdisc.simulation.simulation import Simulation
 
 from .cell import ORACLE, learned_model, part, terms_of
@@ -70,7 +71,7 @@ def namings_table(namings: Sequence[Naming]) -> pd.DataFrame:
 def read_namings(path: Path) -> pd.DataFrame:
     """Answers that were written as CSV."""
     numbers = {name: [""] for name in ("amount", "accuracy", "diverged_s", "seconds")}
-    return pd.read_csv(path, keep_default_na=False, na_values=numbers)
+    return pd.read_csv(path, keep_default_na=False, na_values=numbers).replace({"hidden": r"^'+"}, "", regex=True)
 
 
 @dataclass(frozen=True, eq=False)
@@ -139,11 +140,8 @@ def discover_answer(hidden: HiddenEffect, record: Record) -> Naming:
     """What `gaitdisc discover` finds that the known model lacks."""
     begun, made, system = clock.process_time(), record.conditions, record.system
     if not isinstance(system.known, KnownRates):
-        raise ShapeError(
-            "discover needs a simulation file",
-            f"{system.name!r} is known as {type(system.known).__name__}",
-            "Write its equations as a simulation file.",
-        )
+        known = f"{system.name!r} is known as {type(system.known).__name__}"
+        raise ShapeError("discover needs a simulation file", known, "Write its equations as a simulation file.")
     simulation = system.known.simulation.observing(system.channels)
     shown = record.measured[: record.split]
     drive = Drive.of([np.empty((len(shown), 0))], 1.0 / made.dt_s)
@@ -155,27 +153,36 @@ def discover_answer(hidden: HiddenEffect, record: Record) -> Naming:
 
 
 def answer_of(hidden: HiddenEffect, found: Discovery) -> tuple[str, float]:
-    """Answer of a discovery in the words of `Naming`, and its number over the true one."""
-    named = {(one.place, one.name): one for one in found.effects}
+    """Answer of a discovery in the words of `Naming`, and its number over the true one.
+
+    A parameter that clearly moved within its bounds is among what it names.
+    """
+    named: dict[tuple[str, ...], Estimate | None]
+    named = {(one.place, one.name): next(iter(one.estimates.values()), None) for one in found.effects}
+    for one in found.corrections:
+        if not one.found.low <= one.given <= one.found.high:
+            named[one.parameter, "wrong_parameter"] = one.found
     if not named:
         return "nothing", NAN
     tied = {(one.place, one.name) for one in found.rivals if one.tied}
-    effect = next((one for place, one in named.items() if place == hidden.effect), None)
-    if effect:
-        number = next(iter(effect.estimates.values())).value
+    if effect := named.get(hidden.effect):
         alone = len(named) == 1 or found.verdict == "wrong_initial_condition"
-        return ("among others" if not alone else "tied" if tied else "named"), number / hidden.amount
+        return ("among others" if not alone else "tied" if tied else "named"), effect.value / hidden.amount
     if hidden.effect in tied:
         return "tied", NAN
     return ("curve" if found.verdict == "unnamed" else "wrong name"), NAN
 
 
 def forecast_accuracy(record: Record, augmented: Simulation) -> float:
-    """How much less error the forecast of an augmented simulation has, median of channels [%]."""
+    """How much less error a forecast from the true state, an oracle, has, median of channels [%]; NaN with a delay."""
     system, start, truth = record.system, record.start(forecast=True), record.target(forecast=True)
+    if compile_simulation(augmented).right_hand_side.delays:
+        return NAN
+    begun = dict(zip(system.states, start, strict=True))  # a state that the effect adds begins at its initial value
+    first = np.array([begun.get(state.name, float(state.initial or 0.0)) for state in augmented.states])
     known, states = (
-        rates.run(start[None], record.conditions.dt_s, len(truth) - 1)[0]
-        for rates in (system.known, KnownRates(augmented))
+        rates.run(each[None], record.conditions.dt_s, len(truth) - 1)[0]
+        for rates, each in ((system.known, start), (KnownRates(augmented), first))
     )
     points = Points(np.zeros(len(states)), states, np.empty((len(states), 0)))
     seen = np.column_stack([evaluate(augmented, expression, points) for _, expression in augmented.observations])

@@ -356,13 +356,14 @@ def naming_table(table: pd.DataFrame) -> Table:
     rows = []
     for (case, noise), found in table.groupby(["case", "noise"], sort=False):
         cells = [_answers(found[found["tool"] == tool]) for tool in tools]
-        rows.append((str(case), str(found["hidden"].iloc[0]) or "nothing", f"{noise:.1%}", *cells))
+        n = str(found["seed"].nunique())
+        rows.append((str(case), str(found["hidden"].iloc[0]) or "nothing", f"{noise:.1%}", n, *cells))
     rows.sort(key=lambda row: list(dict.fromkeys(table["case"])).index(row[0]))
     caption = (
-        "Answers, with how many of the seeds gave them; × the true number: median of the seeds that named it. Of a "
-        "curve: how far it is from what is missing, along the record without noise (first seed)."
+        "Answers, with how many of the n seeds gave them (curves: of the first alone); × the true number: median of "
+        "the seeds that named it. Of a curve: how far it is from what is missing, along the record without noise."
     )
-    columns = ("case", "hidden", "noise", *(TOOL_WORDS[tool] for tool in tools))
+    columns = ("case", "hidden", "noise", "n", *(TOOL_WORDS[tool] for tool in tools))
     return Table("names", caption, columns, tuple(rows), table)
 
 

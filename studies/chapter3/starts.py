@@ -212,7 +212,7 @@ def forecast_start(record: Record, learned: Model | None, approach: Approach) ->
     """State at the end of the training part, estimated under the model that forecasts, (state,)."""
     system, time = record.system, record.time[: record.split]
     guess, measured = np.asarray(record.filtered), record.measured[: record.split]
-    if len(system.channels) < len(system.states):  # those that are not measured, as the known model runs them
+    if len(system.channels) < len(system.states):  # the others are guessed by a run from the true start, an oracle
         first = system.start if system.assumed is None else system.assumed
         states = system.known.run(first[None], record.conditions.dt_s, record.split - 1)[0]
         guess = np.column_stack([guess, states[:, len(system.channels) :]])

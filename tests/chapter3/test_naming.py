@@ -10,7 +10,7 @@ from chapter3.pages import naming_figure, naming_table
 from chapter3.record import Conditions, recorded, system_of
 from texts import says
 
-from gaitdisc.discovery.result import Discovery, Estimate, FoundEffect, GapSize, Runs
+from gaitdisc.discovery.result import Correction, Discovery, Estimate, FoundEffect, GapSize, Runs
 from gaitdisc.errors import ShapeError
 from gaitdisc.simulation.simulation_file import bundled
 
@@ -92,6 +92,9 @@ def test_a_verdict_is_an_answer(hidden, verdict, effects, rivals, answer):
     said, amount = answer_of(hidden, found)
     assert said == answer
     assert (amount == pytest.approx(2.0)) == ("cubic_stiffness" in effects)
+    moved = Correction("mu", 0.5, Estimate(0.55, 0.54, 0.56)), Correction("k", 1.0, Estimate(1.1, 0.9, 1.3))
+    wrong = replace(hidden, effect=("mu", "wrong_parameter"), amount=0.55), replace(found, corrections=moved)
+    assert answer_of(*wrong)[0] == ("among others" if effects else "named")
 
 
 ANSWERS = [
@@ -105,10 +108,11 @@ ANSWERS = [
 
 def test_answers_are_counted_over_seeds_and_a_curve_says_how_far_it_is_off():
     table = naming_table(namings_table(ANSWERS))
-    assert table.columns == ("case", "hidden", "noise", "SINDy", "Gaussian process")
-    assert says(table.rows[0][3], "named 1/2", "wrong name 1/2", "1.02")
-    assert says(table.rows[0][4], "curve", "7 % off")
-    assert table.rows[1] == ("d", "nothing", "1.0%", "nothing", "refused: needs 2 states")
+    assert table.columns == ("case", "hidden", "noise", "n", "SINDy", "Gaussian process")
+    assert says(table.rows[0][4], "named 1/2", "wrong name 1/2", "1.02")
+    assert says(table.rows[0][5], "curve", "7 % off")
+    assert table.rows[0][3] == "2"
+    assert table.rows[1] == ("d", "nothing", "1.0%", "1", "nothing", "refused: needs 2 states")
     assert len(table.numbers) == len(ANSWERS)
 
 

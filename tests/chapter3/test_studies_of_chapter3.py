@@ -98,7 +98,7 @@ def test_what_sindy_should_say_is_what_is_hidden():
 @pytest.mark.slow
 def test_the_quick_study_names_the_cubic_of_the_text(tmp_path):
     table = ch3_who_names.run(quick=True, folder=tmp_path).tables[0]
-    assert table.rows[0][3].startswith("named")
+    assert table.rows[0][4].startswith("named")
     assert (tmp_path / "figures" / "names.svg").exists()
 
 
