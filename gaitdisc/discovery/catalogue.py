@@ -30,6 +30,7 @@ GRIDS = ("quantiles of x", "half widths of x", "delays", "frequencies", "phases"
 NEEDS = ("", "angle")
 LARGEST_CATALOGUE_BYTES = 2**20
 _NAME = re.compile(r"[a-z_][a-z0-9_]*")
+_WITHOUT_SIGN = re.compile(r"[a-z0-9_.]+(e[+-]\d+)?")  # a name or a number, which needs no brackets
 _ENTRIES = ("name", "pieces", "states", "constants", "needs", "names", "means")
 
 
@@ -131,7 +132,7 @@ def with_names(expression: str, names: Mapping[str, str]) -> str:
 
     def put(match: re.Match[str]) -> str:
         text = names.get(match.group(), match.group())
-        return text if _NAME.fullmatch(text) or _is_number(text) else f"({text})"
+        return text if _WITHOUT_SIGN.fullmatch(text) else f"({text})"
 
     return _NAME.sub(put, expression)
 
@@ -241,11 +242,3 @@ def _check_piece(piece: str, known: tuple[str, ...], where: str) -> None:
 
 def _is_name(text: Any) -> bool:
     return isinstance(text, str) and _NAME.fullmatch(text) is not None
-
-
-def _is_number(text: str) -> bool:
-    try:
-        float(text)
-    except ValueError:
-        return False
-    return not text.startswith("-")

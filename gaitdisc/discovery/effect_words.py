@@ -22,36 +22,33 @@ SPRINGS = frozenset(
     }
 )
 LOSSES = frozenset({"viscous_damping", "one_sided_damper", "contact_damper", "quadratic_drag", "coulomb_friction"})
-REMEMBERING = frozenset({"hysteresis", "series_elasticity"})
+MEMORY = frozenset({"hysteresis", "series_elasticity"})
 CLOCKED = frozenset({"periodic_forcing", "phase_locked_moment"})
 LATE = frozenset({"input_delay", "input_lag", "sensor_lag", "delayed_feedback"})
 SENSORS = frozenset({"sensor_gain", "sensor_offset", "sensor_lag", "sensor_drift"})
 STEADY = frozenset({"constant_load", "sensor_offset", "sensor_drift", "linear_stiffness"})
-# from the narrowest; both names must be in a group, or one in each of two
-WITHIN = (
-    (STEADY, "the system at rest in two known positions"),
-    (SPRINGS, "movement through a wider range, in both directions from rest"),
-    (LOSSES, "the same movement at clearly different speeds"),
-    (REMEMBERING, "the same movement at clearly different speeds: hysteresis does not depend on the speed"),
-    (CLOCKED, "the same movement at another cadence, or started at another time"),
-    (LATE, "a sharp push that both the drive and the sensor record, or a second sensor of the same movement"),
-    (SENSORS, "a calibration of the sensor against a known movement"),
-)
-BETWEEN = (
+# the first that fits, of two names one in each of two groups
+APART = (
+    (STEADY, STEADY, "the system at rest in two known positions"),
+    (SPRINGS, SPRINGS, "movement through a wider range, in both directions from rest"),
+    (LOSSES, LOSSES, "the same movement at clearly different speeds"),
+    (MEMORY, MEMORY, "the same movement at clearly different speeds: hysteresis does not depend on the speed"),
+    (CLOCKED, CLOCKED, "the same movement at another cadence, or started at another time"),
+    (LATE, LATE, "a sharp push that both the drive and the sensor record, or a second sensor of the same movement"),
+    (SENSORS, SENSORS | {"wrong_parameter", "input_gain"}, "a calibration of the sensor against a known movement"),
     (
         frozenset({"wrong_parameter"}),
         SPRINGS | LOSSES | {"linear_coupling", "constant_load"},
         "a separate measurement of the parameter, because both candidates may produce the same term",
     ),
     (
-        REMEMBERING,
+        MEMORY,
         SPRINGS,
         "a step that is then held still: an effect with memory relaxes or stays deflected, but a spring does neither",
     ),
-    (REMEMBERING, LOSSES, "slow and fast movement of several amplitudes, reversed half-way"),
+    (MEMORY, LOSSES, "slow and fast movement of several amplitudes, reversed half-way"),
     (SPRINGS, LOSSES, "slow movement through the entire range, in which only a spring acts"),
     (CLOCKED, SPRINGS | LOSSES | LATE, "the same movement at another cadence"),
-    (SENSORS, frozenset({"wrong_parameter", "input_gain"}), "a calibration of the sensor against a known movement"),
     (SENSORS, SPRINGS | LOSSES | {"constant_load", "linear_coupling"}, "a second sensor of the same movement"),
     (frozenset({"input_gain"}), frozenset({"wrong_parameter"}), "movement with the drive switched off"),
     (frozenset({"input_gain", "input_delay"}), SPRINGS | LOSSES, "movement with the drive switched off"),
@@ -177,11 +174,7 @@ def would_distinguish(name: str, other: str) -> str:
     """
     if name == other:
         return "movement in which the inputs of the two places differ"
-    pair = {name, other}
-    for group, recording in WITHIN:
-        if pair <= group:
-            return recording
-    for one, two, recording in BETWEEN:
+    for one, two, recording in APART:
         if (name in one and other in two) or (other in one and name in two):
             return recording
     return "longer trials of larger and more varied movement"

@@ -79,7 +79,11 @@ def load_discovery(folder: Path) -> Discovery:
                 for row in data["corrections"]
                 for given, value, low, high in [map(_restore, (row[name] for name in ("from", "to", "low", "high")))]
             ),
-            explanations=tuple(map(_explanation, data.get("explanations", ()))),
+            explanations=tuple(
+                Explanation((*map(_effect, row["effects"]),), row["held_out"] and _gap(row["held_out"]), time, left)
+                for row in data.get("explanations", ())
+                for time, left in [map(_restore, (row["left"][name] for name in ("time", "measured_minus_run")))]
+            ),
             given=data.get("given", ""),
             twins=Twins(**data["twins"]) if "twins" in data else None,
             beside=_restore(data.get("beside", {})),
@@ -121,12 +125,6 @@ def _effect(row: Mapping[str, Any]) -> FoundEffect:
         reads_as_effect=reading["effect"] or "",
         **{name: row[name] for name in ("tied", "small", "states") if name in row},
     )
-
-
-def _explanation(row: Mapping[str, Any]) -> Explanation:
-    time, left = (_restore(row["left"][name]) for name in ("time", "measured_minus_run"))
-    held_out = _gap(row["held_out"]) if row["held_out"] else None
-    return Explanation(tuple(map(_effect, row["effects"])), held_out, time, left)
 
 
 def _gap(row: Mapping[str, Any]) -> GapSize:

@@ -173,16 +173,17 @@ class Twins:
     # answer -> records: simulated with what was found, and without it
     with_effects: Mapping[str, int] = field(default_factory=dict)
     without: Mapping[str, int] = field(default_factory=dict)
+    apart: str = ""  # of an answer that is tied with others: which change of the measurement would distinguish them
 
     @property
     def sentence(self) -> str:
-        """How often the answer returns, and how often something is named where nothing is missing."""
+        """How often the answer returns or one is invented, and what would distinguish it from those tied with it."""
         invented = sum(count for answer, count in self.without.items() if "@" in answer)
         said = [f"names an effect in {invented} of {self.records} records in which nothing is missing"]
         if self.with_effects:
             same = self.with_effects.get(self.named, 0)
             said.insert(0, f"gives the same answer in {same} of {self.records} records with the effect")
-        return f"In simulated records like these, the search {', and '.join(said)}."
+        return f"In simulated records like these, the search {', and '.join(said)}. {self.apart}".rstrip()
 
 
 @dataclass(frozen=True)

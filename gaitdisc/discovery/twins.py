@@ -1,7 +1,8 @@
 """Twins of a record: simulated with what was found and without it, and searched again by the same rule.
 
 How often the same answer returns says how far it can be trusted: a parametric bootstrap of the whole search.
-Source: Efron and Tibshirani 1993, An Introduction to the Bootstrap, section 6.5.
+Source: Efron and Tibshirani 1993, An Introduction to the Bootstrap, section 6.5; Atkinson and Fedorov 1975, Biometrika
+62, 57 (two models are distinguished where the rival, fitted, errs most).
 """
 
 from __future__ import annotations
@@ -18,10 +19,12 @@ from typing import Any, NoReturn
 import numpy as np
 from scipy.signal import lfilter
 
+from gaitdisc.discovery.answer import weigh_rivals
 from gaitdisc.discovery.case import Case
 from gaitdisc.discovery.catalogue import Request
 from gaitdisc.discovery.decision import Verdict
 from gaitdisc.discovery.discover import discover
+from gaitdisc.discovery.effect_words import named_at
 from gaitdisc.discovery.held_out import begin_by_first_samples
 from gaitdisc.discovery.input_errors import with_drawn_errors
 from gaitdisc.discovery.kept_work import keep, note_found, outside_work, recall
@@ -41,6 +44,8 @@ FLED = 10.0  # times a channel's range, beyond which a run has left the record
 MOST_PROCESSES = 8
 LEFT = "left the record"
 RANDOM = ("process_noise", "wrong_initial_condition")  # answers that no term or number carries into a twin
+INPUTS, STARTS = (0.5, 2.0), (0.5, 1.5)  # times as fast, or as large, as in the record
+CLEARLY = 20.0  # expected evidence, of which noise leaves less than 6 (a tie) in one record of twenty
 
 
 @dataclass(frozen=True)
@@ -81,18 +86,28 @@ class TwinSource:
         number: of the record, which seeds what is drawn
         returns: None where a free run leaves the record
         """
-        case, measured, model = self.case, self.case.measured, self.now
-        erring, seen = with_drawn_errors(measured, case.search.base, number), np.full_like(measured.observed, np.nan)
-        for trial, samples in enumerate(map(int, measured.samples)):
-            whole = replace(case.shooting(Segments(np.array([trial]), np.array([0]), samples)), measured=erring)
-            _, runs = whole.run(model.machine, self.starts[trial][None], model.fit.values[None])
-            seen[trial, :samples] = runs[0, 0]
-        known, record = np.isfinite(measured.observed), measured.observed
-        low, high = np.nanmin(record, axis=(0, 1)), np.nanmax(record, axis=(0, 1))
-        if not np.all((np.maximum(low - seen, seen - high) < FLED * (high - low))[known]):
+        measured = self.case.measured
+        _, run = self.run(with_drawn_errors(measured, self.case.search.base, number))
+        if run is None:
             return None
-        noise = self._draw_noise(seen.shape, np.random.default_rng(number))
-        return replace(measured, observed=np.where(known, seen + noise, np.nan), findings=())
+        noise = self._draw_noise(run.observed.shape, np.random.default_rng(number))
+        return replace(measured, observed=run.observed + noise, findings=())
+
+    def run(self, like: Measured, larger: float = 1.0) -> tuple[Values, Measured | None]:
+        """Run the model freely over all trials of a record, from some times its initial states.
+
+        returns states (trial, sample, state): NaN beyond a trial's end
+        returns run: the record with what would be seen without noise; None where this leaves its range
+        """
+        model, record, seen = self.now, like.observed, np.full_like(like.observed, np.nan)
+        states = np.full((*record.shape[:2], len(model.machine.states)), np.nan)
+        for trial, samples in enumerate(map(int, like.samples)):
+            whole = replace(self.case.shooting(Segments(np.array([trial]), np.array([0]), samples)), measured=like)
+            runs = whole.run(model.machine, larger * self.starts[trial][None], model.fit.values[None])
+            states[trial, :samples], seen[trial, :samples] = (one[0, 0] for one in runs)
+        low, high = np.nanmin(record, axis=(0, 1)), np.nanmax(record, axis=(0, 1))
+        stays, known = np.maximum(low - seen, seen - high) < FLED * (high - low), np.isfinite(record)
+        return states, replace(like, observed=np.where(known, seen, np.nan)) if np.all(stays[known]) else None
 
     def _draw_noise(self, shape: tuple[int, ...], rng: np.random.Generator) -> Values:
         """Draw noise (trial, sample, channel); where the record was filtered, white noise that was filtered alike."""
@@ -117,6 +132,58 @@ def draw_noise(noise: Noise, shape: tuple[int, ...], rng: np.random.Generator) -
         white = spread[-1] * rng.normal(size=out.shape[:2])
         out[..., channel] = lfilter([1.0], [1.0, *-predictors[-1]], white, axis=1)
     return out[:, first:]
+
+
+def list_changes(case: Case) -> Iterator[tuple[str, Drive, float]]:
+    """List changes of the measurement, none first: words, what drives it, and times the initial states."""
+    drive, inputs = case.measured.drive, [signal.name for signal in case.search.base.inputs]
+    yield "no change", drive, 1.0
+    for factor in INPUTS if inputs and "phase" not in inputs else ():
+        yield f"inputs {factor:g} times as fast", sped_up(drive, factor), 1.0
+        yield f"inputs {factor:g} times as large", replace(drive, inputs=factor * drive.inputs), 1.0
+    yield from ((f"initial states {factor:g} times as large", drive, factor) for factor in STARTS)
+
+
+def sped_up(drive: Drive, factor: float) -> Drive:
+    """Return inputs some times as fast; where a trial's end comes early, they go back."""
+    inputs = drive.inputs.copy()
+    for trial, samples in enumerate(map(int, drive.samples)):
+        last, number = samples - 1, np.arange(samples)
+        there = last - np.abs(factor * number % (2 * last) - last)
+        for column, wave in enumerate(drive.inputs[trial, :samples].T):
+            inputs[trial, :samples, column] = np.interp(there, number, wave)
+    return replace(drive, inputs=inputs)
+
+
+def say_apart(source: TwinSource, rivals: Sequence[ScoredModel]) -> str:
+    """Say which change of the measurement would best distinguish an answer from what is tied with it."""
+    others, table = [replace(source, now=rival) for rival in rivals], list[tuple[str, Values]]()
+    for words, drive, larger in list_changes(source.case):
+        measured = replace(source.case.measured, drive=drive)
+        pairs = [[weigh_run(*both, measured, larger) for both in ((source, one), (one, source))] for one in others]
+        table.append((words, np.nan_to_num(np.min(pairs, axis=1), nan=0.0, posinf=0.0)))  # whichever of the two is true
+    (_, now), *changes = table
+    words, then = max(changes, key=lambda change: np.minimum(change[1], CLEARLY).sum())
+    clear, tried = then >= CLEARLY, f"{len(changes)} simulated changes of the measurement"
+    if not clear.any():
+        return f"None of {tried} would distinguish it from what is tied with it: evidence of at most {then.max():.0f}."
+    names = " or ".join(named_at(one.parts[-1].candidate) for one, it in zip(rivals, clear, strict=True) if it)
+    evidence = f"expected evidence {then[clear].min():.0f}, now {now[clear].max():.0f}"
+    return f"Of {tried}, {words} would best distinguish it from {names}: {evidence}."
+
+
+def weigh_run(source: TwinSource, rival: TwinSource, measured: Measured, larger: float) -> float:
+    """Return how far the criterion would fall from a rival, fitted to a run of the source's model, to the model itself.
+
+    The run has no noise, and is weighed by the noise that there would be; NaN where it leaves the record.
+    """
+    (states, run), truth = source.run(measured, larger), source.now
+    if run is None:
+        return np.nan
+    past = states[..., : source.case.guess.shape[2]]
+    shooting = replace(truth.shooting, measured=run, past=past)
+    white = rival.now.refitted(shooting, starts=shooting.segments.starts(past)).fit.white
+    return float((white**2).sum() + (rival.now.size - truth.size) * np.log(white.size))
 
 
 def refuse_twins(model: str) -> NoReturn:
@@ -144,7 +211,11 @@ def search_twins(
     note_found("")
     answers = [*search_records(sources, model, request)]
     acting, without = (dict(Counter(some)) for some in (answers[: -request.twins], answers[-request.twins :]))
-    return replace(found, twins=Twins(request.twins, _name(found), acting, without))
+    with outside_work(), np.errstate(over="ignore", invalid="ignore"):
+        rivals = weigh_rivals(case.search, verdict.found, verdict.rivals, 0.0) if acts else ()
+        tied = [rival.scored for rival in rivals if rival.tied]
+        apart = say_apart(sources[0], tied) if tied else ""
+    return replace(found, twins=Twins(request.twins, _name(found), acting, without, apart))
 
 
 def search_records(sources: Sequence[TwinSource], model: Simulation, request: Request) -> Iterator[str]:

@@ -11,8 +11,10 @@ from gaitdisc.discovery.discover import explain
 from gaitdisc.discovery.discover_files import find_missing
 from gaitdisc.discovery.kept_work import kept_work
 from gaitdisc.discovery.result import Twins
-from gaitdisc.discovery.twins import TwinSource, refuse_twins
+from gaitdisc.discovery.scored_model import Part
+from gaitdisc.discovery.twins import TwinSource, list_changes, refuse_twins, say_apart, sped_up, weigh_run
 from gaitdisc.errors import SchemaError
+from gaitdisc.simulation.compiled_simulation import Drive
 
 EXACT = Request(twins=2)
 
@@ -97,6 +99,53 @@ def test_twins_that_were_searched_are_not_searched_again(searched, tmp_path, mon
 def test_a_run_that_leaves_the_record_has_no_twins(source, monkeypatch):
     monkeypatch.setattr("gaitdisc.discovery.twins.FLED", -1.0)
     assert source[0].draw(0) is None
+
+
+@pytest.fixture(scope="module")
+def tied(source):
+    """Return the source, and a linear spring in the place of the cubic one."""
+    case, now = source[0].decided, source[0].now
+    linear = next(one for one in case.search.candidates if one.label == "linear_stiffness@load")
+    return source[0], case.search.with_others(now, (Part(linear, {"factor": -1.0}),))
+
+
+def test_a_run_is_fitted_by_what_made_it_and_not_by_a_rival(tied):
+    source, rival = tied
+    other, measured = replace(source, now=rival), source.case.measured
+    assert weigh_run(source, source, measured, 1.0) == pytest.approx(0.0, abs=1e-3)
+    assert weigh_run(source, other, measured, 1.5) > weigh_run(source, other, measured, 1.0) > 20
+
+
+def test_the_change_that_distinguishes_best_is_said(tied, monkeypatch):
+    source, rival = tied
+    monkeypatch.setattr("gaitdisc.discovery.twins.CLEARLY", 1e9)
+    least = say_apart(source, [rival])
+    assert least.startswith("None of 6 simulated changes of the measurement would distinguish it from what is tied")
+    most = int(least.rpartition(" ")[2][:-1])
+    monkeypatch.setattr("gaitdisc.discovery.twins.CLEARLY", 0.99 * most)
+    said = say_apart(source, [rival])
+    assert " times as large would best distinguish it from linear stiffness at the load port: expected " in said
+    assert f"evidence {most}, now " in said
+    monkeypatch.setattr("gaitdisc.discovery.twins.FLED", -1.0)  # no run stays
+    assert say_apart(source, [rival]).endswith("evidence of at most 0.")
+
+
+def test_a_walks_phase_is_not_sped_up(source):
+    case = source[0].case
+    assert [words for words, _, _ in list_changes(case)][1:3] == [
+        "inputs 0.5 times as fast",
+        "inputs 0.5 times as large",
+    ]
+    inputs = case.search.base.inputs
+    base = replace(case.search.base, inputs=(*inputs, replace(inputs[0], name="phase")))
+    walk = replace(case, search=replace(case.search, base=base))
+    assert [words.split()[0] for words, _, _ in list_changes(walk)] == ["no", "initial", "initial"]
+
+
+def test_inputs_that_are_faster_go_back_at_the_end():
+    drive = Drive.of([np.arange(5.0)[:, None], np.arange(3.0)[:, None]], 1.0)
+    assert sped_up(drive, 2.0).inputs[..., 0].tolist() == [[0, 2, 4, 2, 0], [0, 2, 0, 0, 0]]
+    assert sped_up(drive, 0.5).inputs[..., 0].tolist() == [[0, 0.5, 1, 1.5, 2], [0, 0.5, 1, 0, 0]]
 
 
 def test_what_an_engine_runs_has_no_twins():
