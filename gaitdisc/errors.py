@@ -106,7 +106,7 @@ class StrideError(GaitdiscError):
 
 
 class TrainingError(GaitdiscError):
-    """A model cannot be fitted to the samples it was given."""
+    """A model cannot be fitted to the given samples."""
 
 
 class ComparisonError(GaitdiscError):

@@ -41,7 +41,7 @@ ONE_THREAD = dict.fromkeys(
 
 
 class ClusterError(GaitdiscError):
-    """A cluster cannot be reached or used."""
+    """A cluster of computers cannot be reached or used."""
 
 
 @dataclass(frozen=True)

@@ -41,7 +41,7 @@ def test_a_saved_model_as_onnx(tmp_path, called):
     assert says(called("export", tmp_path / "model", "--out", tmp_path / "model.onnx", ends=0).stdout, "1 states")
     assert (tmp_path / "model.onnx").stat().st_size > 200
     two = called("export", "one", "two", "--out", tmp_path / "both.onnx", ends=REFUSED)
-    assert says(two.stderr, ".onnx", "one model; 2")
+    assert says(two.stderr, ".onnx", "one model", "found 2")
 
 
 def save_cycles(folder, session=""):

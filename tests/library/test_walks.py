@@ -195,7 +195,7 @@ def test_two_walks_become_a_run_that_is_saved_and_drawn(long, tmp_path):
     assert predicted.channels[0].unit == "deg/s2" and np.isnan(predicted.values[0, 0])
     rows = np.searchsorted(predicted.time, held.time)
     np.testing.assert_allclose(predicted.values[rows], held.predicted["augmented"], rtol=1e-4)
-    with pytest.raises(SchemaError, match=r"none of 'ridge'.*older version saved without weights"):
+    with pytest.raises(SchemaError, match=r"no weights of 'ridge'.*older version saved without weights"):
         again.predict(long["exo"], "ridge")
     assert again.provenance.settings["models"]["outputs"] == list(OUTPUTS)
     assert gd.plot.r2(again).get_xlim()[1] == 1.0

@@ -59,7 +59,7 @@ def test_refusals(pair, saved, tmp_path):
     with pytest.raises(SamplingError, match=r"100 Hz.*50 Hz"):
         saved(replace(r, time=r.time * 2))
     other = (Channel("a", "angle", "rad"), r.channels[1])
-    with pytest.raises(UnitError, match=r"deg; the recording.*rad"):
+    with pytest.raises(UnitError, match=r"deg, the unit of the model; the recording.*rad"):
         saved(Recording(r.time, r.values, other))
     with pytest.raises(ChannelError, match="'a' is"):
         saved(r.selected(["late"]))

@@ -66,7 +66,7 @@ def test_it_says_what_it_is(folder):
 def test_an_effect_that_is_none(tmp_path):
     with pytest.raises(SchemaError, match="found 'magic'"):
         write_demonstration(tmp_path, 30.0, 1, "magic")
-    with pytest.raises(SchemaError, match=r"angles, markers, overground.*'video'"):
+    with pytest.raises(SchemaError, match=r"angles or markers or overground.*'video'"):
         write_demonstration(tmp_path, 30.0, 1, laboratory="video")
 
 

@@ -83,7 +83,7 @@ def test_one_condition_is_reconstructed_from_the_other(study):
     settings = ReconstructionSettings(split="condition", condition="exo", kinds=KINDS)
     done, _ = reconstruct_study(study, ("knee_angle_r",), settings)
     within, _ = reconstruct_study(study, ("knee_angle_r",), ReconstructionSettings(kinds=KINDS))
-    assert says(done.split, "condition: walks of one condition")
+    assert says(done.split, "condition: each condition is reconstructed")
     assert done.over_participants()["rmse_deg"]["delay ridge"] > within.over_participants()["rmse_deg"]["delay ridge"]
 
 

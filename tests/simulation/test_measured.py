@@ -76,7 +76,7 @@ def test_clocks_that_do_not_run_are_refused(trials, words):
 
 def test_a_constant_channel_is_refused_a_constant_trial_told():
     still = np.full((50, 1), 3.0)
-    with pytest.raises(ShapeError, match=r"'x'; walk\.csv.*3"):
+    with pytest.raises(ShapeError, match=r"'x'.*; walk\.csv.*3"):
         _measured(_trial("a", observed=still), _trial("b", observed=still))
     (finding,) = _measured(_trial("a", observed=still), _trial("b")).findings
     assert says(finding.line(), "walk.csv", "1 of 2 trials", "'a'")

@@ -35,14 +35,14 @@ LONG = {
     "ch3_systems": 144,  # three sections, with what each states
     "ch5_further": 137,  # fits and windows of nine tables
     "device_from_files": 140,
-    "engine_cases": 128,  # the cases of both studies
+    "engine_cases": 129,  # the cases of both studies
     "engines": 147,
     "engines_with_muscles": 129,
     "false_alarms": 184,  # made people whose belts carry what they weigh
     "faults_in_people": 301,  # 33 kinds of fault
     "faults_on_pages": 222,
     "file_against_page": 134,
-    "tracked_walks": 136,
+    "tracked_walks": 147,
 }
 
 
