@@ -151,10 +151,10 @@ def search_expansion(fit: EngineFit, request: Request, read: dict[Path, str]) ->
     request.progress(f"computing the accelerations of {engine.path.name} along the record with {engine.called}")
     linear, driven = expand(mapping, engine, data, states)
     request = replace(request, added=saturations(mapping, getattr(engine, "servos", {})))
-    own = {one.port: ("", one.name) for one in engine.coordinates} if len(engine.coordinates) > MANY else {}
+    roles = {one.port: ("", one.name) for one in engine.coordinates} if len(engine.coordinates) > MANY else {}
 
     def is_searched(one: Candidate) -> bool:  # a limit is the input's own, and of no force
-        plain = one.kind != "port" or one.place not in own or one.role in own[one.place]
+        plain = one.kind != "port" or one.place not in roles or one.role in roles[one.place]
         return (one.kind, one.name) != ("port", "input_saturation") and (plain or one.name == "linear_coupling")
 
     if not request.effects:

@@ -202,7 +202,7 @@ def _figure(pooled: PooledCycles, numbers: pd.DataFrame, joints: list[str], name
         if not axes.get_title():
             axes.set_title(label(stems[channel]), fontsize=7.4)
             label_curve(axes, str(channel), str(unit))
-        every = curves[of_side[word], :, columns.index(channel)]
+        every = curves[of_side[word], :, columns.index(str(channel))]
         every = every[np.isfinite(every).any(axis=1)]
         draw_cycles(axes, every, curve["mean"].to_numpy(), curve["sd"].to_numpy(), word)
         if np.isfinite(offs[word]):

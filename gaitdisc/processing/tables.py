@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from typing import Any
 
 import numpy as np
 import pandas as pd
@@ -168,14 +169,15 @@ def offset_words(pooled: PooledCycles) -> str:
 def spatiotemporal_table(sets: Sequence[PooledCycles], name: str) -> Table:
     """Spatiotemporal values of one person, mean ± standard deviation (n) for each foot, session and condition."""
     numbers = all_spatiotemporal(sets)
-    known = {(row.value, row.side, row.session, row.condition): row for row in numbers.itertuples(index=False)}
+    records: Any = numbers.to_dict("records")
+    known = {(row["value"], row["side"], row["session"], row["condition"]): row for row in records}
     rows = []
     for value, (words, unit, digits) in VALUES.items():
         cells = []
         for pooled in sets:
             for side in FEET:
                 own = known[value, side, pooled.session, pooled.condition]
-                cells.append(mean_cell(own.mean, own.sd, own.n, digits))
+                cells.append(mean_cell(own["mean"], own["sd"], own["n"], digits))
         if set(cells) != {NONE}:
             rows.append((f"{words} [{unit}]", *cells))
     columns = ("value", *(f"{SIDE_WORDS[side]}" for _ in sets for side in FEET))
