@@ -18,11 +18,11 @@ class GaitdiscError(ValueError):
     Parameters
     ----------
     needed : str
-        What the operation needs, with the unit; empty if `found` says it.
+        Requirement of the operation, with the unit; empty if `found` states it.
     found : str
-        What was found instead: file, channel, frame, number, unit.
+        Fault that was found: file, channel, frame, number, unit.
     remedy : str
-        What the user can do, in one sentence.
+        Instruction to the user, in one sentence.
 
     Examples
     --------

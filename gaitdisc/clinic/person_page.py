@@ -61,7 +61,7 @@ EMG = (
 RAW = " Below the envelopes: raw EMG of one cycle of each leg, the cycle whose envelopes are closest to their means."
 CYCLES = (
     f"Thick lines: means; thin lines: single cycles (the first {MOST_SINGLE}). CMC: coefficient of multiple "
-    "correlation of a leg's cycles, left and right (Kadaba 1989); 1 if all cycles are identical, – if it is undefined."
+    "correlation of a leg's cycles, left and right (Kadaba 1989); 1 if all cycles are identical; a dash if undefined."
 )
 CONTRAST = (
     "Dotted lines: {}; solid or dashed lines: {}. Bars above, in the leg's colour, show differences in a permutation "

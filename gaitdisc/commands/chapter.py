@@ -19,7 +19,7 @@ def chapter(
     number: Annotated[int, typer.Argument(metavar="3|4|5", help="Number of the chapter: 3, 4 or 5.")],
     out: Annotated[Path, typer.Argument(help="Folder to write; each part has its own folder inside.")],
     part: Annotated[str, typer.Option(help="Compute only this part.")] = "",
-    quick: Annotated[bool, typer.Option("--quick", help="Compute a small part of each study, as in its test.")] = False,
+    quick: Annotated[bool, typer.Option("--quick", help="Compute only a small part of each study as a check.")] = False,
     data: Annotated[
         Path | None, typer.Option(help="Folder of recordings with gait/ and fields/; by default GAITDISC_DATA.")
     ] = None,

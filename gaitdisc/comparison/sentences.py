@@ -67,12 +67,12 @@ def alignment_sentences(mismatch: Mismatch) -> list[str]:
     if abs(found.percent) < SAID_FROM or not (found.applied or 2 * found.agreeing > found.channels):
         return []
     size = f"{number(abs(found.percent), 1)} % of the stride {'later' if found.percent > 0 else 'earlier'}"
-    narrower = f"the gap of {found.agreeing} of {counted(found.channels, 'channel')} narrows"
-    said = f"{mismatch.first} was not shifted: if it is shifted {size}, {narrower} only slightly."
+    gaps = f"the gap of {found.agreeing} of {counted(found.channels, 'channel')}"
+    said = f"{mismatch.first} was not shifted, because a shift of {size} would narrow {gaps} only slightly."
     if found.applied:
         said = (
-            f"All curves of {mismatch.first} were shifted {size} before the test; with this shift {narrower}. Either "
-            "the initial contacts differ by this time, or all joints move at another time."
+            f"All curves of {mismatch.first} were shifted {size} before the test; with this shift {gaps} narrows. "
+            "Either the initial contacts differ by this time, or all joints move at another time."
         )
     if found.otherwise:  # not in a folder of an earlier version
         name = (mismatch.ordered() or mismatch.names)[0]

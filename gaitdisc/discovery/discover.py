@@ -82,7 +82,7 @@ def weigh_explanations(
     if not case.leaves_noise(verdict.found):
         kept = without_trial_apart(case)
         if kept is not case.measured:
-            progress("no explanation fits one trial together with the others: this outlier is left out")
+            progress("no single model fits one trial together with the others: this outlier is left out")
             measured, case = kept, begun(kept)
             as_read = case.as_read()
             verdict = decide(case, as_read)

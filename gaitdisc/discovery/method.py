@@ -40,7 +40,8 @@ SHORT_RUNS = (
 )
 BY_ENGINE = (
     "The engine ran the initial model along every trial, in runs of two periods, each from its best-fitting initial "
-    "state. If their residual is white noise of the sensors' size, no effect is missing and nothing was searched.",
+    "state. If their residual is only white noise at the level of the sensor noise, no effect is missing and "
+    "nothing was searched.",
     "The engine then computed the accelerations along the smoothed recording, and their derivatives with respect to "
     "each coordinate, speed, control and parameter; a force on a coordinate enters exactly. The short runs below use "
     "that expansion. With muscle fibres, its error counts as noise of 2 % of a channel's standard deviation.",

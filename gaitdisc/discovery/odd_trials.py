@@ -222,9 +222,9 @@ def without_trial_apart(case: Case) -> Measured:
     if next_least < wanted:
         return measured
     what = (
-        f"trial {measured.trials[trial]!r} is an outlier: no explanation fits it together with the others; the best "
-        f"explanation leaves a residual of {least:.2g} standard deviations without this trial, and of {next_least:.2g} "
-        f"without {measured.trials[other]!r}, the next candidate"
+        f"trial {measured.trials[trial]!r} is an outlier: no single model fits it together with the other trials. The "
+        f"best model leaves a residual of {least:.2g} standard deviations if this trial is excluded, and of "
+        f"{next_least:.2g} if the next candidate, {measured.trials[other]!r}, is excluded instead"
     )
     source = measured.source or case.search.base.title
     spoils = "this trial, which was left out; check its gain, its offset and whether a channel was constant"

@@ -264,7 +264,7 @@ def _say_gap(discovery: Discovery) -> str:
     left = size.unexplained
     if left < SMALL or size.after > size.before or may_be_left(size.after, size):
         return said
-    return f"{said} {100 * left:.0f} % of the squared error above the noise stays unexplained."
+    return f"{said} {100 * left:.0f} % of the squared error above the noise remains unexplained."
 
 
 def _say_moved(discovery: Discovery) -> str:

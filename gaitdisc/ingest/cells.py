@@ -68,7 +68,7 @@ def _even_rows(rows: list[str], labels: Sequence[str], numbers: NDArray[np.intp]
     counts = [len(row.split()) if form.separator == " " else row.count(form.separator) + 1 for row in rows]
     if min(counts) < width:
         row = counts.index(min(counts)) if counts[-1] >= width else len(counts) - 1
-        cut = ", the last line" if row == len(rows) - 1 else ""
+        cut = " (the last line)" if row == len(rows) - 1 else ""
         raise ReadError(
             f"{form.file}: every row must have {width} cells, one per column",
             f"line {numbers[row]}{cut} has {counts[row]}",

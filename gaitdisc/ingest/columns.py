@@ -253,7 +253,7 @@ def _refuse_missing_force(time: Values, values: Values, channels: Sequence[Chann
             first = int(np.argmax(missing))
             raise ReadError(
                 f"{file}: {channel.name} must have a number in every sample",
-                f"{missing.sum()} of {len(time)} samples are missing, the first is sample {first + 1} at t = "
-                f"{time[first]:.6g} s",
+                f"{missing.sum()} of {len(time)} samples are missing (first: sample {first + 1} at t = "
+                f"{time[first]:.6g} s)",
                 "Export the force again without gaps (0 where the foot is in the air).",
             )

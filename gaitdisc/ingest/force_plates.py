@@ -214,7 +214,7 @@ def plate_streams(
         ]
     turned = [plate.number for (plate, _, _), sense in zip(wrenches, up, strict=True) if (sense or most) < 0]
     if turned:
-        what = f"plates {', '.join(map(str, turned))} give the force of the foot on the ground; the sign is reversed"
+        what = f"plates {', '.join(map(str, turned))} give the force of the foot on the ground; the sign was reversed"
         findings.append(Finding("note", "force sign", file, what, ""))
     if up and not any(up):
         what = f"no plate was loaded with {CLEAR_LOAD_N:g} N, so the sign of the forces could not be checked"
@@ -288,7 +288,7 @@ def _with_origin(
         return plate, []
     turned = replace(plate, origin=-plate.origin)
     if plate.kind in (2, 4) and _beside(turned, values, units) < STRAY:
-        what = f"force plate {plate.number}: ORIGIN points from the surface to the sensors; the sign is reversed"
+        what = f"force plate {plate.number}: ORIGIN points from the surface to the sensors; its sign was reversed"
         return turned, [Finding("note", "plate origin", file, what, "nothing: the corrected force acts on the plate")]
     what = f"force plate {plate.number}: the centre of pressure lies outside the plate in {100 * beside:.0f} % of the "
     what += "loaded samples"

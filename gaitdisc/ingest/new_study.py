@@ -203,8 +203,8 @@ def _read_drafts(
             found += [one] if one is not None else []
             notes += said
     for kind, words in (
-        (STATIC, f"standing trials, which are set to {STATIC!r}: "),
-        (FUNCTIONAL, f"trials of circling legs, according to the file names, which are set to {FUNCTIONAL!r}: "),
+        (STATIC, f"standing trials, assigned the condition {STATIC!r}: "),
+        (FUNCTIONAL, f"trials of circling legs, according to the file names, assigned the condition {FUNCTIONAL!r}: "),
     ):
         _note(notes, words, (each.files[0].as_posix() for each in found if each.which == kind))
     order = ("nominal", "device", "", STATIC, FUNCTIONAL, "other")

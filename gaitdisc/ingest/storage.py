@@ -142,8 +142,8 @@ def _in_true_unit(
             columns[i] = replace(columns[i], unit=own)
             copies.append(columns[i].channel.name)
     if copies:
-        what = f"{', '.join(copies)} in {'deg' if unit == 'rad' else 'rad'} were converted to {unit}, like the others"
-        findings.append(Finding("note", "mixed units", file, what, ""))
+        what = f"the values of {', '.join(copies)} were converted from {'deg' if unit == 'rad' else 'rad'} to {unit}"
+        findings.append(Finding("note", "mixed units", file, f"{what}, the unit of the other angles", ""))
     return columns, findings
 
 

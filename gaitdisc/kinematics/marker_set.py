@@ -76,16 +76,14 @@ class MarkerSet:
     def with_joints(self, joints: str) -> MarkerSet:
         """Return the same set with its joints free, held, or moving in a plane."""
         if joints not in JOINTS:
-            raise SchemaError(f"joints must be one of {', '.join(JOINTS)}", _find(joints, JOINTS), "Correct the word.")
+            raise SchemaError(f"joints must be one of {', '.join(JOINTS)}", _find(joints, JOINTS), "Use one of these.")
         return replace(self, joints=joints)
 
     def with_hip(self, method: str) -> MarkerSet:
         """Return the same set with another hip joint centre."""
         if method not in METHODS["hip"]:
-            known = METHODS["hip"]
-            raise SchemaError(
-                f"the hip joint centre must be one of {', '.join(known)}", _find(method, known), "Correct the word."
-            )
+            needed = f"the method for the hip joint centre must be one of {', '.join(METHODS['hip'])}"
+            raise SchemaError(needed, _find(method, METHODS["hip"]), "Use one of these.")
         return replace(self, joint_centres={**self.joint_centres, "hip": (method,)})
 
     def names(self, labels: Iterable[str]) -> dict[str, str]:

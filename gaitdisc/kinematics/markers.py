@@ -105,9 +105,9 @@ def up_axis(pelvis: Values, feet: Values, file: str = "") -> Values:
     axis = int(np.argmax(np.abs(mean)))
     if not size > 0 or abs(mean[axis]) < UPRIGHT * size:
         raise ShapeError(
-            "one axis of the laboratory must point up, along which the pelvis is above the feet",
-            f"{file or 'the recording'}: the vector from feet to pelvis is "
-            f"({', '.join(f'{part:.3g}' for part in mean)}) m",
+            "the pelvis must lie above the feet along one axis of the laboratory",
+            f"in {file or 'the recording'} the mean vector from the feet to the pelvis is "
+            f"({', '.join(f'{part:.3g}' for part in mean)}) m, which lies along no axis",
             "Export the markers in a level frame.",
         )
     up = np.zeros(3)

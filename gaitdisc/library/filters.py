@@ -261,8 +261,8 @@ def _in_its_form(
 def _times(count: int, rate_hz: float | None) -> NDArray[np.float64]:
     if rate_hz is None:
         raise SamplingError(
-            "an array, or a table without times, needs a rate to be filtered",
-            "rate_hz is not given",
+            "to filter an array or a table without times, rate_hz must be given",
+            "it is missing",
             "Give the number of samples per second, for example rate_hz=100.",
         )
     if not isinstance(rate_hz, int | float | np.number) or not 0 < rate_hz < np.inf:

@@ -190,9 +190,9 @@ def _driven(simulation: Simulation, time: NDArray[np.float64], inputs: Any) -> N
             values = np.full(len(time), values) if values.ndim == 0 else values
         if values.shape != time.shape:
             raise ShapeError(
-                f"the input {name!r} must have one value per time",
-                f"its shape is {values.shape}, for {len(time)} times",
-                "Give both the same length.",
+                f"the input {name!r} must have one value per time point",
+                f"its shape is {values.shape}, but there are {len(time)} time points",
+                "Give one value per time point.",
             )
         columns.append(values)
     driven = np.column_stack(columns)

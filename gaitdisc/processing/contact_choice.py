@@ -80,7 +80,7 @@ def choose_contacts(
     taken = seen[chosen] if offset_s is None else _move(seen[chosen], offset_s)
     findings = [*late, *_findings(trial, chosen, seen, refused, reference)]
     if chosen in SEEN_LATE:
-        by = "the median difference over steps that " + ("a plate" if reference == "force" else "an event") + " records"
+        by = f"the median difference at steps {'recorded by a plate' if reference == 'force' else 'marked by an event'}"
         spoils = "phase, compared with a plate, by 3 to 5 % of the stride; durations are unaffected"
         findings.append(offset_finding(trial.name, chosen, offset_s, by, spoils))
     return ContactChoice(taken, tuple(findings))

@@ -50,7 +50,7 @@ METHOD = (
     "A cycle is excluded if it is too short or too long, differs from the person's other cycles by more than 15 % "
     "and 6 robust standard deviations, does not contain exactly one contact of the other foot, or lacks an angle of "
     "its own leg. Cycles never cross trials.",
-    "Moments are shown for cycles in which one plate carried the entire stance, with this foot alone on it.",
+    "Moments are shown for cycles in which the channel's own foot was alone on one plate for the entire stance.",
     "Speed and step lengths are measured at the heels from contact to contact. On a treadmill the belt speed is "
     "added if the study states it.",
 )
@@ -234,11 +234,11 @@ def _caption(pooled: PooledCycles) -> str:
     counts = " and ".join(f"{counted(pooled.counted(side), 'cycle')} {SIDE_WORDS[side]}" for side in FEET)
     kinetic = pooled.kept[pooled.kept["kinetic"].astype(bool)]
     plates = ", ".join(f"{int((kinetic['side'] == side).sum())} {SIDE_WORDS[side]}" for side in FEET)
-    moments = f" Moments are shown only for cycles with this foot alone on a plate: {plates}." if len(kinetic) else ""
+    moments = f" Moments are shown only for cycles in which the channel's own foot was alone on a plate: {plates}."
     filters = dict.fromkeys(finding.what for finding in pooled.findings if finding.kind == "filter")
     return (
         f"{pooled.subject}, {pooled.where}: {counts}, pooled over {counted(pooled.trials, 'trial')}; mean ± standard "
         f"deviation (of three or more cycles) and single cycles (the first {MOST_FAINT}); left red, right blue. 0 %: "
-        f"initial contact of the channel's own foot; dotted: mean foot off.{moments}"
+        f"initial contact of the channel's own foot; dotted: mean foot off.{moments if len(kinetic) else ''}"
         + "".join(f" Filters: {words}." for words in filters)
     )

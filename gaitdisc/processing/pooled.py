@@ -217,7 +217,7 @@ def _pool(
     findings += [finding for trial in cut for finding in trial.unknown]
     if late:
         by = "the difference at one step" if steps == 1 else f"the median difference at {steps} steps"
-        by += " that a plate or an event also recorded"
+        by += " recorded by a plate or marked by an event"
         findings.append(offset_finding(trials.where, late, offset_s, by, "phase and stance, by 3 to 5 % of the cycle"))
     refusals = [*lost, *([Refusal(participant.id, trials.where, too_few)] if too_few and (seen or not lost) else [])]
     return PooledCycles(

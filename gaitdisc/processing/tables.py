@@ -136,8 +136,8 @@ def overview_table(cycles: Sequence[PooledCycles]) -> Table:
         "on a plate (left, right)", "EMG", "contacts by", "shift of contacts",
     )  # fmt: skip
     caption = (
-        f"Cycles pooled over trials, n = {len(cycles)} sessions and conditions. On a plate: cycles in which one plate "
-        "carried the entire stance, with this foot alone on it. EMG: usable channels, and cycles with all of them."
+        f"Cycles pooled over trials, n = {len(cycles)} sessions and conditions. On a plate: cycles in which the foot "
+        "was alone on one plate for the entire stance. EMG: usable channels, and cycles with all of them."
     )
     return Table("cycle_counts", caption, columns, tuple(rows), pd.DataFrame(records))
 
@@ -163,7 +163,7 @@ def offset_words(pooled: PooledCycles) -> str:
     if pooled.contact_offset_s is None:
         return "not shifted: no plate recorded a step"
     steps = counted(pooled.offset_steps, "step")
-    return f"{1000.0 * pooled.contact_offset_s:+.0f} ms ({steps} that a plate or an event also recorded)"
+    return f"{1000.0 * pooled.contact_offset_s:+.0f} ms ({steps} recorded by a plate or marked by an event)"
 
 
 def spatiotemporal_table(sets: Sequence[PooledCycles], name: str) -> Table:

@@ -189,8 +189,8 @@ def _residual_figure(response: ParticipantResponse, numbers: pd.DataFrame, name:
         style = {"ha": "center", "va": "top", "fontsize": 9, "fontweight": "bold", "color": MODELS[model].colour}
         drawn.text(centre, top, f"measured − {MODEL_WORDS[model]}", **style)
     interval = (
-        f"shaded: {100 * CONFIDENCE:.0f} % interval at each point (Student's t over strides, corrected for the "
-        "correlation of neighbouring strides)"
+        f"shaded: {100 * CONFIDENCE:.0f} % confidence interval of the mean at each point (Student's t over strides, "
+        "corrected for the correlation of neighbouring strides)"
         if len(each) >= LEAST_STRIDES
         else f"no interval, because it requires {LEAST_STRIDES} complete strides"
     )

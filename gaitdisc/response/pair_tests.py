@@ -144,11 +144,11 @@ def _families_table(tests: PairTests) -> Table:
             ))  # fmt: skip
     caption = (
         f"The paired tests with other families, n = {counted(tests.participants, 'participant')}, alpha = "
-        f"{tests.alpha:g} in each. Level: the level at which the step-down procedure stopped, printed in the "
+        f"{tests.alpha:g} in each. Stopping level: the level at which the step-down procedure stopped, printed in the "
         "dissertation as “Sidak α = 0.013”. With eight variables per pair and four rejected it is 0.0127; with three "
         "pairs per variable no level has this value."
     )
-    columns = ("family", "pair", "tests in it", "level at the stop", "different", "which")
+    columns = ("family", "pair", "tests in it", "stopping level", "different", "which")
     return Table("tests-families", caption, columns, tuple(rows), tests.families)
 
 

@@ -155,7 +155,7 @@ def test_sessions_groups_kinds_and_standing_are_found(tmp_path):
         ("session 1", "shod"), ("session 2", "shod"), ("session 1", "static"),
     ]  # fmt: skip
     assert "2024" not in "".join(study.sessions)
-    assert any("standing trials, which are set to 'static': controls/S02_2024-03-01/a7.mot" in note for note in notes)
+    assert any("trials, assigned the condition 'static': controls/S02_2024-03-01/a7.mot" in note for note in notes)
 
 
 def test_what_no_name_shows_is_listed_with_the_one_line_for_all(tmp_path):

@@ -60,7 +60,7 @@ def test_units_are_those_of_the_simulation():
     ("keywords", "error", "words"),
     [
         ({}, SimulationError, r"'u' is not among the given inputs \(none\)"),
-        ({"inputs": {"u": np.zeros(3)}}, ShapeError, r"'u' must have one value per time; .* \(3,\), for 201 times"),
+        ({"inputs": {"u": np.zeros(3)}}, ShapeError, r"'u' must have one value per time .* \(3,\), but there are 201"),
         ({"inputs": {"u": np.full(201, np.nan)}}, SimulationError, "'u' is missing at t = 1 s"),
         ({"inputs": {"u": np.zeros(201)}}, SimulationError, "the state 'x' has none"),
         ({"inputs": {"u": np.zeros(201)}, "start": [1.0, 2.0]}, ShapeError, "a number for each state: x"),

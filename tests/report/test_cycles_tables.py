@@ -42,8 +42,8 @@ def test_the_overview_counts_cycles_plates_and_muscles():
     ("fields", "said"),
     [
         ({}, "–"),
-        ({"detectors": {"markers": 1}, "contact_offset_s": 0.0598, "offset_steps": 1}, "+60 ms (1 step that a plate"),
-        ({"detectors": {"markers": 1}, "contact_offset_s": 0.04, "offset_steps": 3}, "+40 ms (3 steps that a plate"),
+        ({"detectors": {"markers": 1}, "contact_offset_s": 0.0598, "offset_steps": 1}, "+60 ms (1 step recorded by"),
+        ({"detectors": {"markers": 1}, "contact_offset_s": 0.04, "offset_steps": 3}, "+40 ms (3 steps recorded by"),
         ({"detectors": {"angles": 1}}, "not shifted: no plate recorded a step"),
     ],
 )
