@@ -164,7 +164,7 @@ def test_a_trial_that_goes_with_no_explanation_of_the_others_is_left_out_and_the
     measured = spoiled(record(with_load("-14*x**3"), 3, Experiment(seconds=6.0)), how)
     found, _ = discover(mass(), measured)
     assert [(one.name, one.place) for one in found.effects] == [("cubic_stiffness", "load")]
-    assert says(found.sentence, "rial '2'", "explanation", "left out")
+    assert says(found.sentence, "rial '2'", "no single model fits it", "left out")
     assert "This trial was left out" in found.sentence
 
 

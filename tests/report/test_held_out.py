@@ -118,7 +118,7 @@ def test_what_is_drawn_is_the_csv(response_residual):
 
 def test_words_of_the_residuals(response_residual):
     [figure] = residual_figures(response_residual, "P01")
-    for wanted in ("n = 8 strides", "split: last 7.5 s", "95 % interval"):
+    for wanted in ("n = 8 strides", "split: last 7.5 s", "95 % confidence interval"):
         assert wanted in figure.caption
     panels = [panel for panel in figure.drawn.axes if panel.get_ylabel()]
     assert [panel.get_ylabel() for panel in panels] == ["[deg/s²]", "[deg/s²]"]
