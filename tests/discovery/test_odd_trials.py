@@ -101,7 +101,7 @@ def test_it_is_left_out_and_said_in_the_answer_and_the_report(cubic, tmp_path):
     assert found.effects[0].estimates["stiffness"].value == pytest.approx(14, rel=0.1)
     (odd,) = [one for one in found.findings if one.kind == "odd trial"]
     assert (odd.severity, odd.channel) == ("warning", "x")
-    assert says(odd.what, "'2'", "with this correction")
+    assert says(odd.what, "'2'", "With this correction")
     assert says(found.sentence, "'2'", "push were reversed")
     assert found.sentence.endswith("This trial was left out.")
     assert found.runs.names == ("1", "3", "4")
