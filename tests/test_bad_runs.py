@@ -136,7 +136,7 @@ def test_a_training_that_does_not_converge_is_refused_by_participant_and_model(f
 def test_a_trial_shorter_than_the_longest_training_length_shortens_the_ablation_and_says_so(folder, said):
     written(folder, walker("P01"))
     words = said("ablate", folder, "--length", 5, "--length", 60, "--quiet", ends=0)
-    assert says(words, "left", "P01", "60 s", "20.7 s")
+    assert says(words, "P01", "60 s", "left out", "20.7 s")
     assert says(page_of(folder), "lengths are left out", "60 s")
     quantity = pd.read_csv(folder / "run" / "quantities" / "P01" / "quantity.csv")
     assert sorted(set(quantity["length_s"])) == [5.0, 20.7]
