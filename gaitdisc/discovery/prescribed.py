@@ -235,12 +235,11 @@ def name_across_joints(joints: list[JointFinding], candidates: tuple[Candidate, 
 
     What either answer leaves counts as white noise of unknown size; both kinds of answer are as likely beforehand.
     """
-    found, most = joints, CRITERIA.margin
+    found, most, choice = joints, CRITERIA.margin, 2 * float(np.log(max(2 * len(candidates), 1)))
+    first = [replace(one, noise=_noise_of_angles(one.joint)) for one in joints]
     for candidate in candidates:
-        named = _fit_across_joints(joints, candidate)
-        gained = -2 * float(np.log(2 * len(candidates))) - float(
-            np.log(sum(len(one.explained) for one in named.values()))
-        )
+        named = _fit_across_joints(first, candidate)
+        gained = -choice - float(np.log(sum(len(one.explained) for one in named.values())))
         before, after = 0.0, 0.0
         for k, one in named.items():
             joint, rivals = joints[k].joint, joints[k].rivals
@@ -260,12 +259,11 @@ def name_across_joints(joints: list[JointFinding], candidates: tuple[Candidate, 
 
 def _fit_across_joints(joints: list[JointFinding], candidate: Candidate) -> dict[int, Named]:
     """Fit one number at all joints where it acts, weighed by their information, and predict each block of the time."""
-    first = [replace(one, noise=_noise_of_angles(one.joint)) for one in joints]
-    fitted = {k: one for k, joint in enumerate(first) if (one := joint._fitted(candidate, refined=False))}
+    fitted = {k: one for k, joint in enumerate(joints) if (one := joint._fitted(candidate, refined=False))}
     weights = np.array([1 / float(one.covariance[0, 0]) for one in fitted.values()])
 
     def pool(some: NDArray[np.intp]) -> dict[str, float]:
-        numbers = [(first[k]._numbers(candidate, some, refined=False) or candidate.idle)["value"] for k in fitted]
+        numbers = [(joints[k]._numbers(candidate, some, refined=False) or candidate.idle)["value"] for k in fitted]
         return {"value": float(weights @ numbers / weights.sum())}
 
     predicted = np.zeros((len(joints), len(joints[0].joint.time)))
@@ -274,10 +272,12 @@ def _fit_across_joints(joints: list[JointFinding], candidate: Candidate) -> dict
         for k in fitted:
             predicted[k, held] = joints[k].joint.explained(candidate, values)[held]
     values, variance = pool(np.arange(predicted.shape[1])), np.array([[1 / weights.sum()]])
-    whole = {k: replace(one, values=values, covariance=variance, predicted=predicted[k]) for k, one in fitted.items()}
+    explained = {k: joints[k].joint.explained(candidate, values) for k in fitted}
     return {
-        k: replace(one, explained=joints[k].joint.explained(candidate, values), test=joints[k].test(predicted[k]))
-        for k, one in whole.items()
+        k: replace(
+            one, values=values, covariance=variance, explained=explained[k], predicted=own, test=joints[k].test(own)
+        )
+        for (k, one), own in zip(fitted.items(), predicted[[*fitted]], strict=True)
     }
 
 

@@ -208,11 +208,11 @@ class _Answers:
         return not np.allclose(*found, rtol=1e-9, atol=0.0)
 
     def rates(self, q: Any, v: Any, u: Any, z: Any, values: dict[str, float], forces: Any) -> Any:
-        """NaN where a fibre has no equilibrium: far from all records, say."""
-        one = self.with_values(values)
+        """Accelerations, then fibres' speeds (point, ...); NaN where lengths are sought and no equilibrium exists."""
+        one, without = self.with_values(values), (RuntimeError,) if z is None else ()
         found = np.full((len(q), q.shape[1] + len(one.fibres)), np.nan)
         for point in range(len(q)):
-            with suppress(*[RuntimeError] if z is None else []):
+            with suppress(*without):
                 one.tense(q[point], v[point], u[point], None if z is None else z[point])
                 found[point] = one.rates([*u[point], *forces[point]])
         return found
