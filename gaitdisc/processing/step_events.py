@@ -170,10 +170,12 @@ def _stepping(trial: Trial) -> tuple[Values, NDArray[np.bool_]] | None:
         heels, pelvis = {}, []
     if markers is not None and heels:
         centre, half = pelvis_position(markers, pelvis), round(PATH_S / 2 * markers.rate_hz)
-        known = finite_rows(centre)
-        if len(centre) > 2 * half and len(known) and np.linalg.norm(np.ptp(known, axis=0)) >= BELT_M:
-            metres = np.linalg.norm(centre[2 * half :] - centre[: -2 * half], axis=1)
-            return markers.time, np.pad(metres, half, mode="edge") >= LEAST_SPEED * PATH_S
+        metres = np.linalg.norm(centre[2 * half :] - centre[: -2 * half], axis=1)
+        known = np.flatnonzero(np.isfinite(metres))
+        if len(known) and np.linalg.norm(np.ptp(finite_rows(centre), axis=0)) >= BELT_M:
+            # a pelvis that the cameras do not see yet, or no more, moves as it does where they first or last see it
+            path = np.interp(np.arange(len(centre)), known + half, metres[known])
+            return markers.time, path >= LEAST_SPEED * PATH_S
         return markers.time, _reaches(markers, [f"{heel}.{axis}" for heel in heels.values() for axis in "xyz"], HEEL_M)
     joints = [] if legs is None else [name for name in legs.names if name[:-1] in ("hip_flexion_", "knee_angle_")]
     return (legs.time, _reaches(legs, joints, LEG_DEG)) if legs is not None and joints else None

@@ -169,6 +169,18 @@ def test_standing_before_and_after_a_walk_is_cut_out_and_said(walks, before_s, a
         assert walking_part(walk) is walk
 
 
+def test_a_walker_whom_the_cameras_do_not_see_yet_is_not_standing(walks):
+    walk = replace(walks["HC030A22"], streams={"markers": walks["HC030A22"].stream("markers")}, events=())
+    longer = _standing_about(walk, 2.5, 2.5)
+    markers = longer.stream("markers")
+    unseen = (markers.time < walk.stream("markers").time[0]) | (markers.time > walk.stream("markers").time[-1])
+    values = np.where(unseen[:, None], np.nan, markers.values)
+    hidden = Recording(markers.time, values, markers.channels, source=markers.source)
+    assert walking_part(longer) is not longer
+    longer = replace(longer, streams={"markers": hidden})
+    assert walking_part(longer) is longer
+
+
 def test_nothing_is_cut_where_nobody_steps_or_all_do(walks, trial):
     still = _standing_about(
         replace(walks["HC030A05"], streams={"markers": walks["HC030A05"].stream("markers")}), 0.0, 9.0
