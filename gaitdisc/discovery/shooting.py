@@ -27,7 +27,7 @@ MOST_DAMPING = 1e6
 NUDGE = 1e-5  # of states and constants, as a share of their size, for slopes
 STUCK = 5.0  # times the median misfit of a segment
 FREED = 0.5  # of their misfit, which another start must leave at most
-TURNS, FEW_TURNS = 12, 6
+TURNS = 12
 ENOUGH = 1e-2
 
 
@@ -186,17 +186,18 @@ class Shooting:
     def _begin_elsewhere(self, machine: Compiled, now: Fitted, starts: Values) -> Values | None:
         """Return better start states (segment, state) where a few segments fit far worse than most.
 
-        A start on the wrong side of a threshold (a spike, a fall) is a minimum of its own. Tried are the start that the
-        fit began with and the end of the segment before, each for constants as they are.
+        A start on the wrong side of a threshold (a spike, a fall) is a minimum of its own, and where constants are fitted
+        too, a step that one segment needs is refused if it spoils others. Tried are the start that the fit ended with,
+        the one that it began with and the end of the segment before, each for constants as they are.
         """
         stuck = now.misfits > STUCK * np.median(now.misfits)
         if not np.isfinite(now.misfit) or not stuck.any():
             return None
         before = np.vstack([now.starts[:1], now.states[:-1, -1]])
         best = replace(now, free=(), slopes=now.slopes[..., : starts.shape[1]], prior=Prior())
-        for other in (starts, before):
+        for other in (now.starts, starts, before):
             tried = np.where(stuck[:, None], other, now.starts)
-            fit = self._descend(machine, self.at(machine, (), now.values, tried), FEW_TURNS)
+            fit = self._descend(machine, self.at(machine, (), now.values, tried), TURNS)
             best = best.where(fit.misfits < best.misfits, fit)
         return best.starts if best.misfits[stuck].sum() < FREED * now.misfits[stuck].sum() else None
 
