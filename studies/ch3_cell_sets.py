@@ -43,7 +43,6 @@ def cell_sets() -> dict[str, CellSet]:
     """Every set by its name, in the order in which they are computed."""
     (text, code), mass, chaotic = oscillators().values(), biased_masses(), lorenz()
     long, short, swing = Conditions(duration_s=LONG), Conditions(duration_s=SHORT), Conditions(duration_s=20.0)
-    weak = burgers(ch3_burgers.CUBICS["text, with the pulse of the code"])
     bias = {"approach": "state", "settings": SECTIONS["measurement_bias"].settings}
     found = {
         "van_der_pol_text": CellSet(text, long),
@@ -57,8 +56,9 @@ def cell_sets() -> dict[str, CellSet]:
         "van_der_pol_text_state": CellSet(text, long, "state"),
         "van_der_pol_code_state": CellSet(code, long, "state"),
         "lorenz_state": CellSet(chaotic, long, "state"),
-        "burgers": CellSet(weak, long, "dynamics", ("sindy", "dmd", "nn"), NOISES, 6, ch3_burgers.SETTINGS, field=True),
     }
+    for name, cubic in zip(("burgers", "burgers_code"), ch3_burgers.CUBICS.values(), strict=True):
+        found[name] = CellSet(burgers(cubic), long, seeds=6, settings=ch3_burgers.SETTINGS, field=True)
     return found | {
         f"{name}{FURTHER}{number:02d}": replace(begun, noises=NOISES[1:], seeds=6)
         for name in ("van_der_pol_text", "lorenz")

@@ -186,9 +186,9 @@ class Shooting:
     def _begin_elsewhere(self, machine: Compiled, now: Fitted, starts: Values) -> Values | None:
         """Return better start states (segment, state) where a few segments fit far worse than most.
 
-        A start on the wrong side of a threshold (a spike, a fall) is a minimum of its own, and where constants are fitted
-        too, a step that one segment needs is refused if it spoils others. Tried are the start that the fit ended with,
-        the one that it began with and the end of the segment before, each for constants as they are.
+        A start on the wrong side of a threshold (a spike, a fall) is a minimum of its own, and a step of the constants
+        that one segment needs is refused if it spoils the others. Tried are the starts that the fit ended and began
+        with and the end of the segment before, each for constants as they are.
         """
         stuck = now.misfits > STUCK * np.median(now.misfits)
         if not np.isfinite(now.misfit) or not stuck.any():
