@@ -202,10 +202,7 @@ class Candidate:
         return self.written(simulation, names), names
 
     def named(self, tag: str) -> dict[str, str]:
-        """Return the parameter that stands for each slot.
-
-        tag: begins the names of those that are added; a wrong parameter is there already
-        """
+        """Return the parameter that stands for each slot: an added one, by its tag, or the wrong one itself."""
         return {slot: self.place if self.verdict == "wrong_parameter" else f"{tag}_{slot}" for slot in self.slots}
 
 

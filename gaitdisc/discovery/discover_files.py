@@ -73,10 +73,7 @@ def find_missing(
 
 
 def seal(found: Discovery, model: Simulation, data: Measured, files: dict[Path, str]) -> Discovery:
-    """Return an answer with what it rests on; it is written without a name of a person.
-
-    model: with what was found
-    """
+    """Return an answer with what it and its augmented model rest on; it is written without a name of a person."""
     settings = {"title": model.title, "trials": len(data.trials), "rate_hz": data.rate, "channels": list(data.channels)}
     hashes = {called: file_sha256(path) for path, called in files.items()}
     made = provenance_now(settings, 0, hashes, SIMULATION)

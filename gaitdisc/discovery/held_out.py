@@ -83,10 +83,7 @@ def begin_by_first_samples(case: Case, model: ScoredModel, trial: int) -> Scored
 
 
 def count_first_samples(case: Case, trial: Segments) -> int:
-    """Return the samples of a trial that say where it begins: a period, or a third of it.
-
-    trial: as one run
-    """
+    """Return the samples of a trial, cut as one run, that say where it begins: a period, or a third of it."""
     samples = int(case.measured.drive.samples[trial.trial[0]])
     return trial.margin + max(min(round(case.rhythm.samples), samples // 3), 1)
 
@@ -163,10 +160,7 @@ def _apart(case: Case, as_read: ScoredModel, now: ScoredModel, trials: tuple[int
 
 
 def _start_runs(shooting: Shooting, model: ScoredModel, guess: Values) -> ScoredModel:
-    """Return a model run over segments from the start states that suit it best, its constants as they are.
-
-    guess (trial, sample, state): of every trial, near which these are found
-    """
+    """Return a model run from the start states that suit it best, near a guess, its constants as they are."""
     machine, values = model.machine, model.fit.values
     starts = with_own_states(shooting, machine, values, shooting.segments.starts(guess))
     return replace(model, shooting=shooting, fit=shooting.fitted(machine, (), values, starts, TURNS))
@@ -226,10 +220,7 @@ def compare_runs(case: Case, before: ScoredModel, after: ScoredModel, like: Scor
 def gap_size(
     before: ScoredModel, after: ScoredModel, floor: Values, channels: tuple[str, ...], test: PairedTest
 ) -> GapSize:
-    """Measure the gap before and after.
-
-    floor (channel,): standard deviation of the noise [the channel's unit]
-    """
+    """Measure the gap before and after, against the noise's standard deviation (channel,)."""
     spread = np.nanstd(after.shooting.seen, axis=(0, 1))
     rms = [np.sqrt(np.nanmean(one.fit.residual**2, axis=(0, 1))) for one in (before, after)]
     sizes = {name: (float(rms[0][i]), float(rms[1][i]), float(floor[i])) for i, name in enumerate(channels)}

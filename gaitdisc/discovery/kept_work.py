@@ -76,10 +76,7 @@ _WORK: ContextVar[Work | None] = ContextVar("work", default=None)
 
 @contextmanager
 def kept_work(folder: Path, say: Callable[[str], None], anew: bool = False) -> Iterator[Work]:
-    """Keep in a folder what is fitted within, until it ends well or in a refusal; use what is kept there, unless anew.
-
-    say: gets a line about each step
-    """
+    """Keep in a folder what is fitted within, until it ends well or in a refusal; use what is there, unless anew."""
     key = hash_content((), repr(list_versions()))
     work = Work(folder, say, key, {})
     if anew:

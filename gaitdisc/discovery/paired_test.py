@@ -68,10 +68,7 @@ def compare_errors(before: NDArray[np.float64], after: NDArray[np.float64], floo
 
 
 def sum_error(change: NDArray[np.float64], left: NDArray[np.float64]) -> float:
-    """Standard deviation that noise with the autocovariance of what is left gives to the sum of its products.
-
-    change, left (run, sample, channel): what is multiplied with the noise, and what is left; NaN where not measured
-    """
+    """Standard deviation of the sum of a change's products with noise that has a residual's autocovariance."""
     covariance = _autocovariance(np.nan_to_num(left), np.isfinite(left).sum(axis=(0, 1)))
     return float(np.sqrt(max(float((covariance * _lag_products(change)).sum()), 0.0)))
 
@@ -98,7 +95,6 @@ def errors_rise_p(before: NDArray[np.float64], after: NDArray[np.float64]) -> fl
     Pieces on which the two hardly differ are left out but for a few: which these are does not depend on which of the
     two is the better, so that the test keeps its level.
 
-    before, after (piece,): errors of two models
     Source: Wilcoxon 1945, Biometrics Bulletin 1, 80.
 
     >>> errors_rise_p(np.zeros(6), np.ones(6)), errors_rise_p(np.ones(6), np.zeros(6)), errors_rise_p(*np.ones((2, 6)))

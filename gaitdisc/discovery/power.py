@@ -83,10 +83,7 @@ class Power:
 
 
 def find_power(model: Simulation, data: Measured, request: Request) -> list[Power]:
-    """Find how large each effect of a request must be to be found in records like these.
-
-    data: trials with their inputs, whose noise, length and gaps the simulated records have
-    """
+    """Find how large each effect of a request must be to be found in records like these."""
     if not request.effects:
         raise SchemaError(
             "a plan needs the effects that are to be found",
@@ -101,11 +98,7 @@ def find_power(model: Simulation, data: Measured, request: Request) -> list[Powe
 
 
 def find_power_for(effect: str, case: Case, as_read: ScoredModel, model: Simulation, request: Request) -> Power:
-    """Search records with more and more of one effect.
-
-    as_read: the simulation as read in the case, which leaves the noise of the records
-    model: the simulation that is searched
-    """
+    """Search records with more and more of one effect."""
     request.progress(f"fitting {effect}")
     now = fit_given(case, as_read, (effect,)).found
     (part,), fit = now.parts, now.fit

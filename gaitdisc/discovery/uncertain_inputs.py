@@ -205,11 +205,7 @@ def weighed(case: Case, now: ScoredModel) -> Weighed:
 def whitener(
     case: Case, now: ScoredModel, shooting: Shooting, starts: Values, size: Values
 ) -> Callable[[Values], Values]:
-    """Return what gives, for values of all parameters, what a model leaves of runs, as independent numbers.
-
-    starts (run, state): where the runs begin, up to what is to first order
-    size (channel,): of the sensors' noise
-    """
+    """Return what gives, for values of all parameters, what a model leaves of runs, as independent numbers."""
     shooting = shooting.with_noise(white_noise(np.ones(len(size))))
     known = shooting.known
     each = np.tile(size, known.shape[1])

@@ -188,11 +188,7 @@ def solve_readout(network: nn.Module, part: ScaledSamples, penalty: float) -> No
 
 
 def choose_penalty(network: nn.Module, part: ScaledSamples, check: ScaledSamples) -> tuple[float, float]:
-    """Penalty of the readout that does best on a check part, and the mean squared error it reaches there.
-
-    part, check: what it solves on, and is checked by
-    returns penalty, loss: one of `PENALTIES`; mean squared error of the scaled outputs
-    """
+    """Penalty of the readout that does best on a check part, and the mean squared error that it reaches there."""
     network.eval()
     solve = _ridge(_features(network, part.x), part.y.cpu().double().numpy())
     h, y = _features(network, check.x), check.y.cpu().double().numpy()
@@ -227,7 +223,6 @@ class TorchSteps:
 
     Decay acts on weight matrices only; weights stay float32.
 
-    part, check: what it descends on, and is checked by
     precision: of the matrix products, `float32` or `bfloat16` (needs AVX-512 or a GPU: else torch has no LSTM)
     Source: Loshchilov and Hutter 2019, Decoupled weight decay regularization. The dissertation does not say how it
         trained.
@@ -297,10 +292,7 @@ def descend(
     settings: TrainingSettings,
     progress: Callable[[float], None] = lambda _: None,
 ) -> Descent:
-    """Train a network and give it back the weights that did best on the check part.
-
-    part, check: what it descends on, and is checked by after each epoch
-    """
+    """Train a network on a part and give it back the weights that did best on the check part."""
     steps: TorchSteps | FusedSteps | None = None
     if settings.arithmetic == "auto" and settings.precision == "float32":
         from gaitdisc.models.fused_steps import FusedSteps, can_be_fused

@@ -150,10 +150,7 @@ def _check_expressions(simulation: Parts) -> None:
 
 
 def check_expression(text: str, known: Collection[str], simulation: Parts) -> Tree:
-    """Tree of an expression whose names all have values.
-
-    simulation: whose states and inputs may be delayed, by its parameters
-    """
+    """Tree of an expression whose names all have values, some of them signals that may be delayed."""
     tree, named, late = _parse_parts(text)
     unknown = next((name for name in named if name not in known), None)
     if unknown is not None:

@@ -15,11 +15,8 @@ LONGEST_S = 86_400.0  # of a delay, where no trial says how long: no trial lasts
 
 
 def delay_series(signal: Values, seconds: Values, rate: float, wraps: bool = False) -> Values:
-    """Signal some seconds ago, linear between its samples and held at the first.
+    """Signal some seconds ago, one number or one a sample, linear between samples and held at the first.
 
-    signal (sample,): consecutive samples
-    seconds (sample,) or (): how long ago [s]
-    rate: samples a second [Hz]
     wraps: whether it goes from just below 1 to 0 without passing what lies between
 
     >>> delay_series(np.arange(4.0), np.array(0.15), 10.0).tolist()
@@ -38,8 +35,6 @@ def refuse_delays(simulation: Simulation | PythonSimulation, shortest_s: float =
     """Refuse delays that are no number, that reach into the future of a state, or beyond a trial.
 
     An input is known in full, so that a negative delay of one is a signal that was recorded late.
-
-    shortest_s: length of the shortest trial [s]
     """
     values = simulation.values()
     inputs = tuple(each.name for each in simulation.inputs)
@@ -56,10 +51,7 @@ def refuse_delays(simulation: Simulation | PythonSimulation, shortest_s: float =
 def refuse_own_delays(
     tree: Tree, values: dict[str, float], inputs: tuple[str, ...], shortest_s: float = LONGEST_S, trial: str = ""
 ) -> None:
-    """Refuse such delays of one expression; those whose seconds have names without a value are passed over.
-
-    shortest_s: length of the shortest trial [s]
-    """
+    """Refuse such delays of one expression; those whose seconds have names without a value are passed over."""
     for call in delays(tree):
         signal, ago = call.arguments
         if not set(names(ago)) <= set(values):

@@ -36,10 +36,7 @@ class Points:
 
 
 def evaluate(simulation: Simulation, expression: str, points: Points) -> Values:
-    """Value of one expression at each point, (point,).
-
-    simulation: whose names may stand in it: states, inputs, parameters, ports, definitions, `t`
-    expression: as in a simulation file; also the extras of the points
+    """Value (point,) of one expression of a simulation's names and the points' extras at each point.
 
     >>> from gaitdisc.simulation.parts import State
     >>> decay = Simulation("decay", (State("x"),), equations=(("x", "-x"),))

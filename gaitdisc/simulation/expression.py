@@ -76,8 +76,6 @@ Tree = Number | Name | Operation
 def parse(text: str) -> Tree:
     """Tree of an expression.
 
-    text: numbers, names, `+ - * / **`, parentheses, and the functions of a simulation file
-
     >>> parse("-k*x")
     Operation(symbol='*', arguments=(Operation(symbol='neg', arguments=(Name(name='k'),)), Name(name='x')))
     """

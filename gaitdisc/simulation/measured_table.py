@@ -38,10 +38,7 @@ def read_measured(path: Path | str, simulation: Simulation) -> Measured:
 
 
 def gather_table(table: pd.DataFrame, simulation: Simulation, source: str) -> Measured:
-    """Trials of a table that is already read, as `read_measured` has them.
-
-    table: columns `trial`, `time` [s], each input and each observed channel [the simulation's units]
-    """
+    """Trials of a table that is already read, in the simulation's units, as `read_measured` has them."""
     columns = [str(column).strip() for column in table.columns]
     _refuse_doubled(columns, source)
     table = table.set_axis(columns, axis="columns").reset_index(drop=True)
@@ -63,10 +60,7 @@ def gather_table(table: pd.DataFrame, simulation: Simulation, source: str) -> Me
 
 
 def gather_recordings(recordings: Sequence[Recording], simulation: Simulation) -> Measured:
-    """Trials of recordings, one each, converted to the simulation's units.
-
-    recordings: with a channel for each input and each observation, at one rate
-    """
+    """Trials of recordings at one rate, one each, converted to the simulation's units."""
     inputs = tuple(each.name for each in simulation.inputs)
     findings: dict[str, Finding] = {}
     parts = []

@@ -218,12 +218,7 @@ class _Order:
 
 
 def leaf_columns(t: ArrayLike, x: Values, u: Values, values: Values) -> list[Values]:
-    """Values of time, states, inputs and parameters in the order in which a program takes them.
-
-    t (point,): time [s]
-    x, u (point, state), (point, input): states and inputs
-    values (parameter,) or (point, parameter): parameters
-    """
+    """Values of time, states, inputs and parameters in the order in which a program takes them."""
     return [np.asarray(t, float), *np.asarray(x, float).T, *np.asarray(u, float).T, *np.asarray(values, float).T]
 
 

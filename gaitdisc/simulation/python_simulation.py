@@ -96,9 +96,7 @@ def any_equations(states: Sequence[State], parts: Sequence[Input | Parameter | P
 def call(simulation: PythonSimulation, x: Values, fed: Values, values: Values) -> Values:
     """Derivatives by the function, with what was added to the equations.
 
-    x (row, state): states
     fed (row, feed): ports, sums of the equations' effects, inputs, time: the observations of `PythonSimulation.feeds`
-    values (row, parameter): parameters
     """
     ports, states = len(simulation.ports), len(simulation.states)
     own = np.asarray(simulation.rates(fed[:, -1], x, fed[:, ports + states : -1], values, fed[:, :ports]))

@@ -39,7 +39,7 @@ def _called(symbol: str, swapped: bool = False) -> Callable[..., Quantity]:
     return lambda *arguments: _operation(symbol, *(arguments[::-1] if swapped else arguments))
 
 
-def _comparison(of: Callable[[Any, Any], Condition]) -> Callable[[Any, Any], Condition]:
+def _comparison(of: Callable[[Any, Any], Condition]) -> Callable[[Any, Any], Any]:
     """A comparison with a number; an array does it number by number."""
     return lambda one, other: NotImplemented if isinstance(other, np.ndarray) else of(one, other)
 
