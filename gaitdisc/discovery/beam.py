@@ -188,8 +188,6 @@ def closing_most(case: Case, also: tuple[tuple[Part, ...], ...]) -> Outcome | No
 
     First on runs on which the simulation as read stays near the data, then on longer ones, where losses show that are
     small in a short run.
-
-    also: sets that another search found, weighed beside those that are found here
     """
     search, scale = case.search, case.scale
     search = replace(search, candidates=(*search.candidates, *list_unnamed_terms(search.base, search.places)))

@@ -63,7 +63,6 @@ def discover_engine(
     """Find what a model of MuJoCo or OpenSim lacks.
 
     measured: reads the trials, once the mapping says what their columns are
-    files: what was read, and what it is called in the result
     """
     mapping, engine = read_mapping(model)
     data = measured(mapping)

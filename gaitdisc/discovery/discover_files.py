@@ -45,10 +45,7 @@ def discover_files(simulation: Path, measured: Path, request: Request = ALL) -> 
 def find_missing(
     model: Simulation, data: Measured, request: Request, files: dict[Path, str]
 ) -> tuple[Discovery, Simulation]:
-    """Find what a model lacks against measured trials, with what the answer rests on.
-
-    files: files that were read, and what each is called in the result
-    """
+    """Find what a model lacks against trials read from files, each by what it is called in the result."""
     recall(hash_content((model, data, data.drive), repr((request.shapes, request.effects, request.alpha))))
     request.progress("checking that the simulation stays finite (gaitdisc is compiled at its first use, in about 20 s)")
     if refuse_blow_up(model, data):  # the model moves as slowly as the clock says: no milliseconds

@@ -76,9 +76,7 @@ def grid(kind: str, along: Values, rhythm: Rhythm) -> Values:
 
 
 def delays(rhythm: Rhythm, either_way: bool = False) -> Values:
-    """Return the delays at which a search begins [s]: up to about half a period.
-
-    either_way: whether a signal may as well come early: one that was recorded late
+    """Return the delays at which a search begins [s], to half a period; either way for a signal recorded late.
 
     >>> late = delays(Rhythm(1.0, 10.0, 100.0))
     >>> both = delays(Rhythm(1.0, 10.0, 100.0), either_way=True)

@@ -25,10 +25,7 @@ DRAWN = 20  # times, inputs with their stated errors: the mean square to some 10
 
 
 def run_trials(case: Case, model: ScoredModel, trials: tuple[int, ...], like: ScoredModel) -> ScoredModel:
-    """Run a model over trials, finding nothing but the start states.
-
-    like: under whose noise, in runs as long as its
-    """
+    """Run a model over trials as long as another's runs, under its noise, finding nothing but the start states."""
     guess, run = case.guess, model
     for length in _lengths(like.shooting.segments.span / case.rhythm.samples):
         shooting = replace(case.shooting(case.segments(trials, length)).with_noise(like.noise), past=guess)
@@ -89,10 +86,7 @@ def count_first_samples(case: Case, trial: Segments) -> int:
 
 
 def strays(case: Case, now: ScoredModel, before: float) -> bool:
-    """Whether free runs of the held-out trials err more than before, and than noise, model error and start explain.
-
-    before: what free runs of the simulation as read err by, over each channel's variance
-    """
+    """Whether free runs of held-out trials err more than as read, and than noise, model error and start explain."""
     (error, doubt), scale = free_runs(case, now), case.scale
     least = float(np.mean((scale.size / scale.spread) ** 2))
     return error > max(before, CRITERIA.grown**2 * (least + doubt))

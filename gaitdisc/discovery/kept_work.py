@@ -100,10 +100,7 @@ def kept_work(folder: Path, say: Callable[[str], None], anew: bool = False) -> I
 
 
 def recall(*given: str | bytes) -> Any:
-    """Return what an earlier run has kept of the next result; None where it has nothing.
-
-    given: what that result is computed from, as far as it does not follow from the results before
-    """
+    """Return what an earlier run kept of the next result, which follows from what is given and those before."""
     work = _WORK.get()
     if work is None:
         return None

@@ -26,12 +26,12 @@ class Place:
 
     kind: str
     name: str
-    # tuple of (str, str), Position-like state and its rate, the place's own first, then its differences with others,
+    # position-like state and its rate, the place's own first, then its differences with others,
     # then (at a port) the others; the rate is empty for a state that has none (first-order systems), and a speed whose
     # position is no state is its own rate and nothing else
     motions: tuple[tuple[str, str], ...]
     others: tuple[str, ...]  # states that would act here as a coupling
-    products: tuple[tuple[str, str], ...]  # tuple of (str, str), pairs of states whose product may act here
+    products: tuple[tuple[str, str], ...]  # pairs of states whose product may act here
     angle: bool  # whether the place's own position is an angle
     power: float = 1.0  # of a positive push: 1 where it drives its own state, -1 where it holds it back
 

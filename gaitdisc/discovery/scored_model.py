@@ -215,10 +215,7 @@ def leaves(model: ScoredModel, noise: Values) -> float:
 
 
 def compared(models: list[ScoredModel]) -> list[ScoredModel]:
-    """Put models under one noise: what the best of them leaves.
-
-    models: of the same segments; those under the noise of the first stay as they are
-    """
+    """Put models of the same segments under one noise: what the best of them leaves."""
     models = [model.under(models[0]) for model in models]
     for _ in range(len(models)):
         best = min(range(len(models)), key=lambda number: models[number].bic)

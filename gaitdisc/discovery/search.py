@@ -43,10 +43,7 @@ class Search:
     progress: Callable[[str], None] = field(default_factory=lambda: lambda _: None, compare=False)
 
     def extended(self, now: ScoredModel) -> list[ScoredModel]:
-        """Return the model and, after it, others with one explanation more, all under the noise that the best leaves.
-
-        returns: empty where no explanation fits; in no order after the first
-        """
+        """Return the model and others with one explanation more, under the noise of the best; nothing if none fits."""
         penalty = float(np.log(now.fit.white.size))
 
         def price(score: Score) -> float:

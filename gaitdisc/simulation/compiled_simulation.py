@@ -113,12 +113,7 @@ class Compiled:
         return BLOCK, integrate
 
     def rates(
-        self,
-        t: ArrayLike,
-        x: Values,
-        u: Values,
-        values: Values | None = None,
-        late: Values | None = None,
+        self, t: ArrayLike, x: Values, u: Values, values: Values | None = None, late: Values | None = None
     ) -> Values:
         """Right-hand side at many points; parameters are the simulation's own where absent, or of each point.
 
@@ -128,12 +123,7 @@ class Compiled:
         columns = leaf_columns(np.broadcast_to(np.asarray(t, float), len(x)), x, u, values)
         return self._derivatives(x, at_points(self.right_hand_side, columns, late, len(x)).T, values)
 
-    def _derivatives(
-        self,
-        x: Values,  # noqa: ARG002
-        given: Values,
-        values: Values,  # noqa: ARG002
-    ) -> Values:
+    def _derivatives(self, x: Values, given: Values, values: Values) -> Values:  # noqa: ARG002
         """Derivatives (point, state) by what the right-hand side gives (point, output)."""
         return given
 

@@ -49,7 +49,13 @@ def gather_table(table: pd.DataFrame, simulation: Simulation, source: str) -> Me
             raise _missing(name, columns, source)
     trial = _trials(table, source)
     numbers = {name: _numbers(table, name, trial, source) for name in dict.fromkeys(("time", *inputs, *channels))}
-    _refuse_timeless(numbers["time"], trial, source)
+    timeless = np.flatnonzero(~np.isfinite(numbers["time"]))
+    if timeless.size:
+        raise ReadError(
+            "every row must have a time",
+            f"{source}, line {timeless[0] + 2} (trial {trial[timeless[0]]!r}) has none",
+            "Fill the column 'time', or remove the row.",
+        )
     order = list(dict.fromkeys(trial.tolist()))
     parts = []
     for name in order:
@@ -84,11 +90,7 @@ def gather_recordings(recordings: Sequence[Recording], simulation: Simulation) -
 
 
 def _columns(
-    name: str,
-    time: Values,
-    numbers: Mapping[str, Values],
-    inputs: Sequence[str],
-    channels: Sequence[str],
+    name: str, time: Values, numbers: Mapping[str, Values], inputs: Sequence[str], channels: Sequence[str]
 ) -> TrialColumns:
     none = np.empty((len(time), 0))
     driving, observed = (np.column_stack([numbers[each] for each in names] or [none]) for names in (inputs, channels))
@@ -203,16 +205,6 @@ def _numbers(table: pd.DataFrame, name: str, trial: NDArray[np.object_], file: s
             "Write a number, or leave the cell empty.",
         )
     return values
-
-
-def _refuse_timeless(time: Values, trial: NDArray[np.object_], file: str) -> None:
-    bad = np.flatnonzero(~np.isfinite(time))
-    if bad.size:
-        raise ReadError(
-            "every row must have a time",
-            f"{file}, line {bad[0] + 2} (trial {trial[bad[0]]!r}) has none",
-            "Fill the column 'time', or remove the row.",
-        )
 
 
 def _report_left_out(

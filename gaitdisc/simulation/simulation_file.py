@@ -8,10 +8,10 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
-from gaitdisc.channel import nearest_word
+from gaitdisc.channel import did_you_mean
 from gaitdisc.errors import MissingFileError, ReadError, SchemaError, SimulationError
 from gaitdisc.regular_file import check_regular
-from gaitdisc.simulation.delays import refuse_delays
+from gaitdisc.simulation.evaluating import refuse_delays
 from gaitdisc.simulation.parts import Input, Parameter, Port, Sensor, State, Term
 from gaitdisc.simulation.python_simulation import any_equations
 from gaitdisc.simulation.simulation import Simulation
@@ -199,12 +199,10 @@ def _effect(entry: Any, number: int) -> Term:
 def _check_keys(table: Mapping[str, Any], known: tuple[str, ...], place: tuple[str, ...]) -> None:
     for key in table:
         if key not in known:
-            nearest = nearest_word(key, known)
-            remedy = f"Did you mean {nearest!r}? " if nearest else ""
             raise SimulationError(
                 "only keys of the simulation file are allowed",
                 f"found {key[:60]!r}",
-                f"{remedy}Known: {', '.join(known)}.",
+                f"{did_you_mean(key, known)} Known: {', '.join(known)}.".lstrip(),
                 place or (key,),
             )
 
@@ -292,11 +290,9 @@ def bundled(name: str) -> Simulation:
     0.8
     """
     if name not in list_bundled():
-        nearest = nearest_word(name, list_bundled())
-        hint = f"Did you mean {nearest!r}? " if nearest else ""
         raise ReadError(
             "the simulation must be one that is included in the package",
             f"there is no {name!r}",
-            f"{hint}Known: {', '.join(list_bundled())}.",
+            f"{did_you_mean(name, list_bundled())} Known: {', '.join(list_bundled())}.".lstrip(),
         )
     return read_simulation(_FOLDER / f"{name}.toml")
