@@ -7,7 +7,6 @@ from collections.abc import Callable, Iterator
 from dataclasses import dataclass, field, replace
 
 import numpy as np
-from numpy.typing import NDArray
 
 from gaitdisc.discovery.candidate import PASSIVE, Candidate
 from gaitdisc.discovery.criteria import CRITERIA
@@ -148,7 +147,7 @@ class Search:
         low, high = np.quantile(self.along(model, role), VISITED)
         return float(low), float(high)
 
-    def along(self, model: ScoredModel, role: str) -> NDArray[np.float64]:
+    def along(self, model: ScoredModel, role: str) -> Values:
         """Return what stands for x in an explanation, along the runs."""
         known = len(self.base.states)
         states = model.fit.states[..., :known].reshape(-1, known)
