@@ -221,10 +221,10 @@ def _count_substeps(case: Case) -> int:
 
 def hangs_on_step(case: Case, now: ScoredModel) -> bool:
     """Whether a model's runs move by more than a simulation may err where the integration step is halved."""
-    fit, spread = now.fit, np.nanstd(case.measured.observed, axis=(0, 1))
+    fit = now.fit
     finer = replace(now.shooting, substeps=2 * now.shooting.substeps)
     _, seen = finer.run(now.machine, fit.starts[None], fit.values[None])
-    moved = (finer.seen - fit.residual - seen[0]) / np.where(spread > 0, spread, 1.0)
+    moved = (finer.seen - fit.residual - seen[0]) / case.scale.spread
     return not np.sqrt(np.nanmean(moved**2)) < CRITERIA.model_error
 
 
