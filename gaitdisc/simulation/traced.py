@@ -237,7 +237,7 @@ def _chosen(condition: Any, one: Any, other: Any) -> Any:
     """`np.where` of single numbers."""
     if not isinstance(condition, Quantity):
         return one if condition else other
-    held = condition if isinstance(condition, Condition) else condition != 0
+    held: Any = condition if isinstance(condition, Condition) else condition != 0
     own = [each for each in (held, one, other) if isinstance(each, Quantity)]
     size, depth = 3 + sum(each.size for each in own) + held.size, 3 + max(each.depth for each in own)
     return Quantity(_either(held.tree, _tree(one), _tree(other)), held.ways, size, depth)
