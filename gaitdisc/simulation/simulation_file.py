@@ -8,7 +8,7 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
-from gaitdisc.channel import did_you_mean
+from gaitdisc.channel import nearest_word
 from gaitdisc.errors import MissingFileError, ReadError, SchemaError, SimulationError
 from gaitdisc.regular_file import check_regular
 from gaitdisc.simulation.evaluating import refuse_delays
@@ -199,10 +199,12 @@ def _effect(entry: Any, number: int) -> Term:
 def _check_keys(table: Mapping[str, Any], known: tuple[str, ...], place: tuple[str, ...]) -> None:
     for key in table:
         if key not in known:
+            nearest = nearest_word(key, known)
+            remedy = f"Did you mean {nearest!r}? " if nearest else ""
             raise SimulationError(
                 "only keys of the simulation file are allowed",
                 f"found {key[:60]!r}",
-                f"{did_you_mean(key, known)} Known: {', '.join(known)}.".lstrip(),
+                f"{remedy}Known: {', '.join(known)}.",
                 place or (key,),
             )
 
@@ -290,9 +292,11 @@ def bundled(name: str) -> Simulation:
     0.8
     """
     if name not in list_bundled():
+        nearest = nearest_word(name, list_bundled())
+        hint = f"Did you mean {nearest!r}? " if nearest else ""
         raise ReadError(
             "the simulation must be one that is included in the package",
             f"there is no {name!r}",
-            f"{did_you_mean(name, list_bundled())} Known: {', '.join(list_bundled())}.".lstrip(),
+            f"{hint}Known: {', '.join(list_bundled())}.",
         )
     return read_simulation(_FOLDER / f"{name}.toml")
