@@ -22,9 +22,9 @@ os.environ.setdefault("OMP_NUM_THREADS", "1")
 
 import torch
 
-from gaitdisc.models.descent import TorchSteps
 from gaitdisc.models.shred import Shred
 from gaitdisc.models.trained_network import torch_threads
+from gaitdisc.models.trainer import TorchSteps
 from gaitdisc.models.training_settings import PRECISIONS, ScaledSamples, TrainingSettings, make_schedule
 
 STEPS, TRIES = 3, 6

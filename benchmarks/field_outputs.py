@@ -97,7 +97,7 @@ def trained(folder: Path, network: str, targets: str, epochs: int) -> dict[str, 
     """Train on one kind of targets and test in the field."""
     import torch
 
-    from gaitdisc.models.descent import TorchSteps
+    from gaitdisc.models.trainer import TorchSteps
     from gaitdisc.models.training_settings import ScaledSamples, TrainingSettings, make_schedule
 
     torch.set_num_threads(1)

@@ -228,10 +228,7 @@ def whereabouts(case: Case, verdict: Verdict, train: GapSize) -> tuple[Whereabou
 
 
 def push_along(case: Case, now: ScoredModel, part: Part) -> Values | None:
-    """Return how strongly an effect acts along the runs that were fitted (run, sample) [the place's unit].
-
-    returns: None of what is no term, and of one that comes late
-    """
+    """Return how strongly an effect acts along the fitted runs (run, sample); None if it is late or no term."""
     term = part.candidate.term({slot: f"{value:.9g}" for slot, value in part.values.items()})
     if part.candidate.verdict != "missing_physics" or "delay(" in term:
         return None

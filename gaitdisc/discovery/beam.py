@@ -163,10 +163,7 @@ class Beam:
         return min(equal, key=lambda model: (round(model.penalty, 3), model.gap)) if equal else now
 
     def near(self, now: CrossValidated, within: float) -> list[CrossValidated]:
-        """Return other sets that cost hardly more, the cheapest first.
-
-        within: how much more, in shares of the gap as read
-        """
+        """Return other sets that cost at most so much more, in shares of the gap as read, the cheapest first."""
         others = [one for one in self.known.values() if one.explanations and one.explanations != now.explanations]
         return sorted((model for model in others if self.cost(model) <= self.cost(now) + within), key=self.cost)
 
@@ -191,8 +188,6 @@ def closing_most(case: Case, also: tuple[tuple[Part, ...], ...]) -> Outcome | No
 
     First on runs on which the simulation as read stays near the data, then on longer ones, where losses show that are
     small in a short run.
-
-    also: sets that another search found, weighed beside those that are found here
     """
     search, scale = case.search, case.scale
     search = replace(search, candidates=(*search.candidates, *list_unnamed_terms(search.base, search.places)))

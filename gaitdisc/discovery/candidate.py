@@ -119,10 +119,7 @@ class Candidate:
         return self.label, self.pieces
 
     def written(self, simulation: Simulation, numbers: Mapping[str, str]) -> Simulation:
-        """Return the simulation with this explanation in it.
-
-        numbers: for each slot, a number or the name of a parameter, as text
-        """
+        """Return the simulation with this explanation in it, numbers or names of parameters in its slots."""
         if self.verdict == "missing_physics":
             for name, rate in self.states_at(numbers).items():
                 simulation = simulation.with_state(State(name, unit_of_state(simulation, rate), initial=0.0), rate)
@@ -164,8 +161,6 @@ class Candidate:
         """Return the share of the gap that it must close to be worth its statement.
 
         The more kinds of motion an explanation can imitate, the more of a gap it has to close.
-
-        values: its numbers: a friction that drives costs the least that is named more than one that resists
         """
         drives = self.name in ("viscous_damping", *PASSIVE) and self.power * values.get("factor", 0.0) > 0
         flexible, bent = self.name in FLEXIBLE, self.name in BENT
@@ -202,10 +197,7 @@ class Candidate:
         return self.written(simulation, names), names
 
     def named(self, tag: str) -> dict[str, str]:
-        """Return the parameter that stands for each slot.
-
-        tag: begins the names of those that are added; a wrong parameter is there already
-        """
+        """Return the parameter that stands for each slot: an added one, by its tag, or the wrong one itself."""
         return {slot: self.place if self.verdict == "wrong_parameter" else f"{tag}_{slot}" for slot in self.slots}
 
 
@@ -254,10 +246,7 @@ def _list_input_errors(simulation: Simulation) -> list[Candidate]:
 def _list_missing_terms(
     simulation: Simulation, places: tuple[Place, ...], shapes: tuple[Shape, ...], taken: set[str]
 ) -> Iterator[Candidate]:
-    """Yield every shape at every place where it has a meaning.
-
-    taken: names that no state of an effect may have; those of these effects are added
-    """
+    """Yield every shape at every place where it has a meaning; its states get names that are not taken."""
     driving = tuple(signal.name for signal in simulation.driving if not signal.wraps)
     has_phase = any(signal.name == "phase" for signal in simulation.inputs)
     for place, shape in product(places, shapes):

@@ -99,10 +99,7 @@ class Case:
         return leaves(now, self.sensor_noise) < CRITERIA.mere_noise
 
     def noise_floor(self, noise: Values) -> Values:
-        """Return the size of the sensors' noise (channel,), or where it is not known, what a simulation leaves.
-
-        noise (channel,): what a simulation leaves [the channel's unit]
-        """
+        """Return the size of the sensors' noise (channel,); where it is not known, of what a simulation leaves."""
         return np.where(np.isnan(self.sensor_noise), noise, self.sensor_noise)
 
     def noting(self, finding: Finding) -> Case:
@@ -168,10 +165,7 @@ class Case:
         return model.refitted(shooting, starts=shooting.segments.starts(guess))
 
     def lengthen(self, now: ScoredModel, most: int = 10**9) -> ScoredModel:
-        """Return a model fitted to runs as long as it can follow.
-
-        most: longest run wanted [samples]
-        """
+        """Return a model fitted to runs as long as it can follow, of `most` samples at most."""
         longest = min(most, self.longest - 2 * now.shooting.segments.margin)
         followed = np.sqrt(1 + (CRITERIA.follows**2 - 1) / self.record_filter.gains**2)
         while now.shooting.segments.span * 2 < longest:
@@ -227,10 +221,10 @@ def _count_substeps(case: Case) -> int:
 
 def hangs_on_step(case: Case, now: ScoredModel) -> bool:
     """Whether a model's runs move by more than a simulation may err where the integration step is halved."""
-    fit, spread = now.fit, np.nanstd(case.measured.observed, axis=(0, 1))
+    fit = now.fit
     finer = replace(now.shooting, substeps=2 * now.shooting.substeps)
     _, seen = finer.run(now.machine, fit.starts[None], fit.values[None])
-    moved = (finer.seen - fit.residual - seen[0]) / np.where(spread > 0, spread, 1.0)
+    moved = (finer.seen - fit.residual - seen[0]) / case.scale.spread
     return not np.sqrt(np.nanmean(moved**2)) < CRITERIA.model_error
 
 
@@ -254,10 +248,7 @@ def _less_idle(case: Case) -> Case:
 
 
 def split_in_time(measured: Measured, last: bool = True) -> Measured:
-    """Return one trial as two: what is learned from, and a quarter of its time, held out.
-
-    last: whether the last quarter is held out, or the first
-    """
+    """Return one trial as two: what is learned from, and the last quarter of its time, or else the first, held out."""
     drive, samples = measured.drive, int(measured.samples[0])
     quarter = samples // 4
     parts = [(0, samples - quarter), (samples - quarter, samples)] if last else [(quarter, samples), (0, quarter)]

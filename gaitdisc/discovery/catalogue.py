@@ -69,11 +69,7 @@ class Shape:
         return any("phase" in _NAME.findall(piece) for piece in self.pieces)
 
     def written(self, names: Mapping[str, str]) -> tuple[str, ...]:
-        """Return the pieces with names put for roles and constants.
-
-        names: a state's name, or a difference of two, for each role; a parameter's name or a number for each constant.
-            What is not mentioned stays
-        """
+        """Return the pieces with names or numbers put for roles and constants; what is not mentioned stays."""
         return tuple(with_names(piece, names) for piece in self.pieces)
 
 
@@ -122,9 +118,7 @@ def name_factors(pieces: Sequence[str]) -> list[str]:
 
 
 def with_names(expression: str, names: Mapping[str, str]) -> str:
-    """Return an expression with other names, or numbers, in the place of some of its names.
-
-    names: a name, a number or an expression for each; what is not mentioned stays
+    """Return an expression with other names, numbers or expressions in the place of some of its names.
 
     >>> with_names("max(0, x - x0)", {"x": "hip - knee", "x0": "0.2"})
     'max(0, (hip - knee) - 0.2)'

@@ -261,10 +261,7 @@ def _weigh_mass(form: Form, nominal: Walk, device: Walk, per_kg: Values, parts: 
 
 
 def _columns(own: Form, driven: Driven, expected: Values, parts: int) -> Values:
-    """Gains, firmness about the walk's own mean stride, stiffness and damping against its departure, unseen waves.
-
-    expected: mean angle and its harmonics over the stride that the person is used to
-    """
+    """Gains, firmness about the own mean stride, stiffness and damping against its departure, unseen waves."""
     behind = cycle(driven.phase, USUAL_HARMONICS) @ (expected - own.usual)
     slow_by = np.gradient(behind) * driven.rate_hz
     stiff = parts_of_stride(driven.phase, parts) * behind[:, None]

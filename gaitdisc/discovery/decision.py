@@ -131,10 +131,7 @@ def keep_useful(case: Case, as_read: ScoredModel, now: ScoredModel) -> ScoredMod
 
 
 def plainest(case: Case, named: ScoredModel) -> Verdict | None:
-    """Return the verdict on the plainest explanations that close most of the gap; None where these close too little.
-
-    named: the simulation with what the search selected, which leaves more than noise
-    """
+    """Return the verdict on the plainest explanations that close most of the gap; None where these close too little."""
     found = closing_most(case, (named.parts,) if named.parts else ())
     if found is None or found.closed < CRITERIA.half:
         return None
@@ -158,10 +155,7 @@ def plainest(case: Case, named: ScoredModel) -> Verdict | None:
 
 
 def prefer_on_held_out(case: Case, now: ScoredModel, near: tuple[ScoredModel, ...]) -> ScoredModel:
-    """Return what held-out data prefer beyond chance among explanations that cost as much; what there was if nothing.
-
-    near: what costs hardly more; of these, what has no more numbers. The plainest of what is preferred is returned
-    """
+    """Return the plainest near model with no more numbers that held-out data prefer beyond chance; else `now`."""
     equal = [model for model in near if model.size <= now.size]
     proofs = [prove(case, now, model, model) for model in equal]
     better = [

@@ -113,10 +113,7 @@ def weigh_explanations(
 
 
 def refuse_blow_up(simulation: Simulation, measured: Measured) -> bool:
-    """Refuse a simulation that does not stay finite over runs of a few samples that begin at the data.
-
-    returns: whether the samples are close enough for how fast it moves
-    """
+    """Refuse a simulation whose short runs do not stay finite; return whether samples are close enough for it."""
     case, machine = set_up_case(simulation, without_spikes(measured)), compile_simulation(simulation)
     segments = case.segments((*case.learned, *case.held_out), 0.0)
     rows = Rows(segments.trial, segments.begin, segments.starts(case.guess))

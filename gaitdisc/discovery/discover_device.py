@@ -250,10 +250,7 @@ def over_people(found: Mapping[str, Discovery]) -> pd.DataFrame:
 
 
 def over_conditions(found: Mapping[str, Mapping[str, Discovery]]) -> pd.DataFrame:
-    """Rows of `over_people` for each condition, which a first column names where a study has several.
-
-    found: person -> condition -> answer
-    """
+    """Rows of `over_people` for each condition (person -> condition -> answer), named in a first column if several."""
     tables = {
         word: over_people({person: answers[word] for person, answers in found.items() if word in answers})
         for word in dict.fromkeys(word for answers in found.values() for word in answers)

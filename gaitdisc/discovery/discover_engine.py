@@ -62,9 +62,7 @@ def discover_engine(
 ) -> EngineAnswer:
     """Find what a model of MuJoCo or OpenSim lacks.
 
-    model: the model, or its mapping file
     measured: reads the trials, once the mapping says what their columns are
-    files: what was read, and what it is called in the result
     """
     mapping, engine = read_mapping(model)
     data = measured(mapping)
@@ -143,10 +141,7 @@ def search(fit: EngineFit, base: EngineAnswer, request: Request, read: dict[Path
 
 
 def search_expansion(fit: EngineFit, request: Request, read: dict[Path, str]) -> tuple[Discovery, Simulation]:
-    """Search the expansion of an engine along the record, once more about numbers that moved far.
-
-    returns: the answer, and the expansion that it is of
-    """
+    """Search the expansion along the record, again about numbers that moved far; return the expansion as well."""
     mapping, engine, data, states = fit.mapping, fit.engine, fit.measured, fit.states
     request.progress(f"computing the accelerations of {engine.path.name} along the record with {engine.called}")
     linear, driven = expand(mapping, engine, data, states)
@@ -170,10 +165,7 @@ def search_expansion(fit: EngineFit, request: Request, read: dict[Path, str]) ->
 
 
 def keep_borne_out(fit: EngineFit, found: Discovery, runs: OwnRuns, held: NDArray[np.bool_]) -> tuple[Part, ...]:
-    """Return the explanations without which the engine's own runs err more; of those that a person gave, all or none.
-
-    held (run,): which runs the search held out
-    """
+    """Return the explanations without which the engine's own runs err more; of given ones, all or none."""
     both = zip(found.effects, fit.parts, strict=True)
     kept = tuple(part for one, part in both if found.given or not one.small)
     if not errs_less(runs, runs.before, held):

@@ -45,10 +45,7 @@ def discover_files(simulation: Path, measured: Path, request: Request = ALL) -> 
 def find_missing(
     model: Simulation, data: Measured, request: Request, files: dict[Path, str]
 ) -> tuple[Discovery, Simulation]:
-    """Find what a model lacks against measured trials, with what the answer rests on.
-
-    files: files that were read, and what each is called in the result
-    """
+    """Find what a model lacks against trials read from files, each by what it is called in the result."""
     recall(hash_content((model, data, data.drive), repr((request.shapes, request.effects, request.alpha))))
     request.progress("checking that the simulation stays finite (gaitdisc is compiled at its first use, in about 20 s)")
     if refuse_blow_up(model, data):  # the model moves as slowly as the clock says: no milliseconds
@@ -73,10 +70,7 @@ def find_missing(
 
 
 def seal(found: Discovery, model: Simulation, data: Measured, files: dict[Path, str]) -> Discovery:
-    """Return an answer with what it rests on; it is written without a name of a person.
-
-    model: with what was found
-    """
+    """Return an answer with what it and its augmented model rest on; it is written without a name of a person."""
     settings = {"title": model.title, "trials": len(data.trials), "rate_hz": data.rate, "channels": list(data.channels)}
     hashes = {called: file_sha256(path) for path, called in files.items()}
     made = provenance_now(settings, 0, hashes, SIMULATION)

@@ -36,7 +36,6 @@ def find_record_filter(
 
     period: the motion's main period [s]
     guess (trial, sample, state): states of every trial, roughly
-    returns findings: about filters that the file does not state
     """
     stated = tuple(simulation.sensor(name).lowpass for name in measured.channels)
     unknown = [number for number, cutoff in enumerate(stated) if cutoff is None]

@@ -35,10 +35,7 @@ def list_estimates(model: ScoredModel, number: int, base: Simulation) -> dict[st
 
 
 def name_estimates(part: Part, covariance: Values, base: Simulation) -> dict[str, Estimate]:
-    """Return an explanation's numbers under their names.
-
-    covariance (slot, slot): of its numbers, in the order of its slots; NaN where it is not known
-    """
+    """Return an explanation's numbers under their names, by their covariance (slot, slot), NaN where unknown."""
     candidate, slots = part.candidate, part.candidate.slots
     units, names = slot_units(candidate, base), NAMES | dict(candidate.names or {})
     found: dict[str, Estimate] = {}

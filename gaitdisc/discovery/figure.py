@@ -71,10 +71,7 @@ def display_runs(discovery: Discovery) -> pd.DataFrame:
 
 
 def pick_stretch(table: pd.DataFrame, channel: str) -> pd.DataFrame:
-    """A typical stretch of the first trial.
-
-    table: of `display_runs`
-    """
+    """A typical stretch of the first trial, of the table of `display_runs`."""
     one = table[table["trial"] == table["trial"].iloc[0]].reset_index(drop=True)
     gap = (one[f"{channel}_measured"] - one[f"{channel}_simulated"]).to_numpy() ** 2
     begin, end = typical_stretch(gap, min(SHOWN, len(one)))
@@ -82,10 +79,7 @@ def pick_stretch(table: pd.DataFrame, channel: str) -> pd.DataFrame:
 
 
 def draw_runs(axes: Axes, numbers: pd.DataFrame, channel: str) -> None:
-    """Draw one channel over time: measured, simulated as read and with what was found; the gap is shaded.
-
-    numbers: of `pick_stretch`
-    """
+    """Draw one channel over time: measured, simulated as read and with what was found; the gap is shaded."""
     time = numbers["time"].to_numpy()
     seen, simulated, augmented = (numbers[f"{channel}_{word}"].to_numpy() for word in WORDS)
     axes.fill_between(time, seen, simulated, color=SHADE, alpha=0.55, linewidth=0, zorder=1)
@@ -96,7 +90,6 @@ def draw_runs(axes: Axes, numbers: pd.DataFrame, channel: str) -> None:
 def draw_left(axes: Axes, numbers: pd.DataFrame, channel: str, floor: float) -> None:
     """Draw what is left of one channel over time: measured minus simulated, as read and with what was found.
 
-    numbers: of `pick_stretch`
     floor: standard deviation of the sensor's noise [as drawn]; twice it is shaded grey
     """
     time = numbers["time"].to_numpy()
@@ -109,8 +102,6 @@ def draw_left(axes: Axes, numbers: pd.DataFrame, channel: str, floor: float) -> 
 def typical_stretch(gap: Values, samples: int) -> tuple[int, int]:
     """Return first and end sample of the stretch whose mean squared gap is the median of all such stretches.
 
-    gap (sample,): squared gap
-
     >>> typical_stretch(np.array([9.0, 9, 1, 1, 4, 4]), 2)
     (4, 6)
     """
@@ -121,11 +112,7 @@ def typical_stretch(gap: Values, samples: int) -> tuple[int, int]:
 
 
 def bin_values(along: Values, values: Values, edges: Values) -> pd.DataFrame:
-    """Return mean and standard deviation of values in bins, those with too few samples left out.
-
-    along, values (sample,): where, and what
-    edges (bin + 1,): ends of the bins
-    """
+    """Return mean and standard deviation of values in bins along others, those with too few samples left out."""
     which = np.clip(np.digitize(along, edges) - 1, 0, len(edges) - 2)
     groups = pd.Series(values).groupby(which)
     table = pd.DataFrame({"mean": groups.mean(), "sd": groups.std().fillna(0.0), "n": groups.size()})
@@ -243,10 +230,7 @@ def _models(axes: Axes, at: Values, simulated: Values, augmented: Values) -> Non
 
 
 def discovery_key(measured: bool) -> list[Artist]:
-    """Handles of the legend.
-
-    measured: whether what was measured is drawn, with the gap shaded
-    """
+    """Handles of the legend, with what was measured and the shaded gap if these are drawn."""
     from matplotlib.patches import Patch
 
     looks = {"initial model": MODELS["nominal"], "with the effect": MODELS["augmented"]}

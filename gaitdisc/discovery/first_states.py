@@ -39,7 +39,6 @@ LEFT = 0.5  # of a channel's spread, beyond which a sample is not solved
 def guess_states(simulation: Simulation, measured: Measured, period: float, rate_of: dict[str, str]) -> Values:
     """Guess the states: the observation map solved for them on smoothed channels, rates as slopes of positions.
 
-    simulation: names, and observations: any expressions of states, inputs and time
     period: the motion's main period [s]
     returns (trial, sample, state): NaN beyond a trial's end. A state that the channels do not determine and that is no
         rate of one that they do follows its equation where it forgets its start within a trial, from its `initial`, or
@@ -116,7 +115,6 @@ def _bridge(values: Values, known: NDArray[np.bool_]) -> Values:
 def with_own_states(shooting: Shooting, machine: Compiled, values: Values, starts: Values) -> Values:
     """Return start states (segment, state) with those of the effects' own states, where these are not yet among them.
 
-    values (parameter,): its parameters
     starts (segment, state): of the simulation as read, first; what follows is replaced
     """
     if shooting.past is None or len(machine.states) == shooting.past.shape[2]:
@@ -127,10 +125,7 @@ def with_own_states(shooting: Shooting, machine: Compiled, values: Values, start
 
 
 def follow(shooting: Shooting, simulation: Simulation, values: Values) -> Values:
-    """Return the effects' own states along the states of the record (version, trial, sample, own state).
-
-    values (version, parameter): its parameters, several versions of them
-    """
+    """Return the effects' own states along those of the record (version, trial, sample, own state)."""
     assert shooting.past is not None
     drive = shooting.measured.drive
     past = np.zeros(shooting.past.shape)  # unknown samples bridged by straight lines, zero beyond the end
@@ -152,10 +147,7 @@ def follow(shooting: Shooting, simulation: Simulation, values: Values) -> Values
 
 
 def run_twice(machine: Compiled, drive: Drive, rows: Rows, substeps: int = SUBSTEPS) -> tuple[Values, Values]:
-    """Run over whole trials, and once more from where each ended: by then it has forgotten its start.
-
-    returns: both runs (row, sample, state)
-    """
+    """Run over whole trials, and again from where each ended, its start forgotten; both (row, sample, state)."""
     steps = int(drive.samples.max()) - 1
     first, _ = machine.run(drive, rows, steps, substeps=substeps)
     ends = first[np.arange(len(rows.trial)), drive.samples[rows.trial] - 1]
@@ -183,7 +175,7 @@ def isolate_equations(simulation: Simulation, own: Iterable[int]) -> Simulation:
 
 @dataclass(frozen=True)
 class ObservationMap:
-    """What a simulation observes at the samples of one trial, over each channel's spread; delays are taken as none."""
+    """What a simulation observes at states (sample, state) of one trial, over each channel's spread, without delays."""
 
     machine: Compiled
     t: Values  # (sample,), time [s]
@@ -191,10 +183,7 @@ class ObservationMap:
     spread: Values  # (channel,), of the measured channels [each channel's unit]
 
     def at(self, x: Values) -> Values:
-        """Return the channels that states give (sample, channel).
-
-        x (sample, state): states
-        """
+        """Return the channels that states give (sample, channel)."""
         machine, program = self.machine, self.machine.observation
         signals = dict(zip((*machine.states, *machine.inputs), (*x.T, *self.u.T), strict=True))
         late = np.column_stack([signals[name] for name, _ in program.delays]) if program.delays else None
@@ -203,10 +192,7 @@ class ObservationMap:
         return seen.T / self.spread
 
     def jacobian(self, x: Values) -> Values:
-        """Return the slopes of the channels by the states (sample, channel, state); zero where there is none.
-
-        x (sample, state): states
-        """
+        """Return the slopes of the channels by the states (sample, channel, state); zero where there is none."""
         columns = []
         for state in range(x.shape[1]):
             nudge = np.zeros(x.shape[1])
@@ -215,11 +201,7 @@ class ObservationMap:
         return np.nan_to_num(np.stack(columns, axis=2), nan=0.0, posinf=0.0, neginf=0.0)
 
     def drift(self, x: Values, rate: float) -> Values:
-        """Return how fast the channels change while the states rest, through inputs and time (sample, channel) [1/s].
-
-        x (sample, state): states
-        rate: samples a second [Hz]
-        """
+        """Return how fast channels change while the states rest, through inputs and time (sample, channel) [1/s]."""
         number = np.arange(len(x))
         after, before = np.minimum(number + 1, len(x) - 1), np.maximum(number - 1, 0)
         ahead, behind = (replace(self, t=self.t[at], u=self.u[at]).at(x) for at in (after, before))

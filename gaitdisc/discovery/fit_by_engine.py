@@ -120,11 +120,7 @@ class EngineFit:
         return augmented, replace(written, notes=notes)
 
     def fitted(self, found: Discovery, base: Simulation, runs: OwnRuns) -> Discovery:
-        """Return what was found with numbers of the engine's own runs, whose starts follow them (Gauss-Newton).
-
-        base: says what the numbers are
-        runs: of what was learned from
-        """
+        """Return what was found with numbers of the engine's learned runs, whose starts follow them (Gauss-Newton)."""
         slots = [(number, slot) for number, part in enumerate(self.parts) for slot in part.candidate.slots]
         values = np.array([self.parts[number].values[slot] for number, slot in slots])
 

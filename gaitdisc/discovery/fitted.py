@@ -37,10 +37,7 @@ class Prior:
         return (self.high - self.low) / 4
 
     def left(self, values: Values) -> Values:
-        """Return how far numbers are from the file's, in standard deviations (number,): file minus number.
-
-        values (parameter,): all parameters
-        """
+        """Return how far numbers are from the file's, in standard deviations (number,): file minus number."""
         return (self.value - values[self.places]) / self.sd
 
     def among(self, free: tuple[str, ...]) -> Prior:
@@ -50,10 +47,7 @@ class Prior:
         return Prior(names, self.places[kept], self.value[kept], self.low[kept], self.high[kept])
 
     def within(self, values: Values) -> Values:
-        """Return parameters with those that have bounds put inside them (parameter,).
-
-        values (parameter,): all parameters
-        """
+        """Return parameters (parameter,) with those that have bounds put inside them."""
         inside = values.copy()
         inside[self.places] = np.clip(values[self.places], self.low, self.high)
         return inside
@@ -118,10 +112,7 @@ class Fitted:
         return replace(self, stated=None, **{name: getattr(self, name)[some] for name in OF_SEGMENTS})
 
     def where(self, better: NDArray[np.bool_], other: Fitted) -> Fitted:
-        """Return another fit's segments where these are better, and its constants if all are.
-
-        better (segment,): which
-        """
+        """Return another fit's segments where these are better, and its constants if all are."""
         if better.all():
             return other
         if not better.any():
@@ -152,10 +143,7 @@ class Fitted:
         return np.concatenate([left.ravel(), self.prior.left(self.values)]), flat
 
     def beside(self, effects: Values) -> RandomEffects:
-        """Return the residual beside random effects.
-
-        effects (segment, number, effect): what each changes of `white`
-        """
+        """Return the residual beside random effects (segment, number, effect): what each changes of `white`."""
         flat = np.column_stack(self.stacked)
         effects = without(self.start_basis, effects)
         strength, axes = np.linalg.eigh(np.swapaxes(effects, 1, 2) @ effects)
@@ -200,10 +188,7 @@ def read_prior(simulation: Simulation, exact: frozenset[str] = frozenset()) -> P
 
 
 def find_basis(slopes: Values) -> Values:
-    """Return an orthonormal basis, segment by segment, of what the start states can explain.
-
-    slopes (segment, number, state): slopes of the whitened residual
-    """
+    """Return an orthonormal basis, segment by segment, of what the start states explain, from their slopes."""
     size = np.linalg.norm(slopes, axis=1, keepdims=True)
     basis, triangle = np.linalg.qr(slopes / np.where(size > 0, size, 1.0))
     weak = np.abs(np.diagonal(triangle, axis1=1, axis2=2)) < 1e-7
@@ -211,9 +196,5 @@ def find_basis(slopes: Values) -> Values:
 
 
 def without(basis: Values, columns: Values) -> Values:
-    """Return columns less what a basis explains of them.
-
-    basis (segment, number, state): orthonormal, from `find_basis`
-    columns (segment, number, column): whitened
-    """
+    """Return whitened columns (segment, number, column) less what a basis of `find_basis` explains of them."""
     return columns - basis @ (np.swapaxes(basis, 1, 2) @ columns)

@@ -118,10 +118,7 @@ def beside_others(
 
 
 def settle(search: Search, now: ScoredModel, worth: float, explored: set[Explanations]) -> ScoredModel:
-    """Exchange and eliminate explanations until nothing changes.
-
-    worth: by which the criterion must get worse for one to stay
-    """
+    """Exchange and eliminate explanations, by what one has to be worth, until nothing changes."""
     for _ in range(SETTLED):
         before = now
         now = prune(search, exchange(search, now, explored), worth)

@@ -85,10 +85,7 @@ class CrossValidated(ScoredModel):
 
 
 def cross_validated(scale: GapScale, begun: ScoredModel, parts: tuple[Part, ...]) -> CrossValidated:
-    """Fit a simulation with explanations in it, and measure what it leaves of runs left out of the fit.
-
-    begun: on the same segments: where start states and numbers with bounds begin
-    """
+    """Fit a simulation with explanations, from a fit of the same runs, and measure what it leaves of runs left out."""
     enough = CONVERGED * begun.shooting.seen.size / CRITERIA.independent
     model = begun.refitted(begun.shooting.with_noise(scale.white_error(begun.fit)), parts, turns=TURNS, enough=enough)
     if np.isfinite(model.fit.misfit):

@@ -33,10 +33,7 @@ class Rhythm:
 
 
 def find_rhythm(observed: Values, rate: float) -> Rhythm:
-    """Read the main period off the measured channels.
-
-    observed (trial, sample, channel): measured, NaN where a trial has ended
-    rate: samples a second [Hz]
+    """Read the main period off the measured channels (trial, sample, channel), NaN where a trial has ended; rate in Hz.
 
     >>> t = np.arange(1000) / 100
     >>> bool(abs(find_rhythm(np.sin(2 * np.pi * 0.5 * t)[None, :, None], 100).period - 2.0) < 0.1)
@@ -64,7 +61,6 @@ def grid(kind: str, along: Values, rhythm: Rhythm) -> Values:
 
     kind: as in the catalogue: `quantiles of x` (`low` and `high`: of either half), `half widths of x`, `delays`,
         `frequencies`, `phases`, `phase widths`
-    along (sample,): x along the run
     """
     if kind.endswith("quantiles of x"):
         return np.quantile(along, QUANTILES[kind.removesuffix("quantiles of x")])
@@ -80,9 +76,7 @@ def grid(kind: str, along: Values, rhythm: Rhythm) -> Values:
 
 
 def delays(rhythm: Rhythm, either_way: bool = False) -> Values:
-    """Return the delays at which a search begins [s]: up to about half a period.
-
-    either_way: whether a signal may as well come early: one that was recorded late
+    """Return the delays at which a search begins [s], to half a period; either way for a signal recorded late.
 
     >>> late = delays(Rhythm(1.0, 10.0, 100.0))
     >>> both = delays(Rhythm(1.0, 10.0, 100.0), either_way=True)
@@ -94,9 +88,6 @@ def delays(rhythm: Rhythm, either_way: bool = False) -> Values:
 
 
 def cells(constants: dict[str, str], along: Values, rhythm: Rhythm) -> list[dict[str, float]]:
-    """Return every combination of the constants' beginnings.
-
-    along (sample,): x along the run
-    """
+    """Return every combination of the constants' beginnings, for x along the run (sample,)."""
     axes = [grid(kind, along, rhythm) for kind in constants.values()]
     return [dict(zip(constants, (float(one) for one in cell), strict=True)) for cell in product(*axes)]

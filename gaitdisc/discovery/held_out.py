@@ -25,10 +25,7 @@ DRAWN = 20  # times, inputs with their stated errors: the mean square to some 10
 
 
 def run_trials(case: Case, model: ScoredModel, trials: tuple[int, ...], like: ScoredModel) -> ScoredModel:
-    """Run a model over trials, finding nothing but the start states.
-
-    like: under whose noise, in runs as long as its
-    """
+    """Run a model over trials as long as another's runs, under its noise, finding nothing but the start states."""
     guess, run = case.guess, model
     for length in _lengths(like.shooting.segments.span / case.rhythm.samples):
         shooting = replace(case.shooting(case.segments(trials, length)).with_noise(like.noise), past=guess)
@@ -83,19 +80,13 @@ def begin_by_first_samples(case: Case, model: ScoredModel, trial: int) -> Scored
 
 
 def count_first_samples(case: Case, trial: Segments) -> int:
-    """Return the samples of a trial that say where it begins: a period, or a third of it.
-
-    trial: as one run
-    """
+    """Return the samples of a trial, cut as one run, that say where it begins: a period, or a third of it."""
     samples = int(case.measured.drive.samples[trial.trial[0]])
     return trial.margin + max(min(round(case.rhythm.samples), samples // 3), 1)
 
 
 def strays(case: Case, now: ScoredModel, before: float) -> bool:
-    """Whether free runs of the held-out trials err more than before, and than noise, model error and start explain.
-
-    before: what free runs of the simulation as read err by, over each channel's variance
-    """
+    """Whether free runs of held-out trials err more than as read, and than noise, model error and start explain."""
     (error, doubt), scale = free_runs(case, now), case.scale
     least = float(np.mean((scale.size / scale.spread) ** 2))
     return error > max(before, CRITERIA.grown**2 * (least + doubt))
@@ -163,10 +154,7 @@ def _apart(case: Case, as_read: ScoredModel, now: ScoredModel, trials: tuple[int
 
 
 def _start_runs(shooting: Shooting, model: ScoredModel, guess: Values) -> ScoredModel:
-    """Return a model run over segments from the start states that suit it best, its constants as they are.
-
-    guess (trial, sample, state): of every trial, near which these are found
-    """
+    """Return a model run from the start states that suit it best, near a guess, its constants as they are."""
     machine, values = model.machine, model.fit.values
     starts = with_own_states(shooting, machine, values, shooting.segments.starts(guess))
     return replace(model, shooting=shooting, fit=shooting.fitted(machine, (), values, starts, TURNS))
@@ -226,10 +214,7 @@ def compare_runs(case: Case, before: ScoredModel, after: ScoredModel, like: Scor
 def gap_size(
     before: ScoredModel, after: ScoredModel, floor: Values, channels: tuple[str, ...], test: PairedTest
 ) -> GapSize:
-    """Measure the gap before and after.
-
-    floor (channel,): standard deviation of the noise [the channel's unit]
-    """
+    """Measure the gap before and after, against the noise's standard deviation (channel,)."""
     spread = np.nanstd(after.shooting.seen, axis=(0, 1))
     rms = [np.sqrt(np.nanmean(one.fit.residual**2, axis=(0, 1))) for one in (before, after)]
     sizes = {name: (float(rms[0][i]), float(rms[1][i]), float(floor[i])) for i, name in enumerate(channels)}

@@ -48,10 +48,7 @@ class Idle:
 
 
 def idle_parts(shooting: Shooting, simulation: Simulation, places: tuple[Place, ...], starts: Values) -> Idle:
-    """Find what changes nothing in any measured channel along runs that begin at the data.
-
-    starts (segment, state): where each run begins
-    """
+    """Find what changes nothing in any measured channel along runs that begin at the data."""
     machine = pushable(simulation, places)  # its parameters: those of the simulation, then a push at each place
     states, parameters = starts.shape[1], len(simulation.parameters)
     nudges = np.arange(1, 1 + states + len(machine.defaults))  # version 0 is as it is, each other has one nudge

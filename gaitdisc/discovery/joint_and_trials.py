@@ -101,11 +101,7 @@ def changes(record: JointRecord) -> list[Change]:
 
 
 def joint_model(record: JointRecord, model: MuscleMoment) -> Simulation:
-    """Return the simulation: the joint goes with the recorded motion, and the model says its net moment.
-
-    record: of the device walk
-    model: calibrated on the Nominal walk of the same person
-    """
+    """Return a device walk's joint as a simulation that the recorded motion and the Nominal model's moment drive."""
     word, (against, towards) = JOINTS[record.joint], GROUPS[record.joint]
     carried = record.per_kg.size > 0
     muscles = [(name.split("_")[1], sign_at(record.joint, name)) for name in record.muscles]

@@ -76,10 +76,7 @@ _WORK: ContextVar[Work | None] = ContextVar("work", default=None)
 
 @contextmanager
 def kept_work(folder: Path, say: Callable[[str], None], anew: bool = False) -> Iterator[Work]:
-    """Keep in a folder what is fitted within, until it ends well or in a refusal; use what is kept there, unless anew.
-
-    say: gets a line about each step
-    """
+    """Keep in a folder what is fitted within, until it ends well or in a refusal; use what is there, unless anew."""
     key = hash_content((), repr(list_versions()))
     work = Work(folder, say, key, {})
     if anew:
@@ -103,10 +100,7 @@ def kept_work(folder: Path, say: Callable[[str], None], anew: bool = False) -> I
 
 
 def recall(*given: str | bytes) -> Any:
-    """Return what an earlier run has kept of the next result; None where it has nothing.
-
-    given: what that result is computed from, as far as it does not follow from the results before
-    """
+    """Return what an earlier run kept of the next result, which follows from what is given and those before."""
     work = _WORK.get()
     if work is None:
         return None

@@ -55,18 +55,12 @@ class Linearised:
         return None
 
     def of_push(self, place: int, push: Values) -> Values:
-        """Return the change of state (segment, sample, state, candidate) that pushes at a place cause.
-
-        push (segment, sample, candidate): the push at each sample [the place's unit]
-        """
+        """Return the change of state (segment, sample, state, candidate) by pushes (segment, sample, candidate)."""
         held = 0.5 * (push[:, :-1] + push[:, 1:])
         return self.of_change(self.pushed[:, :, :, place, None] * held[:, :, None, :])
 
     def of_change(self, change: Values) -> Values:
-        """Return the change of state (segment, sample, state, candidate) that changes of each step's landing cause.
-
-        change (segment, step, state, candidate): what each step lands further
-        """
+        """Return the change of state by changes of where each step lands (segment, step, state, candidate)."""
         segments, steps, states, candidates = change.shape
         out = np.zeros((segments, steps + 1, states, candidates))
         for step in range(steps):
@@ -82,11 +76,7 @@ def linearise(model: ScoredModel, places: tuple[Place, ...]) -> Linearised:
 def linearise_along(
     shooting: Shooting, simulation: Simulation, places: tuple[Place, ...], run: Values, values: Values
 ) -> Linearised:
-    """Linearise every step along given states.
-
-    run (segment, sample, state): the states
-    values (parameter,): its parameters
-    """
+    """Linearise every step along given states (segment, sample, state), by given values of the parameters."""
     machine = pushable(simulation, places)
     n, own = run.shape[2], len(values)
     spans = NUDGE * np.maximum(np.abs(run).max(axis=(0, 1)), 1e-3)
@@ -116,10 +106,7 @@ def pushable(simulation: Simulation, places: tuple[Place, ...]) -> Compiled:
 
 
 def carry_change(model: ScoredModel, change: Values) -> Values:
-    """Return what changes of state change in the measured channels (segment, sample, channel, candidate).
-
-    change (segment, sample, state, candidate): to first order
-    """
+    """Return what changes of state (segment, sample, state, candidate) change in the channels, to first order."""
     machine, fit, shooting = model.machine, model.fit, model.shooting
     if machine.observation.delays:  # what is measured depends on states some time ago: each candidate by itself
         spans = np.maximum(np.abs(fit.states).max(axis=(0, 1)), 1e-3)

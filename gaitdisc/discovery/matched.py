@@ -3,12 +3,11 @@
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import ArrayLike
 
-from gaitdisc.channel import nearest_word
+from gaitdisc.channel import hint_nearest
 from gaitdisc.discovery.catalogue import SIGNALS, Shape
 from gaitdisc.errors import ChannelError, SamplingError, ShapeError, SimulationError
-from gaitdisc.simulation.delays import refuse_delays, refuse_own_delays
+from gaitdisc.simulation.evaluating import refuse_delays, refuse_own_delays
 from gaitdisc.simulation.expression import parse
 from gaitdisc.simulation.measured import Measured
 from gaitdisc.simulation.simulation import Simulation
@@ -22,11 +21,9 @@ def match_channels(simulation: Simulation, measured: Measured, shapes: tuple[Sha
     observations = tuple(name for name, _ in simulation.observations)
     for name in measured.channels:
         if name not in observations:
-            nearest = nearest_word(name, observations)
-            hint = f", the nearest is {nearest!r}" if nearest else ""
             raise ChannelError(
                 f"every measured channel must be an observation of {simulation.title!r}: {', '.join(observations)}",
-                f"{where} has {name!r}{hint}",
+                f"{where} has {name!r}{hint_nearest(name, observations)}",
                 f"Add {name!r} to the observations, or remove the channel.",
             )
         if measured.channels.count(name) > 1:
@@ -71,8 +68,7 @@ def _check_inputs(simulation: Simulation, measured: Measured, where: str) -> Non
             "Give one column for each input, in this order.",
         )
     for trial, (name, samples) in enumerate(zip(measured.trials, measured.samples, strict=True)):
-        sample, column = _first(~np.isfinite(given[trial, :samples]))
-        if sample >= 0:
+        for sample, column in np.argwhere(~np.isfinite(given[trial, :samples])):
             raise ShapeError(
                 "an input must have a value in every sample",
                 f"{where}, trial {name!r}, {names[column]!r}: {given[trial, sample, column]} in sample {sample + 1}",
@@ -82,8 +78,7 @@ def _check_inputs(simulation: Simulation, measured: Measured, where: str) -> Non
 
 def _check_observed(measured: Measured, where: str) -> None:
     seen = np.isfinite(measured.observed)
-    trial, column = _first(~seen.any(axis=1))
-    if trial >= 0:
+    for trial, column in np.argwhere(~seen.any(axis=1)):
         raise ShapeError(
             "an observed channel must have values in every trial",
             f"{where}, trial {measured.trials[trial]!r} has none of {measured.channels[column]!r}",
@@ -111,9 +106,3 @@ def _check_filters(simulation: Simulation, measured: Measured, where: str) -> No
                 "per second",
                 "Correct lowpass [Hz], or remove it.",
             )
-
-
-def _first(where: ArrayLike) -> tuple[int, int]:
-    """Place of the first that is true in a table; -1, -1 where none is."""
-    found = np.argwhere(where)
-    return (int(found[0][0]), int(found[0][1])) if len(found) else (-1, -1)

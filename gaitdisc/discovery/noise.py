@@ -15,6 +15,7 @@ from scipy.linalg import solve_toeplitz
 
 from gaitdisc.compiled import compiled
 from gaitdisc.discovery.criteria import CRITERIA
+from gaitdisc.recording.arrays import Values
 
 MOST_LAGS = 16
 WHITE_SHARE = 0.05  # of the variance is taken as white: no simulation is right to the last decimal at high frequency
@@ -33,18 +34,16 @@ class Noise:
     array([2., 2., 2.])
     """
 
-    # each ndarray, for each channel, the predictor of each order 0, 1, ..., p (p,): what the samples before say of the
-    # next
-    predictors: tuple[tuple[NDArray[np.float64], ...], ...]
-    # each ndarray, for each channel, the standard deviation of what each of these predictors leaves [the channel's
-    # unit]
-    spread: tuple[NDArray[np.float64], ...]
+    # for each channel, the predictor of each order 0, 1, ..., p (p,): what the samples before say of the next
+    predictors: tuple[tuple[Values, ...], ...]
+    # for each channel, the standard deviation of what each of these predictors leaves [the channel's unit]
+    spread: tuple[Values, ...]
     # for each channel, how much less than all the past leaves where white noise went through the record's filter; 1
     # where there is none
     filtered: tuple[float, ...] = ()
 
     @property
-    def size(self) -> NDArray[np.float64]:
+    def size(self) -> Values:
         """Standard deviation of the noise of each channel (channel,)."""
         return np.array([spread[0] for spread in self.spread])
 
@@ -62,7 +61,7 @@ class Noise:
             for all_of, by in zip(self.spread, filtered, strict=True)
         )
 
-    def whiten(self, residual: NDArray[np.float64], known: NDArray[np.bool_] | None = None) -> NDArray[np.float64]:
+    def whiten(self, residual: Values, known: NDArray[np.bool_] | None = None) -> Values:
         """Return residuals as independent numbers of unit variance, if the noise is what it is taken for.
 
         residual (segment, sample, channel, ...): each segment begins afresh: its first samples are predicted from the
@@ -83,20 +82,17 @@ class Noise:
         return out.reshape(residual.shape)
 
 
-def white_noise(size: NDArray[np.float64]) -> Noise:
-    """Return white noise.
-
-    size (channel,): its standard deviation [the channel's unit]
-    """
+def white_noise(size: Values) -> Noise:
+    """Return white noise, by the standard deviation of each channel (channel,)."""
     return Noise(tuple((np.zeros(0),) for _ in size), tuple(np.array([one]) for one in size))
 
 
 def find_noise(
-    residual: NDArray[np.float64],
+    residual: Values,
     used: float = 0.0,
     white_share: float = WHITE_SHARE,
     least: ArrayLike = 0.0,
-    autocorrelation: NDArray[np.float64] | None = None,
+    autocorrelation: Values | None = None,
 ) -> Noise:
     """Estimate the noise from residuals (Yule-Walker; the order by BIC).
 
@@ -136,7 +132,7 @@ def find_noise(
     return Noise(tuple(predictors), tuple(spread), tuple(filtered))
 
 
-def _predict(covariance: NDArray[np.float64]) -> tuple[list[NDArray[np.float64]], NDArray[np.float64]]:
+def _predict(covariance: Values) -> tuple[list[Values], Values]:
     """Predictors of each order from a covariance (lag,), and what each leaves (order,)."""
     orders = [np.zeros(0)]
     for order in range(1, len(covariance)):
@@ -147,21 +143,11 @@ def _predict(covariance: NDArray[np.float64]) -> tuple[list[NDArray[np.float64]]
 
 @compiled(nogil=True)
 def whiten(
-    residual: NDArray[np.float64],
-    channel: int,
-    known: NDArray[np.bool_],
-    predictors: NDArray[np.float64],
-    spread: NDArray[np.float64],
-    out: NDArray[np.float64],
+    residual: Values, channel: int, known: NDArray[np.bool_], predictors: Values, spread: Values, out: Values
 ) -> None:
-    """Write one channel's innovations, in units of their spread.
+    """Write one channel's innovations, in units of their spread, into `out`, as `Noise.whiten` has them.
 
-    residual (segment, sample, channel, column): what is left; each segment begins afresh, and so does what follows a
-        gap
-    known (segment, sample, channel): where there is a residual; nothing is left elsewhere
     predictors (order + 1, order): row p predicts from the p samples before
-    spread (order + 1,): what each leaves
-    out (segment, sample, channel, column): written in place
     """
     segments, samples, _, columns = residual.shape
     last = len(spread) - 1
@@ -185,12 +171,11 @@ def whiten(
                 out[segment, sample, channel, column] /= spread[order]
 
 
-def sensor_noise(observed: NDArray[np.float64]) -> NDArray[np.float64]:
+def sensor_noise(observed: Values) -> Values:
     """Estimate the standard deviation of each channel's white noise: what a local cubic over 7 samples leaves.
 
     Noise that a filter has made smooth is not seen: of such a record the estimate is too small.
 
-    observed (trial, sample, channel): measured, NaN where nothing was
     returns (channel,): [the channel's unit]; the median over the trials
 
     >>> t = np.arange(2000) / 100
@@ -212,9 +197,7 @@ def sensor_noise(observed: NDArray[np.float64]) -> NDArray[np.float64]:
     return found
 
 
-def savgol_filter(
-    values: NDArray[np.float64], width: int, degree: int, derivative: int = 0, step: float = 1.0
-) -> NDArray[np.float64]:
+def savgol_filter(values: Values, width: int, degree: int, derivative: int = 0, step: float = 1.0) -> Values:
     """Smoothed signal or a derivative of it, from a polynomial fitted around each sample.
 
     values (sample,): evenly sampled, finite, `width` samples or more

@@ -60,10 +60,7 @@ class Change:
 
 
 def agreeing_trials(case: Case, measured: Measured) -> Measured:
-    """Return the trials without those that are turned in sign or shifted in time, each with a finding.
-
-    measured: these, as they were given; of fewer than three, none can be said to be the odd one
-    """
+    """Return the trials, if three or more, without those turned in sign or shifted in time, each with a finding."""
     odd = odd_trials(case) if len(measured.trials) > FEWEST_OTHERS else ()
     if not odd:
         return measured

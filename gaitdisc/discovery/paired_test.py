@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from gaitdisc.discovery.result import ALPHA
+from gaitdisc.recording.arrays import Values
 
 ALIKE_BELOW = 0.05  # of the greatest difference
 FEWEST_DIFFERING = 6  # pieces
@@ -29,7 +30,7 @@ class PairedTest:
         return self.fall > 0 and self.p < self.alpha
 
 
-def compare_errors(before: NDArray[np.float64], after: NDArray[np.float64], floor: NDArray[np.float64]) -> PairedTest:
+def compare_errors(before: Values, after: Values, floor: Values) -> PairedTest:
     """Test whether what one model errs by goes along with what another changes, each sample by its size.
 
     If the first model lacks nothing, its errors are noise, and their product with a change that was found on other data
@@ -67,16 +68,13 @@ def compare_errors(before: NDArray[np.float64], after: NDArray[np.float64], floo
     return PairedTest(p, max(int(independent), 1), fall)
 
 
-def sum_error(change: NDArray[np.float64], left: NDArray[np.float64]) -> float:
-    """Standard deviation that noise with the autocovariance of what is left gives to the sum of its products.
-
-    change, left (run, sample, channel): what is multiplied with the noise, and what is left; NaN where not measured
-    """
+def sum_error(change: Values, left: Values) -> float:
+    """Standard deviation of the sum of a change's products with noise that has a residual's autocovariance."""
     covariance = _autocovariance(np.nan_to_num(left), np.isfinite(left).sum(axis=(0, 1)))
     return float(np.sqrt(max(float((covariance * _lag_products(change)).sum()), 0.0)))
 
 
-def _autocovariance(left: NDArray[np.float64], known: NDArray[np.intp]) -> NDArray[np.float64]:
+def _autocovariance(left: Values, known: NDArray[np.intp]) -> Values:
     """Return the autocovariance of what is left (lag, channel), weighed down with the lag."""
     covariance = _lag_products(left / np.sqrt(np.maximum(known, 1)))
     lags = np.abs(np.fft.fftfreq(len(covariance), 1 / len(covariance)))
@@ -85,20 +83,19 @@ def _autocovariance(left: NDArray[np.float64], known: NDArray[np.intp]) -> NDArr
     return covariance * np.maximum(1 - lags / (min(last, len(lags) / 2 - 1) + 1), 0.0)[:, None]
 
 
-def _lag_products(record: NDArray[np.float64]) -> NDArray[np.float64]:
+def _lag_products(record: Values) -> Values:
     """Return products of samples a lag apart, summed over runs (lag, channel); lags below 0 come last."""
     samples = 2 * record.shape[1]
     power = np.abs(np.fft.rfft(record, samples, axis=1)) ** 2
     return np.fft.irfft(power.sum(axis=0), samples, axis=0)
 
 
-def errors_rise_p(before: NDArray[np.float64], after: NDArray[np.float64]) -> float:
+def errors_rise_p(before: Values, after: Values) -> float:
     """Chance of errors so much greater if each could as well have been the smaller one.
 
     Pieces on which the two hardly differ are left out but for a few: which these are does not depend on which of the
     two is the better, so that the test keeps its level.
 
-    before, after (piece,): errors of two models
     Source: Wilcoxon 1945, Biometrics Bulletin 1, 80.
 
     >>> errors_rise_p(np.zeros(6), np.ones(6)), errors_rise_p(np.ones(6), np.zeros(6)), errors_rise_p(*np.ones((2, 6)))

@@ -26,21 +26,18 @@ class Place:
 
     kind: str
     name: str
-    # tuple of (str, str), Position-like state and its rate, the place's own first, then its differences with others,
+    # position-like state and its rate, the place's own first, then its differences with others,
     # then (at a port) the others; the rate is empty for a state that has none (first-order systems), and a speed whose
     # position is no state is its own rate and nothing else
     motions: tuple[tuple[str, str], ...]
     others: tuple[str, ...]  # states that would act here as a coupling
-    products: tuple[tuple[str, str], ...]  # tuple of (str, str), pairs of states whose product may act here
+    products: tuple[tuple[str, str], ...]  # pairs of states whose product may act here
     angle: bool  # whether the place's own position is an angle
     power: float = 1.0  # of a positive push: 1 where it drives its own state, -1 where it holds it back
 
 
 def kinematic_rates(simulation: Simulation) -> dict[str, str]:
-    """Find the states whose equation only says that their derivative is another state.
-
-    returns: Position-like state -> the state that is its rate
-    """
+    """Find the states whose derivative is plainly another state: position-like state -> its rate."""
     states = [state.name for state in simulation.states]
     rng = np.random.default_rng(0)
     x, u = rng.uniform(0.1, 1.0, (16, len(states))), rng.uniform(0.1, 0.9, (16, len(simulation.inputs)))
@@ -95,10 +92,7 @@ def _rates(machine: Compiled, x: Values, u: Values) -> Values:
 
 
 def is_speed(simulation: Simulation, kind: str, name: str, state: str) -> bool:
-    """Whether a state that no other has as its rate is a speed: by its unit, or for it is pushed against an inertia.
-
-    kind, name: of the place where something may act on it
-    """
+    """Whether a state that no other has as its rate is a speed: by its unit, or as a force moves an inertia there."""
     unit = next(each.unit for each in simulation.states if each.name == state)
     if unit and unit != "1":
         return SPEEDS.fullmatch(unit) is not None

@@ -12,7 +12,6 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 import pandas as pd
-from numpy.typing import NDArray
 from scipy.optimize import minimize
 from scipy.stats import norm
 
@@ -25,6 +24,7 @@ from gaitdisc.discovery.scored_model import Part, ScoredModel
 from gaitdisc.discovery.spiked_samples import without_spikes
 from gaitdisc.discovery.twins import TwinSource, search_records
 from gaitdisc.errors import SchemaError
+from gaitdisc.recording.arrays import Values
 from gaitdisc.simulation.measured import Measured
 from gaitdisc.simulation.simulation import Simulation
 
@@ -57,7 +57,7 @@ class Power:
         if share.min() >= POWER:
             return math.nan
 
-        def misfit(at: NDArray[np.float64]) -> float:
+        def misfit(at: Values) -> float:
             chance = np.clip(norm.cdf((log - at[0]) / np.exp(at[1])), 1e-6, 1 - 1e-6)
             return -float(np.sum(share * np.log(chance) + (1 - share) * np.log(1 - chance)))
 
@@ -83,10 +83,7 @@ class Power:
 
 
 def find_power(model: Simulation, data: Measured, request: Request) -> list[Power]:
-    """Find how large each effect of a request must be to be found in records like these.
-
-    data: trials with their inputs, whose noise, length and gaps the simulated records have
-    """
+    """Find how large each effect of a request must be to be found in records like these."""
     if not request.effects:
         raise SchemaError(
             "a plan needs the effects that are to be found",
@@ -101,11 +98,7 @@ def find_power(model: Simulation, data: Measured, request: Request) -> list[Powe
 
 
 def find_power_for(effect: str, case: Case, as_read: ScoredModel, model: Simulation, request: Request) -> Power:
-    """Search records with more and more of one effect.
-
-    as_read: the simulation as read in the case, which leaves the noise of the records
-    model: the simulation that is searched
-    """
+    """Search records with more and more of one effect."""
     request.progress(f"fitting {effect}")
     now = fit_given(case, as_read, (effect,)).found
     (part,), fit = now.parts, now.fit

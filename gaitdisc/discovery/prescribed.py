@@ -8,7 +8,7 @@ that is more.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -66,6 +66,14 @@ class ResidualMoment:
             late = candidate.place.endswith("_delay")
             constants, factors = (values, [1.0]) if late else ({}, [values["value"] - candidate.value])
         return self.columns(candidate, constants) @ np.array(factors)
+
+    def predict(self, candidate: Candidate, numbers: Sequence[Mapping[str, float] | None]) -> Values:
+        """Predict each block of the time by a candidate's numbers for it (sample,); 0 where it has none."""
+        predicted = np.zeros(len(self.time))
+        for (held, _), values in zip(self.blocks, numbers, strict=True):
+            if values is not None:
+                predicted[held] = self.explained(candidate, values)[held]
+        return predicted
 
     def slope(self, candidate: Candidate, values: Mapping[str, float], slot: str) -> Values:
         """What a unit of one of its numbers adds (sample,)."""
@@ -126,11 +134,8 @@ class JointFinding:
 
     def prove(self, one: Named) -> Named:
         """Predict each block of the time with numbers of the rest."""
-        joint, predicted = self.joint, np.zeros(len(self.joint.time))
-        for held, learned in joint.blocks:
-            values = self._numbers(one.candidate, learned)
-            if values is not None:
-                predicted[held] = joint.explained(one.candidate, values)[held]
+        joint = self.joint
+        predicted = joint.predict(one.candidate, [self._numbers(one.candidate, learned) for _, learned in joint.blocks])
         before, after = (float((self._white(each) ** 2).sum()) for each in (joint.left, joint.left - predicted))
         held_out = _fall(before, after, len(predicted))
         return replace(one, predicted=predicted, held_out=held_out, test=self.test(predicted))
@@ -266,19 +271,14 @@ def _fit_across_joints(joints: list[JointFinding], candidate: Candidate) -> dict
         numbers = [(joints[k]._numbers(candidate, some, refined=False) or candidate.idle)["value"] for k in fitted]
         return {"value": float(weights @ numbers / weights.sum())}
 
-    predicted = np.zeros((len(joints), len(joints[0].joint.time)))
-    for held, learned in joints[0].joint.blocks:
-        values = pool(learned)
-        for k in fitted:
-            predicted[k, held] = joints[k].joint.explained(candidate, values)[held]
-    values, variance = pool(np.arange(predicted.shape[1])), np.array([[1 / weights.sum()]])
-    explained = {k: joints[k].joint.explained(candidate, values) for k in fitted}
-    return {
-        k: replace(
-            one, values=values, covariance=variance, explained=explained[k], predicted=own, test=joints[k].test(own)
-        )
-        for (k, one), own in zip(fitted.items(), predicted[[*fitted]], strict=True)
-    }
+    of_blocks = [pool(learned) for _, learned in joints[0].joint.blocks]
+    whole, variance = pool(np.arange(len(joints[0].joint.time))), np.array([[1 / weights.sum()]])
+    for k, one in fitted.items():
+        joint = joints[k].joint
+        predicted, explained = joint.predict(candidate, of_blocks), joint.explained(candidate, whole)
+        test = joints[k].test(predicted)
+        fitted[k] = replace(one, values=whole, covariance=variance, explained=explained, predicted=predicted, test=test)
+    return fitted
 
 
 def _noise_of_angles(joint: ResidualMoment) -> Noise:

@@ -41,10 +41,7 @@ class ProcessNoise:
 
 
 def rank_process_noise(model: ScoredModel, places: tuple[Place, ...]) -> list[ProcessNoise]:
-    """Weigh random pushes at every place against noise of the sensors; the best place first.
-
-    returns: pushes are independent from sample to sample; the sensors' noise beside them is white
-    """
+    """Weigh independent pushes at every place, beside white noise, against noise of the sensors; the best first."""
     fit, shooting = model.fit, model.shooting
     length = min(fit.residual.shape[1], max(MOST_NUMBERS // fit.residual.shape[2], 8))
     some = np.unique(np.linspace(0, len(shooting.segments) - 1, MOST_SEGMENTS).astype(int))

@@ -63,10 +63,7 @@ class RecordFilter:
         return self.filtered(impulse, 1)[0]
 
     def filtered(self, observed: Values, axis: int) -> Values:
-        """Simulated channels as the record would have them.
-
-        observed (..., sample, channel, ...): runs; the channels follow the samples
-        """
+        """Simulated channels (..., sample, channel, ...), samples along an axis, as the record would have them."""
         if not self.margin:
             return observed
         samples = observed.shape[axis]
@@ -85,11 +82,7 @@ class RecordFilter:
 
 @compiled(nogil=True)
 def run_both_ways(values: Values, channel: int, coefficients: Values, padding: int) -> None:
-    """Filter one channel forwards and backwards, in place; runs are continued beyond their ends by turning them over.
-
-    values (run, sample, channel, column): runs
-    coefficients (3,): b0, a1, a2
-    """
+    """Filter one channel forwards and backwards, in place; beyond its ends a run goes on turned over."""
     b, a1, a2 = coefficients[0], coefficients[1], coefficients[2]
     runs, samples, _, columns = values.shape
     long = np.empty(samples + 2 * padding)

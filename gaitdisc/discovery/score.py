@@ -154,11 +154,7 @@ class Scorer:
         return some, push.reshape(*push.shape[:2], -1)
 
     def _extend(self, machine: Compiled, names: dict[str, str], tried: list[dict[str, float]]) -> tuple[Values, Values]:
-        """Parameters (version, parameter) and states along the run (version, segment, sample, state) of each try.
-
-        machine: the simulation with a candidate in it, whose own states are the last
-        names: for each slot the parameter that it is
-        """
+        """Parameters (version, parameter) and states along the run (version, segment, sample, state) of each try."""
         values = np.repeat(machine.defaults[None], len(tried), axis=0)
         values[:, : len(self.model.fit.values)] = self.model.fit.values
         for version, slots in enumerate(tried):
@@ -235,10 +231,7 @@ class _Explained:
         return cls(fit.start_basis, known, left - known @ (known.T @ left))
 
     def gains(self, some: list[_Cell], columns: Values) -> Iterator[Score]:
-        """Yield the score of each cell that changes anything.
-
-        columns (segment, number, column): a cell has as many as slots that columns stand for
-        """
+        """Yield the score of each cell that changes anything; it has as many columns as slots that these stand for."""
         own = without(self.starts, columns).reshape(-1, columns.shape[2])
         own = np.vstack([own, np.zeros((self.left.size - len(own), own.shape[1]))])
         own -= self.constants @ (self.constants.T @ own)

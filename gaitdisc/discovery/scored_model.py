@@ -120,10 +120,7 @@ class ScoredModel:
         turns: int = TURNS,
         enough: float = ENOUGH,
     ) -> ScoredModel:
-        """Return the simulation with the same explanations or others, fitted from where this model came to lie.
-
-        starts (segment, state): start states to begin from; this model's where absent
-        """
+        """Return the simulation with the same explanations or others, fitted from where this model came to lie."""
         parts, starts = self.parts if parts is None else parts, self.fit.starts if starts is None else starts
         return fit_model(shooting, self.base, parts, starts, turns, enough, like=self)
 
@@ -138,10 +135,7 @@ class ScoredModel:
         return replace(self, shooting=self.shooting.with_past(self.fit.states))
 
     def with_estimates(self, values: Values, covariance: Values) -> ScoredModel:
-        """Return the model with other numbers, and their covariance; its runs stay as they are.
-
-        values (parameter,): all parameters
-        """
+        """Return the model with other numbers, and their covariance; its runs stay as they are."""
         fit = replace(self.fit, values=values, stated=covariance)
         return replace(self, parts=_read_parts(self.parts, self.names, self.machine, values), fit=fit)
 
@@ -184,8 +178,6 @@ def fit_model(
 
     A number that an explanation calls wrong may leave its bounds.
 
-    starts (segment, state): start states to begin from
-    enough: a step that takes less off the misfit is the last
     like: whose numbers with bounds the fit begins with; the file's where absent
     """
     simulation, names = with_parts(base, parts)
@@ -218,18 +210,12 @@ def score(model: ScoredModel) -> ScoredModel:
 
 
 def leaves(model: ScoredModel, noise: Values) -> float:
-    """Return the mean square of what a model leaves, over the variance of the sensors' noise.
-
-    noise (channel,): its standard deviation [the channel's unit]
-    """
+    """Return the mean square of what a model leaves, over the variance of the sensors' noise (channel,)."""
     return float(np.nanmean((model.fit.residual / noise) ** 2))
 
 
 def compared(models: list[ScoredModel]) -> list[ScoredModel]:
-    """Put models under one noise: what the best of them leaves.
-
-    models: of the same segments; those under the noise of the first stay as they are
-    """
+    """Put models of the same segments under one noise: what the best of them leaves."""
     models = [model.under(models[0]) for model in models]
     for _ in range(len(models)):
         best = min(range(len(models)), key=lambda number: models[number].bic)

@@ -7,7 +7,6 @@ from collections.abc import Callable, Iterator
 from dataclasses import dataclass, field, replace
 
 import numpy as np
-from numpy.typing import NDArray
 
 from gaitdisc.discovery.candidate import PASSIVE, Candidate
 from gaitdisc.discovery.criteria import CRITERIA
@@ -43,10 +42,7 @@ class Search:
     progress: Callable[[str], None] = field(default_factory=lambda: lambda _: None, compare=False)
 
     def extended(self, now: ScoredModel) -> list[ScoredModel]:
-        """Return the model and, after it, others with one explanation more, all under the noise that the best leaves.
-
-        returns: empty where no explanation fits; in no order after the first
-        """
+        """Return the model and others with one explanation more, under the noise of the best; nothing if none fits."""
         penalty = float(np.log(now.fit.white.size))
 
         def price(score: Score) -> float:
@@ -151,7 +147,7 @@ class Search:
         low, high = np.quantile(self.along(model, role), VISITED)
         return float(low), float(high)
 
-    def along(self, model: ScoredModel, role: str) -> NDArray[np.float64]:
+    def along(self, model: ScoredModel, role: str) -> Values:
         """Return what stands for x in an explanation, along the runs."""
         known = len(self.base.states)
         states = model.fit.states[..., :known].reshape(-1, known)

@@ -32,26 +32,15 @@ class Segments:
         return len(self.begin)
 
     def of(self, records: Values) -> Values:
-        """Return the segments of records (segment, sample, ...).
-
-        records (trial, sample, ...): of every trial
-        """
+        """Return the segments (segment, sample, ...) of records of every trial (trial, sample, ...)."""
         return records[self.trial[:, None], self.samples]
 
     def starts(self, states: Values) -> Values:
-        """Return the states at each segment's first sample (segment, state).
-
-        states (trial, sample, state): of every trial
-        """
+        """Return the states (segment, state) at each segment's first sample, of those of every trial."""
         return states[self.trial, self.begin]
 
     def put(self, records: Values, runs: Values) -> Values:
-        """Return states of every trial with runs in their places; of two that overlap, the one that is compared.
-
-        records (trial, sample, state): of every trial
-        runs (segment, sample, state): one for each segment; states that effects bring along, the last ones, are left
-            out
-        """
+        """Return every trial's states with runs put in; of two that overlap, the one that is compared."""
         out, runs = records.copy(), runs[..., : records.shape[-1]]
         out[self.trial[:, None], self.samples] = runs
         if self.margin:
@@ -103,11 +92,7 @@ class Segments:
         return Segments(np.repeat(self.trial, steps), self.samples[:, :-1].ravel(), 2)
 
     def rows(self, starts: Values, values: Values) -> Rows:
-        """Return what it takes to run several versions of a simulation over all segments, version by version.
-
-        starts (version, segment, state): start states
-        values (version, parameter): parameters
-        """
+        """Return what it takes to run several versions of a simulation over all segments, version by version."""
         versions, segments = starts.shape[:2]
         trial, begin = np.tile(self.trial, versions), np.tile(self.begin, versions)
         return Rows(trial, begin, starts.reshape(versions * segments, -1), np.repeat(values, segments, axis=0))

@@ -33,7 +33,10 @@ ENOUGH = 1e-2
 
 @dataclass(frozen=True)
 class Shooting:
-    """Segments of measured trials and what it takes to run a simulation over them."""
+    """Segments of measured trials and what it takes to run several versions of a simulation over them.
+
+    Of these: starts (version, segment, state), states (version, segment, sample, state), values (version, parameter).
+    """
 
     measured: Measured  # trials, with the inputs that drive the simulation
     segments: Segments
@@ -57,8 +60,6 @@ class Shooting:
     def run(self, machine: Compiled, starts: Values, values: Values) -> tuple[Values, Values]:
         """Run a simulation over all segments, several versions at once.
 
-        starts (version, segment, state): start states
-        values (version, parameter): parameters
         returns states (version, segment, sample, state): NaN from where a run left every bound
         returns observed (version, segment, sample, channel): what would be recorded, where it is compared
         """
@@ -68,37 +69,22 @@ class Shooting:
         return states, self.observed(machine, states, values)
 
     def landed(self, machine: Compiled, states: Values, values: Values) -> Values:
-        """Run every step of every segment by itself, and return where it lands (version, segment, step, state).
-
-        states (version, segment, step, state): where each step starts
-        values (version, parameter): parameters of each version
-        """
+        """Run every step of every segment by itself, and return where it lands (version, segment, step, state)."""
         rows = self.segments.steps.rows(states.reshape(len(states), -1, states.shape[-1]), values)
         landed, _ = machine.run(self.measured.drive, rows, 1, substeps=self.substeps, past=self.past)
         return landed[:, 1].reshape(states.shape)
 
     def observed(self, machine: Compiled, states: Values, values: Values) -> Values:
-        """Return what would be recorded along given states, where it is compared (version, segment, sample, channel).
-
-        states (version, segment, sample, state): its states
-        values (version, parameter): its parameters
-        """
+        """Return what would be recorded along states, where it is compared (version, segment, sample, channel)."""
         return self.filtered(self.unfiltered(machine, states, values), 2)
 
     def filtered(self, observed: Values, axis: int) -> Values:
-        """Return channels as they come out of the filter that the record went through, where they are compared.
-
-        observed (..., sample, channel, ...): channels of whole segments
-        """
+        """Return channels as they come out of the filter that the record went through, where they are compared."""
         recorded = self.record_filter.filtered(observed, axis) if self.record_filter else observed
         return recorded[(slice(None),) * axis + (self.segments.compared,)]
 
     def unfiltered(self, machine: Compiled, states: Values, values: Values) -> Values:
-        """Return what the sensors see along given states, before any filter (version, segment, sample, channel).
-
-        states (version, segment, sample, state): its states
-        values (version, parameter): its parameters
-        """
+        """Return what the sensors see along given states, before any filter (version, segment, sample, channel)."""
         rows = self.segments.rows(states[:, :, 0], values)
         seen = machine.observe(self.measured.drive, rows, states.reshape(-1, *states.shape[2:]), past=self.past)
         return seen.reshape(*states.shape[:3], -1)
@@ -107,8 +93,6 @@ class Shooting:
         """Return residuals whitened and flat (segment, sample times channel, ...).
 
         What is not finite counts as none, and so does what was not measured.
-
-        residual (segment, sample, channel, ...): where it is compared [the channel's unit]
         """
         if not np.isfinite(residual).all():
             residual = np.nan_to_num(residual, nan=0.0, posinf=0.0, neginf=0.0)
@@ -116,11 +100,7 @@ class Shooting:
         return white.reshape(white.shape[0], -1, *white.shape[3:])
 
     def at(self, machine: Compiled, free: tuple[str, ...], values: Values, starts: Values) -> Fitted:
-        """Return the fit at given constants and start states, with its slopes.
-
-        values (parameter,): all parameters
-        starts (segment, state): start states
-        """
+        """Return the fit at given constants and start states, with its slopes."""
         n, index = starts.shape[1], [machine.parameters.index(name) for name in free]
         spans = np.maximum(np.abs(starts).max(axis=0), 1e-3)
         nudges = NUDGE * np.concatenate([spans, np.maximum(np.abs(values[index]), 1e-2)])
@@ -150,8 +130,6 @@ class Shooting:
     ) -> Fitted:
         """Fit constants and start states (Levenberg-Marquardt; the start states of each segment solved for within).
 
-        values (parameter,): where all parameters begin
-        starts (segment, state): where the start states begin
         enough: a step that takes less off the misfit is the last
         """
         known = recall(repr((free, turns, enough)), values.tobytes(), starts.tobytes())

@@ -16,7 +16,7 @@ import numpy as np
 
 from gaitdisc.discovery.candidate import UNNAMED, Candidate
 from gaitdisc.discovery.case import Case
-from gaitdisc.discovery.catalogue import Shape, read_shapes
+from gaitdisc.discovery.catalogue import Shape, read_shapes, with_names
 from gaitdisc.discovery.criteria import CRITERIA
 from gaitdisc.discovery.decision import Verdict, prove_held_out
 from gaitdisc.discovery.fitted_shape import find_cost, fit_shape
@@ -46,7 +46,7 @@ class Piece:
     @property
     def at(self) -> str:
         """The piece with its numbers written in."""
-        return Shape("", (self.text,)).written({f"_{slot}": f"{value:.9g}" for slot, value in self.values.items()})[0]
+        return with_names(self.text, {f"_{slot}": f"{value:.9g}" for slot, value in self.values.items()})
 
 
 def read_shape(case: Case, as_read: ScoredModel, verdict: Verdict) -> Verdict:
@@ -127,7 +127,7 @@ def _constants(pieces: tuple[Piece, ...]) -> tuple[dict[str, str], dict[str, flo
         own = {slot: f"{slot}_{number + 1}" if number else slot for slot in piece.kinds}
         kinds |= {own[slot]: kind for slot, kind in piece.kinds.items()}
         values |= {own[slot]: value for slot, value in piece.values.items()}
-        texts.append(Shape("", (piece.text,)).written({f"_{slot}": f"_{name}" for slot, name in own.items()})[0])
+        texts.append(with_names(piece.text, {f"_{slot}": f"_{name}" for slot, name in own.items()}))
     return kinds, values, tuple(texts)
 
 

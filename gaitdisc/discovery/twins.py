@@ -81,11 +81,7 @@ class TwinSource:
             return [begin_by_first_samples(self.case, self.begun or self.now, trial).fit.starts for trial in trials]
 
     def draw(self, number: int) -> Measured | None:
-        """Draw a record like the user's: its inputs, trials and gaps, free runs of the model, and noise.
-
-        number: of the record, which seeds what is drawn
-        returns: None where a free run leaves the record
-        """
+        """Draw a record, by its number, like the user's: free runs and noise; None where a run leaves the record."""
         measured = self.case.measured
         _, run = self.run(with_drawn_errors(measured, self.case.search.base, number))
         if run is None:
@@ -196,11 +192,7 @@ def refuse_twins(model: str) -> NoReturn:
 def search_twins(
     found: Discovery, case: Case, as_read: ScoredModel, verdict: Verdict, model: Simulation, request: Request
 ) -> Discovery:
-    """Return an answer with what the same search says of its twins: with what was found in them, and without.
-
-    case, as_read: that was decided, and the simulation as read in it
-    model: the simulation that was searched
-    """
+    """Return an answer with what the same search says of its twins: with what was found in them, and without."""
     acts = verdict.found.parts and found.verdict not in RANDOM
     models = [verdict.found, as_read] if acts else [as_read]
     sources = [TwinSource(case, now, verdict.found.noise) for now in models]

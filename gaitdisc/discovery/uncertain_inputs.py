@@ -205,11 +205,7 @@ def weighed(case: Case, now: ScoredModel) -> Weighed:
 def whitener(
     case: Case, now: ScoredModel, shooting: Shooting, starts: Values, size: Values
 ) -> Callable[[Values], Values]:
-    """Return what gives, for values of all parameters, what a model leaves of runs, as independent numbers.
-
-    starts (run, state): where the runs begin, up to what is to first order
-    size (channel,): of the sensors' noise
-    """
+    """Return what gives, for values of all parameters, what a model leaves of runs, as independent numbers."""
     shooting = shooting.with_noise(white_noise(np.ones(len(size))))
     known = shooting.known
     each = np.tile(size, known.shape[1])
@@ -245,10 +241,7 @@ def covariance_by_inputs(case: Case, model: ScoredModel) -> Values:
 
 
 def propagate_inputs(model: ScoredModel, names: list[str], hats: Values) -> list[Values]:
-    """Return what errors of each of some inputs change in what is seen (run, sample, channel, knot), to first order.
-
-    hats (sample, knot): the error that each knot stands for
-    """
+    """Return what errors of inputs, by hats (sample, knot), change in what is seen (run, sample, channel, knot)."""
     places = tuple(Place("input", name, (), (), (), False) for name in names)
     line, direct = linearise(model, places), propagate_push(model, places)
     push, moved = np.broadcast_to(hats, (len(model.fit.starts), *hats.shape)), []

@@ -48,10 +48,7 @@ DIRECTIONS = re.compile(
 
 
 def write_sentence(discovery: Discovery, base: Simulation, parts: tuple[Part, ...]) -> Discovery:
-    """Return the discovery with its sentence.
-
-    parts: the explanations behind the effects, in their order; none for verdicts without a term, number or signal
-    """
+    """Return the discovery with its sentence; parts: the explanations behind its effects, in their order."""
     odd = (finding for finding in discovery.findings if finding.kind == ODD_TRIAL)
     said = [
         _say(discovery, base, parts),

@@ -103,7 +103,7 @@ def discover(
 
 
 def _of_engine(model: Path, data: Any, request: Request) -> tuple[Discovery, Simulation]:
-    from gaitdisc.discovery.discover_engine import discover_engine, read_trials
+    from gaitdisc.discovery.discover_engine import discover_engine, discover_model_file
     from gaitdisc.engines.tracked_mapping import read_tracked
 
     walk = read_tracked(model)
@@ -119,11 +119,10 @@ def _of_engine(model: Path, data: Any, request: Request) -> tuple[Discovery, Sim
         answered = discover_tracked(walk, Path(data), request)
         return answered.found, answered.augmented
 
-    def read(mapping: Simulation) -> Measured:
-        return read_trials(Path(data), mapping) if isinstance(data, Path | str) else _measure(data, mapping)[0]
-
-    files = {Path(data): "measured table"} if isinstance(data, Path | str) else {}
-    answer = discover_engine(model, read, request, files)
+    if isinstance(data, Path | str):
+        answer = discover_model_file(model, Path(data), request)
+    else:
+        answer = discover_engine(model, lambda mapping: _measure(data, mapping)[0], request, {})
     return answer.found, answer.augmented
 
 

@@ -12,7 +12,7 @@ from gaitdisc.errors import SamplingError, ShapeError
 from gaitdisc.ingest.table import has_times
 from gaitdisc.library.walks import PLAIN, Kind, make_recording
 from gaitdisc.recording import Recording, Trial
-from gaitdisc.recording.arrays import real_array
+from gaitdisc.recording.arrays import Values, real_array
 from gaitdisc.signals.butterworth import KINEMATICS_HZ, high_pass, low_pass
 from gaitdisc.signals.derivatives import differentiate_recording
 from gaitdisc.signals.emg import ENVELOPE_HZ, HIGHPASS_HZ, envelopes
@@ -21,11 +21,10 @@ from gaitdisc.units import rate_unit
 
 if TYPE_CHECKING:
     import pandas as pd
-    from numpy.typing import NDArray
 
 EMG = ("emg", "V")  # quantity and unit
 LIKELY = 10  # an array with more channels than so many times its samples lies on its side
-Signal = TypeVar("Signal", Recording, "pd.DataFrame", "pd.Series[Any]", "NDArray[np.float64]")
+Signal = TypeVar("Signal", Recording, "pd.DataFrame", "pd.Series[Any]", "Values")
 
 
 def lowpass(
@@ -67,8 +66,10 @@ def lowpass(
         If the cut-off is not between 0 and half the rate, the signal is too short for it, or an array comes without
         its rate.
 
-    References ---------- Ebers (2023), section 4.2.1. Differs: the two passes, the meaning of the cut-off and the
-    edges, which the text does not state.
+    References
+    ----------
+    Ebers (2023), section 4.2.1. Differs: the two passes, the meaning of the cut-off and the edges, which the text does
+    not state.
 
     Examples
     --------
@@ -156,9 +157,10 @@ def envelope(
     ChannelError
         If a channel of a Recording is not EMG.
 
-    References ---------- Ebers (2023), section 4.2.1: high-passed at 40 Hz, rectified, low-passed at 10 Hz,
-    "fourth-order Butterworth filters". Differs: order 4 in each of two passes, without lag, because the text states
-    neither.
+    References
+    ----------
+    Ebers (2023), section 4.2.1: high-passed at 40 Hz, rectified, low-passed at 10 Hz, "fourth-order Butterworth
+    filters". Differs: order 4 in each of two passes, without lag, because the text states neither.
 
     Examples
     --------
@@ -258,7 +260,7 @@ def _in_its_form(
     return np.array(made.values).reshape(values.shape)
 
 
-def _times(count: int, rate_hz: float | None) -> NDArray[np.float64]:
+def _times(count: int, rate_hz: float | None) -> Values:
     if rate_hz is None:
         raise SamplingError(
             "to filter an array or a table without times, rate_hz must be given",

@@ -147,7 +147,7 @@ def curves(run: ResponseRun, channel: str, participant: str | None = None, ax: A
     from gaitdisc.report.panels import SIDES
 
     _refuse_other(run, "ResponseRun", "gaitdisc.fit_response")
-    numbers = curve_numbers(run, participant or _first(run.reported))
+    numbers = curve_numbers(run, participant or next(iter(run.reported), ""))
     numbers = numbers[numbers["channel"] == _check_known(channel, numbers["channel"])]
     axes = axes_or_new(ax)
     draw_walks(axes, numbers, SIDES[find_side(channel)].colour)
@@ -214,14 +214,7 @@ def discovery(found: Discovery, channel: str | None = None, left: bool = False, 
     >>> import gaitdisc as gd
     >>> gd.plot.discovery(gd.load("found"), left=True)  # doctest: +SKIP
     """
-    from gaitdisc.discovery.figure import (
-        discovery_key,
-        display_runs,
-        draw_left,
-        draw_runs,
-        noise_floor,
-        pick_stretch,
-    )
+    from gaitdisc.discovery.figure import discovery_key, display_runs, draw_left, draw_runs, noise_floor, pick_stretch
 
     _refuse_other(found, "Discovery", "gaitdisc.discover")
     name = _check_known(channel, found.channels) if channel else found.held_out.ranked[0]
@@ -314,7 +307,7 @@ def reconstruction(done: Reconstruction, state: str, participant: str | None = N
     from gaitdisc.reconstruction.page import draw_state, pick_curves, states_key
 
     _refuse_other(done, "Reconstruction", "`gaitdisc reconstruct`")
-    numbers = pick_curves(done, participant or _first(done.participants))
+    numbers = pick_curves(done, participant or next(iter(done.participants), ""))
     numbers = numbers[numbers["state"] == _check_known(state, [channel.name for channel in done.states])]
     axes = axes_or_new(ax)
     draw_state(axes, numbers)
@@ -398,7 +391,3 @@ def _check_known(name: str, among: object) -> str:
             "Name one of these.",
         )
     return name
-
-
-def _first(names: Sequence[str]) -> str:
-    return names[0] if names else ""

@@ -9,7 +9,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, cast
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
 from gaitdisc.channel import Channel, find_side
 from gaitdisc.engines.engine import Engine
@@ -19,7 +19,7 @@ from gaitdisc.errors import ShapeError, SimulationError, UnitError
 from gaitdisc.ingest.table import has_times
 from gaitdisc.library.walks import make_recording
 from gaitdisc.recording import Recording, Source
-from gaitdisc.recording.arrays import mean_rate
+from gaitdisc.recording.arrays import Values, mean_rate
 from gaitdisc.recording.strides import interpolate
 from gaitdisc.simulation.compiled_simulation import Drive, Rows
 from gaitdisc.simulation.evaluating import Points, evaluate_many
@@ -121,9 +121,7 @@ def simulate(
     return Recording(base.time, np.column_stack([*seen.values()]), channels, source=Source(reader="simulation"))
 
 
-def _run(
-    simulation: Simulation, time: NDArray[np.float64], driven: NDArray[np.float64], start: NDArray[np.float64]
-) -> tuple[NDArray[np.float64], dict[str, NDArray[np.float64]]]:
+def _run(simulation: Simulation, time: Values, driven: Values, start: Values) -> tuple[Values, dict[str, Values]]:
     """States (time, state) and observed channels (time,)."""
     machine = compile_simulation(simulation)
     drive = Drive.of([driven], mean_rate(time), float(time[0]))
@@ -135,12 +133,8 @@ def _run(
 
 
 def _run_by(
-    engine: Engine,
-    simulation: Simulation,
-    time: NDArray[np.float64],
-    driven: NDArray[np.float64],
-    start: NDArray[np.float64],
-) -> tuple[NDArray[np.float64], dict[str, NDArray[np.float64]]]:
+    engine: Engine, simulation: Simulation, time: Values, driven: Values, start: Values
+) -> tuple[Values, dict[str, Values]]:
     """States (time, state) by an engine's own integrator, and observed channels (time,)."""
     count, rate = len(engine.coordinates), mean_rate(time)
     q, v = start[None, :count], start[None, count:]
@@ -159,7 +153,7 @@ def _run_by(
     return states, dict(zip(channels, seen, strict=True))
 
 
-def _driven(simulation: Simulation, time: NDArray[np.float64], inputs: Any) -> NDArray[np.float64]:
+def _driven(simulation: Simulation, time: Values, inputs: Any) -> Values:
     """Inputs (time, input)."""
     names = [each.name for each in simulation.inputs]
     if not names:
@@ -207,7 +201,7 @@ def _driven(simulation: Simulation, time: NDArray[np.float64], inputs: Any) -> N
     return driven
 
 
-def _start(simulation: Simulation, start: Mapping[str, float] | Sequence[float] | None) -> NDArray[np.float64]:
+def _start(simulation: Simulation, start: Mapping[str, float] | Sequence[float] | None) -> Values:
     names = [state.name for state in simulation.states]
     if start is not None and not isinstance(start, Mapping):
         if np.shape(start) != (len(names),):

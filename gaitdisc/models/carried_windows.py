@@ -108,8 +108,6 @@ def gru_step(read: Values, states: Values, of_input: Linear, of_state: Linear) -
 def lstm_step(read: Values, states: Values, cells: Values, of_input: Linear, of_state: Linear) -> tuple[Values, Values]:
     """States and cells of a layer of long short-term memory after one more reading, each (window, node).
 
-    read (window, input): what each window reads now
-    states, cells (window, node): before
     of_input, of_state (input, 4 node), (node, 4 node): to input gate, forget gate, candidate, output gate
     Source: Hochreiter and Schmidhuber 1997, with the forget gate of Gers et al. 2000, as in torch.
 

@@ -47,7 +47,6 @@ def fit_fourier_ridge(training: Samples, check: Samples, features: int = 0, seed
     Minimises sum (y - W h - b)^2 / samples + penalty sum W^2 on scaled outputs, where h holds the scaled inputs and
     sqrt(2 / features) cos(frequency x + phase). The check part takes no part in the fit nor in the scales.
 
-    training, check: what is fitted, and what the penalty is chosen by
     features: random Fourier features; 0 is ridge regression on the inputs alone
     Source: Rahimi and Recht 2007, Random features for large-scale kernel machines; the Gaussian kernel.
 

@@ -15,7 +15,7 @@ from gaitdisc.models.feedforward import FeedForward
 from gaitdisc.models.training_settings import ScaledSamples, Schedule
 from gaitdisc.recording.arrays import Values
 
-F32 = np.float32
+F32, Singles = np.float32, NDArray[np.float32]
 LOG2_E = F32(1.4426950408889634)
 LN_2_HIGH, LN_2_LOW = F32(0.693359375), F32(-2.12194440e-4)
 BLOCK = 128
@@ -56,10 +56,8 @@ def exponential(x: np.float32) -> np.float32:
 
 
 @inlined
-def layers(weights: NDArray[np.float32], inputs: int, nodes: int, outputs: int):
-    """Return the three matrices, then the three offsets: views into the vector.
-
-    weights (weight,): weights or their gradient
+def layers(weights: Singles, inputs: int, nodes: int, outputs: int):
+    """Return the three matrices, then the three offsets: views into weights, or into their gradient (weight,).
 
     >>> [part.shape for part in layers(np.zeros(7880, np.float32), 49, 64, 8)]
     [(64, 49), (64, 64), (8, 64), (64,), (64,), (8,)]
@@ -138,14 +136,7 @@ def _sigmoid_backward(d, s, offset_gradient):
 
 
 @inlined
-def gradient(
-    weights: NDArray[np.float32],
-    into: NDArray[np.float32],
-    x: NDArray[np.float32],
-    y: NDArray[np.float32],
-    hidden: NDArray[np.float32],
-    samples: int,
-) -> None:
+def gradient(weights: Singles, into: Singles, x: Singles, y: Singles, hidden: Singles, samples: int) -> None:
     """What a block of samples adds to the gradient of a batch's mean squared error.
 
     weights, into (weight,): weights, and where their gradient goes
@@ -171,14 +162,8 @@ def gradient(
 
 
 @fast
-def mean_squared_error(
-    weights: NDArray[np.float32], x: NDArray[np.float32], y: NDArray[np.float32], nodes: int
-) -> float:
-    """Mean squared error over samples and outputs.
-
-    weights (weight,): of the network
-    x, y (sample, input), (sample, output): scaled samples, contiguous
-    """
+def mean_squared_error(weights: Singles, x: Singles, y: Singles, nodes: int) -> float:
+    """Mean squared error over samples and outputs."""
     hidden = np.empty((3, BLOCK, nodes), np.float32)
     found = np.empty((BLOCK, y.shape[1]), np.float32)
     offset = layers(weights, x.shape[1], nodes, y.shape[1])[5]
@@ -225,23 +210,14 @@ class Batches(NamedTuple):
 
     order: NDArray[np.int64]
     size: int
-    paces: NDArray[np.float32]
+    paces: Singles
 
 
 @fast
-def descend_epoch(
-    weights: NDArray[np.float32],
-    moments: NDArray[np.float32],
-    x: NDArray[np.float32],
-    y: NDArray[np.float32],
-    batches: Batches,
-    nodes: int,
-) -> None:
+def descend_epoch(weights: Singles, moments: Singles, x: Singles, y: Singles, batches: Batches, nodes: int) -> None:
     """One pass over the samples, a step of Adam for each batch; weights and moments are changed in place.
 
-    weights (weight,): of the network
     moments (2, weight): running means of the gradient and of its square
-    x, y (sample, input), (sample, output): scaled samples, contiguous
     """
     hidden = np.empty((5, BLOCK, nodes), np.float32)
     x_block, y_block = np.empty((BLOCK, x.shape[1]), np.float32), np.empty((BLOCK, y.shape[1]), np.float32)
@@ -265,8 +241,6 @@ class FusedSteps:
 
     Same weights to start from, same order of samples, same steps as `TorchSteps`: the two differ by rounding. Nothing
     is dispatched between two matrix products, and what lies between them is one pass over memory.
-
-    part, check: what it descends on, and is checked by
     """
 
     arithmetic = "fused"
@@ -296,11 +270,11 @@ class FusedSteps:
         x, y = self._check
         return float(mean_squared_error(self._weights, x, y, self._nodes))
 
-    def weights(self) -> NDArray[np.float32]:
+    def weights(self) -> Singles:
         """Copy of the weights as they are: a reference would follow the descent."""
         return self._weights.copy()
 
-    def restore(self, weights: NDArray[np.float32]) -> None:
+    def restore(self, weights: Singles) -> None:
         """Give the network weights that it had before, from `weights`."""
         self._weights[:] = weights
         parameters = matrices_then_offsets(self._network)

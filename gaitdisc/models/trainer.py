@@ -1,25 +1,29 @@
-"""One trainer for every network: the inner block decides, the held-out part is never seen."""
+"""One trainer for every network: Adam along a cosine; the inner block decides, the held-out part is never seen."""
 
 from __future__ import annotations
 
 import copy
+import math
 import time
 from collections.abc import Callable
 from dataclasses import dataclass, replace
 from functools import partial
-from typing import Any, cast
+from typing import TYPE_CHECKING, Any, cast
 
 import numpy as np
 import torch
 from torch import Tensor, nn
 
 from gaitdisc.errors import TrainingError
-from gaitdisc.models.descent import Descent, descend
+from gaitdisc.models.feedforward import FeedForward
 from gaitdisc.models.ridge import LEAST_BEFORE_INNER, LEAST_SAMPLES, SEAM_S
 from gaitdisc.models.trained_network import TrainedNetwork, pin_threads
-from gaitdisc.models.training_settings import ScaledSamples, TrainingSettings, make_schedule
+from gaitdisc.models.training_settings import ScaledSamples, Schedule, TrainingSettings, make_schedule
 from gaitdisc.recording import Samples, Scale, fit_scale
 from gaitdisc.recording.arrays import Values
+
+if TYPE_CHECKING:
+    from gaitdisc.models.fused_steps import FusedSteps
 
 
 @dataclass(frozen=True, eq=False)
@@ -54,12 +58,9 @@ def train(
     solved by ridge least squares on all samples, inner block included.
 
     Only the first decay starts from scratch. Each further one goes on from the weights of the one before, for a third
-    of the epochs at half the learning rate, so that a further decay is also a further descent. That takes 0.6 of the
-    time of descents from scratch; R2 on signals like gait was the same (studies/results/speed.md).
-
-    The hidden layers are not descended again on all samples: checked on a further block of the training part of two
-    runs of 60 s (ten angles; two seeds), keep-and-solve had a mean R2 of 0.9842 and 0.9794, refit-and-solve 0.9843 and
-    0.9797 (decay 0.1, penalty 1e-4), at half the time.
+    of the epochs at half the learning rate, so that a further decay is also a further descent: R2 on signals like gait
+    was the same in 0.6 of the time (studies/results/speed.md). The hidden layers are not descended again on all
+    samples, which doubled the time for no more than 0.0003 of R2.
 
     Where a check part is given, it is the inner block, and takes no part in the last layer either: its errors remain
     errors on samples that were not fitted.
@@ -172,8 +173,6 @@ def solve_readout(network: nn.Module, part: ScaledSamples, penalty: float) -> No
     """Replace the last layer by its ridge least squares solution for the features as they are.
 
     Minimises sum (y - W h - b)^2 / samples + penalty sum W^2, in double precision; b is not penalised.
-
-    network: with `features` and a linear layer `readout`; its readout is changed in place
     """
     readout = cast(nn.Linear, network.readout)
     network.eval()
@@ -184,11 +183,7 @@ def solve_readout(network: nn.Module, part: ScaledSamples, penalty: float) -> No
 
 
 def choose_penalty(network: nn.Module, part: ScaledSamples, check: ScaledSamples) -> tuple[float, float]:
-    """Penalty of the readout that does best on a check part, and the mean squared error it reaches there.
-
-    part, check: what it solves on, and is checked by
-    returns penalty, loss: one of `PENALTIES`; mean squared error of the scaled outputs
-    """
+    """Penalty of the readout that does best on a check part, and the mean squared error that it reaches there."""
     network.eval()
     solve = _ridge(_features(network, part.x), part.y.cpu().double().numpy())
     h, y = _features(network, check.x), check.y.cpu().double().numpy()
@@ -216,3 +211,108 @@ def _ridge(h: Values, y: Values) -> Callable[[float], tuple[Values, Values]]:
 def _features(network: nn.Module, x: Tensor) -> Values:
     with torch.no_grad():
         return cast(Any, network).features(x).cpu().double().numpy()
+
+
+class TorchSteps:
+    """Adam with decoupled decay on any torch module.
+
+    Decay acts on weight matrices only; weights stay float32.
+
+    precision: of the matrix products, `float32` or `bfloat16` (needs AVX-512 or a GPU: else torch has no LSTM)
+    Source: Loshchilov and Hutter 2019, Decoupled weight decay regularization. The dissertation does not say how it
+        trained.
+    """
+
+    arithmetic = "torch"
+
+    def __init__(
+        self,
+        network: nn.Module,
+        part: ScaledSamples,
+        check: ScaledSamples,
+        schedule: Schedule,
+        precision: str = "float32",
+    ) -> None:
+        self._network, self._part, self._check, self._batch = network, part, check, schedule.batch
+        able = part.x.is_cuda or "AVX512" in torch.backends.cpu.get_cpu_capability()
+        self._short = able and precision == "bfloat16"
+        matrices = [p for p in network.parameters() if p.ndim > 1]
+        others = [p for p in network.parameters() if p.ndim <= 1]
+        groups = [{"params": matrices, "weight_decay": schedule.decay}, {"params": others, "weight_decay": 0.0}]
+        self._adam = torch.optim.AdamW(groups, fused=True)
+
+    def epoch(self, order: Tensor, rates: Values) -> None:
+        """Step through all samples once, in an order (sample,), at the learning rate of each step (step,)."""
+        self._network.train()
+        x, y = (values[order.to(values.device)] for values in self._part)
+        for step, rate in enumerate(rates.tolist()):
+            rows = slice(step * self._batch, (step + 1) * self._batch)
+            for group in self._adam.param_groups:
+                group["lr"] = rate
+            self._adam.zero_grad()
+            with torch.autocast(x.device.type, torch.bfloat16, enabled=self._short):
+                estimate = self._network(x[rows])
+            nn.functional.mse_loss(estimate.float(), y[rows]).backward()
+            self._adam.step()
+
+    def loss(self) -> float:
+        """Mean squared error of the scaled outputs on the check part."""
+        self._network.eval()
+        with torch.no_grad():
+            return float(nn.functional.mse_loss(self._network(self._check.x), self._check.y))
+
+    def weights(self) -> dict[str, Any]:
+        """Copy of the weights as they are: a reference would follow the descent."""
+        return copy.deepcopy(self._network.state_dict())
+
+    def restore(self, weights: dict[str, Any]) -> None:
+        """Give the network weights that it had before."""
+        self._network.load_state_dict(weights)
+
+
+@dataclass(frozen=True)
+class Descent:
+    """How the loss on the check part went, epoch by epoch."""
+
+    losses: tuple[float, ...]  # mean squared error of the scaled outputs on the check part, after every epoch
+    best_epoch: int  # epoch, from 1, whose weights the network has now
+    arithmetic: str
+
+
+def descend(
+    network: nn.Module,
+    part: ScaledSamples,
+    check: ScaledSamples,
+    schedule: Schedule,
+    settings: TrainingSettings,
+    progress: Callable[[float], None] = lambda _: None,
+) -> Descent:
+    """Train a network on a part and give it back the weights that did best on the check part."""
+    steps: TorchSteps | FusedSteps | None = None
+    if settings.arithmetic == "auto" and settings.precision == "float32":
+        from gaitdisc.models.fused_steps import FusedSteps, can_be_fused
+
+        if can_be_fused(network):
+            steps = FusedSteps(cast(FeedForward, network), part, check, schedule)
+    steps = steps or TorchSteps(network, part, check, schedule, settings.precision)
+    order = torch.Generator().manual_seed(settings.seed)
+    losses: list[float] = []
+    best: Any = steps.weights()
+    epochs = len(schedule.rates)
+    for epoch in range(1, epochs + 1):
+        steps.epoch(torch.randperm(len(part.x), generator=order), schedule.rates[epoch - 1])
+        losses.append(steps.loss())
+        if not math.isfinite(losses[-1]):
+            raise TrainingError(
+                "the training loss must stay finite",
+                f"it was {losses[-1]} after epoch {epoch} of {epochs} at learning rate {schedule.rates[0, 0]:g}",
+                "Use another seed or a tenth of the learning rate. Check the findings for samples far out of range.",
+            )
+        if losses[-1] <= min(losses):
+            best = steps.weights()
+        progress(epoch / epochs)
+        if settings.patience and epoch - losses.index(min(losses)) > settings.patience:
+            break
+    steps.restore(best)
+    network.eval()
+    return Descent(tuple(losses), losses.index(min(losses)) + 1, steps.arithmetic)

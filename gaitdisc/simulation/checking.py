@@ -7,11 +7,15 @@ import math
 import re
 from collections.abc import Collection, Iterable, Iterator
 from functools import lru_cache
+from typing import TYPE_CHECKING
 
-from gaitdisc.channel import nearest_word
+from gaitdisc.channel import did_you_mean
 from gaitdisc.errors import SimulationError
 from gaitdisc.simulation.expression import RESERVED, Operation, Tree, delays, names, parse, unknown_name
-from gaitdisc.simulation.parts import Input, Parts, Sensor, Term
+from gaitdisc.simulation.parts import Input, Sensor, Term
+
+if TYPE_CHECKING:
+    from gaitdisc.simulation.simulation import Simulation
 
 MOST_PARTS = 500  # states, inputs, parameters, ports, definitions and effects together
 MOST_CHARACTERS = 200_000  # of all expressions
@@ -19,7 +23,7 @@ _NAME = re.compile(r"[A-Za-z][A-Za-z0-9_]{0,63}\Z")
 _KEYWORDS = frozenset(keyword.kwlist)
 
 
-def check(simulation: Parts) -> None:
+def check(simulation: Simulation) -> None:
     """Refuse a simulation whose parts do not hold together."""
     _check_size(simulation)
     _check_names(simulation)
@@ -31,7 +35,7 @@ def check(simulation: Parts) -> None:
     _check_sensors(simulation)
 
 
-def _check_size(simulation: Parts) -> None:
+def _check_size(simulation: Simulation) -> None:
     if not simulation.states:
         raise SimulationError("a simulation must have at least one state", "there is none", "Add [states.<name>].")
     parts = sum(
@@ -54,7 +58,7 @@ def _check_size(simulation: Parts) -> None:
         )
 
 
-def _check_names(simulation: Parts) -> None:
+def _check_names(simulation: Simulation) -> None:
     owner: dict[str, str] = {}
     for section, name in _name(simulation):
         if not _NAME.match(name) or name in _KEYWORDS:
@@ -87,7 +91,7 @@ def _check_names(simulation: Parts) -> None:
         )
 
 
-def _name(simulation: Parts) -> Iterator[tuple[str, str]]:
+def _name(simulation: Simulation) -> Iterator[tuple[str, str]]:
     for section in ("states", "inputs", "parameters", "ports"):
         for part in getattr(simulation, section):
             yield section, part.name
@@ -95,7 +99,7 @@ def _name(simulation: Parts) -> Iterator[tuple[str, str]]:
         yield "definitions", name
 
 
-def _check_numbers(simulation: Parts) -> None:
+def _check_numbers(simulation: Simulation) -> None:
     for parameter in simulation.parameters:
         place = ("parameters", parameter.name)
         bounds = [bound for bound in (parameter.low, parameter.high) if bound is not None]
@@ -114,13 +118,12 @@ def _check_numbers(simulation: Parts) -> None:
             )
 
 
-def _check_equations(simulation: Parts) -> None:
+def _check_equations(simulation: Simulation) -> None:
     states = [state.name for state in simulation.states]
     given = [name for name, _ in simulation.equations]
     for name in given:
         if name not in states:
-            nearest = nearest_word(name, states)
-            remedy = f"Did you mean {nearest!r}?" if nearest else f"The states are {', '.join(states)}."
+            remedy = did_you_mean(name, states, f"The states are {', '.join(states)}.")
             raise SimulationError(
                 "an equation must belong to a state", f"{name!r} is not a state", remedy, ("equations", name)
             )
@@ -132,7 +135,7 @@ def _check_equations(simulation: Parts) -> None:
             )
 
 
-def _check_expressions(simulation: Parts) -> None:
+def _check_expressions(simulation: Simulation) -> None:
     ports = tuple(port.name for port in simulation.ports)
     plain = dict.fromkeys((*simulation.signals, *(parameter.name for parameter in simulation.parameters), "t"))
     known = plain | dict.fromkeys(ports)
@@ -149,11 +152,8 @@ def _check_expressions(simulation: Parts) -> None:
             known[name] = None
 
 
-def check_expression(text: str, known: Collection[str], simulation: Parts) -> Tree:
-    """Tree of an expression whose names all have values.
-
-    simulation: whose states and inputs may be delayed, by its parameters
-    """
+def check_expression(text: str, known: Collection[str], simulation: Simulation) -> Tree:
+    """Tree of an expression whose names all have values, some of them signals that may be delayed."""
     tree, named, late = _parse_parts(text)
     unknown = next((name for name in named if name not in known), None)
     if unknown is not None:
@@ -202,7 +202,7 @@ def _check_place(term: Term, ports: Iterable[str], states: Iterable[str], place:
         )
 
 
-def _check_ports(simulation: Parts) -> None:
+def _check_ports(simulation: Simulation) -> None:
     lines = (*simulation.definitions, *simulation.equations)
     used = {name for _, text in lines for name in _parse_parts(text)[1]}
     for port in simulation.ports:
@@ -215,7 +215,7 @@ def _check_ports(simulation: Parts) -> None:
             )
 
 
-def _check_sensors(simulation: Parts) -> None:
+def _check_sensors(simulation: Simulation) -> None:
     observed = [name for name, _ in simulation.observations]
     for sensor in simulation.sensors:
         place = ("observations", sensor.channel)
@@ -227,7 +227,7 @@ def _check_sensors(simulation: Parts) -> None:
         _check_positive(sensor, {"sd": sensor.unit or "the column's unit", "lowpass": "Hz"}, place)
 
 
-def _check_inputs(simulation: Parts) -> None:
+def _check_inputs(simulation: Simulation) -> None:
     for one in simulation.inputs:
         place, errors = ("inputs", one.name), one.gain is not None or one.sd is not None
         _check_positive(one, {"gain": "1", "sd": one.unit, "wander": "s"}, place)

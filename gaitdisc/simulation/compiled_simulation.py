@@ -48,12 +48,7 @@ class Drive:
 
     @classmethod
     def of(cls, trials: Sequence[ArrayLike], rate: float, time0: ArrayLike = 0.0) -> Drive:
-        """Drive of a list of trials.
-
-        trials each (sample, input): inputs of each trial; (sample, 0) where the simulation has none
-        rate: samples a second [Hz]
-        time0 float or (trial,): time of each first sample [s]
-        """
+        """Drive of a list of trials, each (sample, input), with one first time for all or one for each."""
         arrays = [np.asarray(trial, float) for trial in trials]
         samples = np.array([len(each) for each in arrays])
         inputs = np.zeros((len(arrays), samples.max(), arrays[0].shape[1]))
@@ -118,41 +113,22 @@ class Compiled:
         return BLOCK, integrate
 
     def rates(
-        self,
-        t: ArrayLike,
-        x: Values,
-        u: Values,
-        values: Values | None = None,
-        late: Values | None = None,
+        self, t: ArrayLike, x: Values, u: Values, values: Values | None = None, late: Values | None = None
     ) -> Values:
-        """Right-hand side at many points.
+        """Right-hand side at many points; parameters are the simulation's own where absent, or of each point.
 
-        t (point,) or (): time [s]
-        x (point, state): states
-        u (point, input): inputs
-        values (parameter,) or (point, parameter): parameters; the simulation's own where absent
         late (point, delay): delayed signals, in the order of `right_hand_side.delays`
         """
         x, values = np.asarray(x, float), self.defaults if values is None else np.asarray(values, float)
         columns = leaf_columns(np.broadcast_to(np.asarray(t, float), len(x)), x, u, values)
         return self._derivatives(x, at_points(self.right_hand_side, columns, late, len(x)).T, values)
 
-    def _derivatives(
-        self,
-        x: Values,  # noqa: ARG002
-        given: Values,
-        values: Values,  # noqa: ARG002
-    ) -> Values:
+    def _derivatives(self, x: Values, given: Values, values: Values) -> Values:  # noqa: ARG002
         """Derivatives (point, state) by what the right-hand side gives (point, output)."""
         return given
 
     def observe(self, drive: Drive, rows: Rows, states: Values, past: Values | None = None) -> Values:
-        """Observed channels along rows that were run.
-
-        states (row, step, state): from `run`
-        past (trial, sample, state): as for `run`
-        returns (row, step, observed)
-        """
+        """Observed channels (row, step, observed) along rows that were run, their states and past as of `run`."""
         place, _, values = self._rows(drive, rows)
         count, steps, n = states.shape
         sample = place[:, 1, None] + np.arange(steps)

@@ -63,10 +63,7 @@ def on_even_time(
 
 
 def clock_findings(trials: list[TrialColumns], rate: float, source: str) -> list[Finding]:
-    """Note times that look like milliseconds.
-
-    rate: samples a second [Hz]
-    """
+    """Note times that look like milliseconds."""
     whole = all(np.array_equal(trial.time, np.rint(trial.time)) for trial in trials)
     if rate >= SLOW_HZ or not whole:
         return []

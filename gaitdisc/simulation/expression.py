@@ -13,7 +13,7 @@ from collections.abc import Collection, Iterator, Mapping
 from dataclasses import dataclass
 from functools import lru_cache
 
-from gaitdisc.channel import nearest_word
+from gaitdisc.channel import did_you_mean
 from gaitdisc.errors import SimulationError
 
 LONGEST, DEEPEST, LARGEST = 20_000, 250, 4_000  # characters, nesting, nodes
@@ -76,8 +76,6 @@ Tree = Number | Name | Operation
 def parse(text: str) -> Tree:
     """Tree of an expression.
 
-    text: numbers, names, `+ - * / **`, parentheses, and the functions of a simulation file
-
     >>> parse("-k*x")
     Operation(symbol='*', arguments=(Operation(symbol='neg', arguments=(Name(name='k'),)), Name(name='x')))
     """
@@ -137,9 +135,8 @@ def unknown_name(text: str, name: str, known: tuple[str, ...]) -> SimulationErro
     "Did you mean 'omega'? Known names: omega, b."
     """
     found = re.search(rf"\b{re.escape(name)}\b", text)
-    nearest = nearest_word(name, known)
     listed = ", ".join(known[:30]) + (", ..." if len(known) > 30 else "")
-    remedy = (f"Did you mean {nearest!r}? " if nearest else "") + f"Known names: {listed}."
+    remedy = f"{did_you_mean(name, known)} Known names: {listed}.".lstrip()
     return _refusal(text, found.start() if found else 0, f"the unknown name {name!r}", remedy)
 
 
@@ -187,9 +184,8 @@ class _Conversion:
             raise self._refuse(node, "a call of something other than a named function", f"Only {_ALLOWED}.")
         name, count = node.func.id, len(node.args)
         if name not in FUNCTIONS:
-            nearest = nearest_word(name, FUNCTIONS)
-            hint = f"Did you mean {nearest!r}? " if nearest else ""
-            raise self._refuse(node, f"the unknown function {name!r}", f"{hint}Only {_ALLOWED}.")
+            remedy = f"{did_you_mean(name, FUNCTIONS)} Only {_ALLOWED}.".lstrip()
+            raise self._refuse(node, f"the unknown function {name!r}", remedy)
         fewest, most = FUNCTIONS[name]
         if not fewest <= count <= most:
             wanted = f"{fewest}" if fewest == most else f"{fewest} to {most}"

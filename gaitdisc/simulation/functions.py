@@ -96,8 +96,14 @@ def simulation_from_function(
             f"{taken.title} returns {count} derivatives and has {given}",
             "Give every state its own argument, before the inputs.",
         )
-    unit = dict(units or {})
-    _refuse_unknown_units(taken, unit)
+    unit, known = dict(units or {}), (*taken.signals, *taken.numbers, *taken.ports)
+    unknown = next((name for name in unit if name not in known), None)
+    if unknown is not None:
+        raise SimulationError(
+            "a unit must belong to an argument of the function",
+            f"{taken.title} has no argument {unknown!r}",
+            f"Known: {', '.join(known)}.",
+        )
     parts = (
         tuple(State(name, unit.get(name, "1")) for name in taken.signals[:count]),
         tuple(Input(name, unit.get(name, "1")) for name in taken.signals[count:]),
@@ -349,14 +355,3 @@ def _number(function: Callable[..., Any], name: str, value: Any) -> float:
             "Use a number, or remove the default.",
         )
     return float(value)
-
-
-def _refuse_unknown_units(taken: _Taken, units: Mapping[str, str]) -> None:
-    known = (*taken.signals, *taken.numbers, *taken.ports)
-    unknown = next((name for name in units if name not in known), None)
-    if unknown is not None:
-        raise SimulationError(
-            "a unit must belong to an argument of the function",
-            f"{taken.title} has no argument {unknown!r}",
-            f"Known: {', '.join(known)}.",
-        )

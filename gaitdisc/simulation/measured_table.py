@@ -38,10 +38,7 @@ def read_measured(path: Path | str, simulation: Simulation) -> Measured:
 
 
 def gather_table(table: pd.DataFrame, simulation: Simulation, source: str) -> Measured:
-    """Trials of a table that is already read, as `read_measured` has them.
-
-    table: columns `trial`, `time` [s], each input and each observed channel [the simulation's units]
-    """
+    """Trials of a table that is already read, in the simulation's units, as `read_measured` has them."""
     columns = [str(column).strip() for column in table.columns]
     _refuse_doubled(columns, source)
     table = table.set_axis(columns, axis="columns").reset_index(drop=True)
@@ -52,7 +49,13 @@ def gather_table(table: pd.DataFrame, simulation: Simulation, source: str) -> Me
             raise _missing(name, columns, source)
     trial = _trials(table, source)
     numbers = {name: _numbers(table, name, trial, source) for name in dict.fromkeys(("time", *inputs, *channels))}
-    _refuse_timeless(numbers["time"], trial, source)
+    timeless = np.flatnonzero(~np.isfinite(numbers["time"]))
+    if timeless.size:
+        raise ReadError(
+            "every row must have a time",
+            f"{source}, line {timeless[0] + 2} (trial {trial[timeless[0]]!r}) has none",
+            "Fill the column 'time', or remove the row.",
+        )
     order = list(dict.fromkeys(trial.tolist()))
     parts = []
     for name in order:
@@ -63,10 +66,7 @@ def gather_table(table: pd.DataFrame, simulation: Simulation, source: str) -> Me
 
 
 def gather_recordings(recordings: Sequence[Recording], simulation: Simulation) -> Measured:
-    """Trials of recordings, one each, converted to the simulation's units.
-
-    recordings: with a channel for each input and each observation, at one rate
-    """
+    """Trials of recordings at one rate, one each, converted to the simulation's units."""
     inputs = tuple(each.name for each in simulation.inputs)
     findings: dict[str, Finding] = {}
     parts = []
@@ -90,11 +90,7 @@ def gather_recordings(recordings: Sequence[Recording], simulation: Simulation) -
 
 
 def _columns(
-    name: str,
-    time: Values,
-    numbers: Mapping[str, Values],
-    inputs: Sequence[str],
-    channels: Sequence[str],
+    name: str, time: Values, numbers: Mapping[str, Values], inputs: Sequence[str], channels: Sequence[str]
 ) -> TrialColumns:
     none = np.empty((len(time), 0))
     driving, observed = (np.column_stack([numbers[each] for each in names] or [none]) for names in (inputs, channels))
@@ -209,16 +205,6 @@ def _numbers(table: pd.DataFrame, name: str, trial: NDArray[np.object_], file: s
             "Write a number, or leave the cell empty.",
         )
     return values
-
-
-def _refuse_timeless(time: Values, trial: NDArray[np.object_], file: str) -> None:
-    bad = np.flatnonzero(~np.isfinite(time))
-    if bad.size:
-        raise ReadError(
-            "every row must have a time",
-            f"{file}, line {bad[0] + 2} (trial {trial[bad[0]]!r}) has none",
-            "Fill the column 'time', or remove the row.",
-        )
 
 
 def _report_left_out(

@@ -1,10 +1,8 @@
-"""The named parts of a simulation, and all of them together."""
+"""The named parts of a simulation."""
 
 from __future__ import annotations
 
-from collections.abc import Iterator
-from dataclasses import dataclass, field
-from pathlib import Path
+from dataclasses import dataclass
 
 Lines = tuple[tuple[str, str], ...]  # name, expression
 
@@ -108,41 +106,3 @@ class Sensor:
     def known(self) -> bool:
         """Whether anything is said of it."""
         return bool(self.unit) or self.sd is not None or self.lowpass is not None
-
-
-@dataclass(frozen=True)
-class Parts:
-    """All that a simulation file says; `Simulation` says what each is, and refuses what does not hold together."""
-
-    title: str
-    states: tuple[State, ...]
-    inputs: tuple[Input, ...] = ()
-    parameters: tuple[Parameter, ...] = ()
-    ports: tuple[Port, ...] = ()
-    definitions: Lines = ()
-    equations: Lines = ()
-    observations: Lines = ()
-    effects: tuple[Term, ...] = ()
-    sensors: tuple[Sensor, ...] = ()
-    source: Path | None = field(default=None, compare=False)
-    layout: str = field(default="", compare=False, repr=False)
-    model: str = ""
-    inexact: float = field(default=0.0, repr=False)
-
-    @property
-    def signals(self) -> tuple[str, ...]:
-        """Names of the states and inputs, which vary in time and can be delayed."""
-        return (*(state.name for state in self.states), *(each.name for each in self.inputs))
-
-    @property
-    def driving(self) -> tuple[Input, ...]:
-        """The inputs that were measured."""
-        return tuple(each for each in self.inputs if not each.computed)
-
-    def expressions(self) -> Iterator[tuple[tuple[str, str], str]]:
-        """Every expression, after section and key of the simulation file; effects by their number."""
-        for section in ("definitions", "equations", "observations"):
-            for name, text in getattr(self, section):
-                yield (section, name), text
-        for number, effect in enumerate(self.effects):
-            yield ("effects", str(number)), effect.term

@@ -13,7 +13,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from gaitdisc.errors import SimulationError
 from gaitdisc.recording.arrays import Values
-from gaitdisc.simulation.expression import Name, Number, Operation, Tree, written
+from gaitdisc.simulation.expression import Name, Number, Tree, written
 
 CODES = {
     "store": 0, "+": 1, "-": 2, "*": 3, "/": 4, "**": 5, "neg": 6, "sin": 7, "cos": 8, "tan": 9, "tanh": 10, "exp": 11,
@@ -29,7 +29,7 @@ class Program:
     """Register operations."""
 
     leaves: tuple[str, ...]  # names whose values the first registers hold, in order
-    delays: tuple[tuple[str, Tree], ...]  # tuple of (str, tree), signal and seconds of what the next registers hold
+    delays: tuple[tuple[str, Tree], ...]  # signal and seconds of what the next registers hold
     constants: Values  # (constant,), what the registers after those hold
     code: NDArray[np.int64]  # (operation, 4), operation, register (or output) written, registers read
     setup: int  # how many operations at the head depend on parameters alone
@@ -85,19 +85,16 @@ class _Graph:
             return self.constant(tree.value)
         if isinstance(tree, Name):
             return self.scope[tree.name]
-        if tree.symbol == "delay":
-            return self._delayed(tree)
-        return self._operation(tree.symbol, [self.node(argument) for argument in tree.arguments])
-
-    def constant(self, value: float) -> int:
-        return self._number_node(("constant", value, np.signbit(value)))
-
-    def _delayed(self, tree: Operation) -> int:
+        if tree.symbol != "delay":
+            return self._operation(tree.symbol, [self.node(argument) for argument in tree.arguments])
         signal, seconds = tree.arguments
         assert isinstance(signal, Name)  # checked with the simulation
         key = (signal.name, written(seconds))
         self.delays.setdefault(key, seconds)
         return self._number_node(("delay", *key))
+
+    def constant(self, value: float) -> int:
+        return self._number_node(("constant", value, np.signbit(value)))
 
     def _operation(self, symbol: str, arguments: list[int]) -> int:
         if symbol == "sign":
@@ -218,20 +215,12 @@ class _Order:
 
 
 def leaf_columns(t: ArrayLike, x: Values, u: Values, values: Values) -> list[Values]:
-    """Values of time, states, inputs and parameters in the order in which a program takes them.
-
-    t (point,): time [s]
-    x, u (point, state), (point, input): states and inputs
-    values (parameter,) or (point, parameter): parameters
-    """
+    """Time (point,), states, inputs and parameters (point, ...), column by column, in the order of a program."""
     return [np.asarray(t, float), *np.asarray(x, float).T, *np.asarray(u, float).T, *np.asarray(values, float).T]
 
 
 def at_points(
-    program: Program,
-    columns: Sequence[Values],
-    late: Values | None = None,
-    points: int | None = None,
+    program: Program, columns: Sequence[Values], late: Values | None = None, points: int | None = None
 ) -> Values:
     """Outputs of a program at many points, (output, point).
 

@@ -35,8 +35,7 @@ class PythonSimulation:
     # ports (row, port) and gives the derivatives (row, state). Parameters that are added later follow the model's own
     rates: RightHandSide = field(hash=False)
     parts: Simulation
-    # tuple of (str, str), inputs that are replaced by an expression of the measured ones
-    replaced: Lines = field(default=())
+    replaced: Lines = field(default=())  # inputs that are replaced by an expression of the measured ones
     # how the function is called and why so, for a person; nothing where there is nothing to say
     manner: str = field(default="", compare=False)
 
@@ -78,10 +77,7 @@ def python_simulation(
     ports: Sequence[Port] = (),
     observations: Mapping[str, str] | None = None,
 ) -> PythonSimulation:
-    """Simulation of a Python function.
-
-    observations: expression by measured column; by default each state under its own name
-    """
+    """Simulation of a Python function, with the expression of each measured column; each state by default."""
     equations, seen = any_equations(states, (*inputs, *parameters, *ports)), tuple((observations or {}).items())
     parts = Simulation(title, tuple(states), tuple(inputs), tuple(parameters), tuple(ports), (), equations, seen)
     return PythonSimulation(rates, parts)
@@ -96,9 +92,7 @@ def any_equations(states: Sequence[State], parts: Sequence[Input | Parameter | P
 def call(simulation: PythonSimulation, x: Values, fed: Values, values: Values) -> Values:
     """Derivatives by the function, with what was added to the equations.
 
-    x (row, state): states
     fed (row, feed): ports, sums of the equations' effects, inputs, time: the observations of `PythonSimulation.feeds`
-    values (row, parameter): parameters
     """
     ports, states = len(simulation.ports), len(simulation.states)
     own = np.asarray(simulation.rates(fed[:, -1], x, fed[:, ports + states : -1], values, fed[:, :ports]))

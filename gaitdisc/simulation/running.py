@@ -27,8 +27,6 @@ _NUDGE = 1e-2  # of a parameter, to see what drives the rate
 def compile_simulation(simulation: Simulation | PythonSimulation) -> Compiled:
     """Simulation made ready to run; the same one again costs nothing.
 
-    simulation: with its effects, which are part of the right-hand side
-
     >>> from gaitdisc.simulation.parts import State
     >>> compile_simulation(Simulation("decay", (State("x"),), equations=(("x", "-x"),))).states
     ('x',)
@@ -86,11 +84,7 @@ def _with_effects(tree: Tree, simulation: Simulation, kind: str, place: str) -> 
 
 @dataclass(frozen=True, eq=False)
 class PythonCompiled(Compiled):
-    """A `PythonSimulation` that is ready to run; it runs and observes as `Compiled` does.
-
-    simulation, states, inputs, parameters, observed, defaults, right_hand_side, observation: the right-hand side gives
-        what the function is fed with
-    """
+    """A `PythonSimulation` ready to run, as a `Compiled` whose right-hand side gives what the function is fed."""
 
     model: PythonSimulation
 

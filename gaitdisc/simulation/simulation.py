@@ -2,18 +2,19 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection, Iterable, Mapping, Sequence
-from dataclasses import dataclass, replace
+from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
+from dataclasses import dataclass, field, replace
+from pathlib import Path
 
 from gaitdisc.errors import SimulationError
 from gaitdisc.simulation.checking import check
 from gaitdisc.simulation.expression import parse, substitute, written
-from gaitdisc.simulation.parts import Parameter, Parts, Sensor, State, Term
+from gaitdisc.simulation.parts import Input, Lines, Parameter, Port, Sensor, State, Term
 from gaitdisc.words import as_html
 
 
 @dataclass(frozen=True)
-class Simulation(Parts):
+class Simulation:
     """A dynamical system, as a simulation file describes it. It is immutable, and checked when it is created.
 
     Parameters
@@ -61,6 +62,21 @@ class Simulation(Parts):
     '-0.4*v'
     """
 
+    title: str
+    states: tuple[State, ...]
+    inputs: tuple[Input, ...] = ()
+    parameters: tuple[Parameter, ...] = ()
+    ports: tuple[Port, ...] = ()
+    definitions: Lines = ()
+    equations: Lines = ()
+    observations: Lines = ()
+    effects: tuple[Term, ...] = ()
+    sensors: tuple[Sensor, ...] = ()
+    source: Path | None = field(default=None, compare=False)
+    layout: str = field(default="", compare=False, repr=False)
+    model: str = ""
+    inexact: float = field(default=0.0, repr=False)
+
     def __post_init__(self) -> None:
         """Make every part a tuple, and refuse what does not hold together."""
         for part in ("states", "inputs", "parameters", "ports", "effects", "sensors"):
@@ -86,6 +102,24 @@ class Simulation(Parts):
         rows += [(each.name, f"{each.value:g} {each.unit}") for each in self.parameters]
         rows += [(f"at {each.place}", each.term) for each in self.effects]
         return as_html(self.title, [*rows, *((f"observed {name}", term) for name, term in self.observations)])
+
+    @property
+    def signals(self) -> tuple[str, ...]:
+        """Names of the states and inputs, which vary in time and can be delayed."""
+        return (*(state.name for state in self.states), *(each.name for each in self.inputs))
+
+    @property
+    def driving(self) -> tuple[Input, ...]:
+        """The inputs that were measured."""
+        return tuple(each for each in self.inputs if not each.computed)
+
+    def expressions(self) -> Iterator[tuple[tuple[str, str], str]]:
+        """Every expression, after section and key of the simulation file; effects by their number."""
+        for section in ("definitions", "equations", "observations"):
+            for name, text in getattr(self, section):
+                yield (section, name), text
+        for number, effect in enumerate(self.effects):
+            yield ("effects", str(number)), effect.term
 
     def values(self) -> dict[str, float]:
         """Parameters by name."""
@@ -179,7 +213,8 @@ class Simulation(Parts):
 
         Parameters
         ----------
-        state : str            Name of the state.
+        state : str
+            Name of the state.
         equation : str
             Expression in the names of the simulation.
         """
@@ -194,10 +229,8 @@ class Simulation(Parts):
         parameter : Parameter
             Parameter with its name, value and unit.
         """
-        if all(each.name != parameter.name for each in self.parameters):
-            return replace(self, parameters=(*self.parameters, parameter))
-        kept = (parameter if each.name == parameter.name else each for each in self.parameters)
-        return replace(self, parameters=tuple(kept))
+        parts = {each.name: each for each in self.parameters} | {parameter.name: parameter}
+        return replace(self, parameters=tuple(parts.values()))
 
     def with_observation(self, name: str, expression: str) -> Simulation:
         """Simulation with an additional observed channel, or with another expression for an existing one.
@@ -209,9 +242,7 @@ class Simulation(Parts):
         expression : str
             Expression in the names of the simulation.
         """
-        kept = dict(self.observations)
-        kept[name] = expression
-        return replace(self, observations=tuple(kept.items()))
+        return replace(self, observations=tuple((dict(self.observations) | {name: expression}).items()))
 
     def observing(self, names: Sequence[str]) -> Simulation:
         """Simulation with only some of its observations, in the order requested.

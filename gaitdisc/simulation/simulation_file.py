@@ -11,7 +11,7 @@ from typing import Any
 from gaitdisc.channel import nearest_word
 from gaitdisc.errors import MissingFileError, ReadError, SchemaError, SimulationError
 from gaitdisc.regular_file import check_regular
-from gaitdisc.simulation.delays import refuse_delays
+from gaitdisc.simulation.evaluating import refuse_delays
 from gaitdisc.simulation.parts import Input, Parameter, Port, Sensor, State, Term
 from gaitdisc.simulation.python_simulation import any_equations
 from gaitdisc.simulation.simulation import Simulation

@@ -35,6 +35,15 @@ class _Undecided(BaseException):  # no `except Exception` of the function may ta
         self.condition = condition
 
 
+def _called(symbol: str, swapped: bool = False) -> Callable[..., Quantity]:
+    return lambda *arguments: _operation(symbol, *(arguments[::-1] if swapped else arguments))
+
+
+def _comparison(of: Callable[[Any, Any], Condition]) -> Callable[[Any, Any], Any]:
+    """A comparison with a number; an array does it number by number."""
+    return lambda one, other: NotImplemented if isinstance(other, np.ndarray) else of(one, other)
+
+
 class Quantity:
     """A number that is known by its expression alone; what is computed with it is such a number again."""
 
@@ -57,9 +66,6 @@ class Quantity:
     def __truediv__(self, other: Any) -> Quantity:
         return self if _is(other, 1) else _operation("/", self, other)
 
-    def __pow__(self, other: Any) -> Quantity:
-        return _operation("**", self, other)
-
     def __radd__(self, other: Any) -> Quantity:
         return self if _is(other, 0) else _operation("+", other, self)
 
@@ -69,39 +75,17 @@ class Quantity:
     def __rmul__(self, other: Any) -> Quantity:
         return _product(self, other, swapped=True)
 
-    def __rtruediv__(self, other: Any) -> Quantity:
-        return _operation("/", other, self)
-
-    def __rpow__(self, other: Any) -> Quantity:
-        return _operation("**", other, self)
-
-    def __neg__(self) -> Quantity:
-        return _operation("neg", self)
-
     def __pos__(self) -> Quantity:
         return self
 
-    def __abs__(self) -> Quantity:
-        return _operation("abs", self)
-
-    def __gt__(self, other: Any) -> Condition:
-        return NotImplemented if isinstance(other, np.ndarray) else _positive(self - other)
-
-    def __lt__(self, other: Any) -> Condition:
-        return NotImplemented if isinstance(other, np.ndarray) else _positive(other - self)
-
-    def __ge__(self, other: Any) -> Condition:
-        return NotImplemented if isinstance(other, np.ndarray) else ~_positive(other - self)
-
-    def __le__(self, other: Any) -> Condition:
-        return NotImplemented if isinstance(other, np.ndarray) else ~_positive(self - other)
-
-    def __eq__(self, other: Any) -> Condition:  # pyright: ignore[reportIncompatibleMethodOverride]
-        return NotImplemented if isinstance(other, np.ndarray) else ~_positive(abs(self - other))
-
-    def __ne__(self, other: Any) -> Condition:  # pyright: ignore[reportIncompatibleMethodOverride]
-        return NotImplemented if isinstance(other, np.ndarray) else _positive(abs(self - other))
-
+    __rtruediv__, __pow__, __rpow__ = _called("/", swapped=True), _called("**"), _called("**", swapped=True)
+    __neg__, __abs__ = _called("neg"), _called("abs")
+    __gt__ = _comparison(lambda one, other: _positive(one - other))
+    __lt__ = _comparison(lambda one, other: _positive(other - one))
+    __ge__ = _comparison(lambda one, other: ~_positive(other - one))
+    __le__ = _comparison(lambda one, other: ~_positive(one - other))
+    __eq__ = _comparison(lambda one, other: ~_positive(abs(one - other)))
+    __ne__ = _comparison(lambda one, other: _positive(abs(one - other)))
     __hash__ = None  # type: ignore[assignment]
 
     def __bool__(self) -> bool:
@@ -253,7 +237,7 @@ def _chosen(condition: Any, one: Any, other: Any) -> Any:
     """`np.where` of single numbers."""
     if not isinstance(condition, Quantity):
         return one if condition else other
-    held = condition if isinstance(condition, Condition) else condition != 0
+    held: Any = condition if isinstance(condition, Condition) else condition != 0
     own = [each for each in (held, one, other) if isinstance(each, Quantity)]
     size, depth = 3 + sum(each.size for each in own) + held.size, 3 + max(each.depth for each in own)
     return Quantity(_either(held.tree, _tree(one), _tree(other)), held.ways, size, depth)
@@ -264,10 +248,6 @@ def _select(conditions: Sequence[Any], values: Sequence[Any], otherwise: Any = 0
     for condition, value in reversed(list(zip(conditions, values, strict=True))):
         otherwise = _chosen(condition, value, otherwise)
     return otherwise
-
-
-def _called(symbol: str) -> Callable[..., Quantity]:
-    return lambda *arguments: _operation(symbol, *arguments)
 
 
 def _clip(x: Any, low: Any, high: Any) -> Quantity:

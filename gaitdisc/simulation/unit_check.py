@@ -244,9 +244,7 @@ def divide(unit: str, by: str) -> str:
 
 
 def find_unit(expression: str, units: Mapping[str, str]) -> str:
-    """Return the unit of an expression.
-
-    units: unit by name; a name that is not there is a pure number
+    """Return the unit of an expression by the units of its names; a name without one is a pure number.
 
     >>> find_unit("v*abs(v)", {"v": "rad/s"}), find_unit("max(0, x - x0)", {"x": "m"})
     ('rad^2/s^2', 'm')

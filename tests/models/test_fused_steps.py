@@ -9,7 +9,6 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from torch import nn
 
-from gaitdisc.models.descent import TorchSteps
 from gaitdisc.models.feedforward import FeedForward
 from gaitdisc.models.fused_steps import (
     BLOCK,
@@ -21,6 +20,7 @@ from gaitdisc.models.fused_steps import (
     matrices_then_offsets,
     mean_squared_error,
 )
+from gaitdisc.models.trainer import TorchSteps
 from gaitdisc.models.training_settings import ScaledSamples, TrainingSettings, make_schedule
 
 

@@ -10,10 +10,9 @@ import torch
 
 from gaitdisc.errors import TrainingError
 from gaitdisc.models import trainer
-from gaitdisc.models.descent import descend
 from gaitdisc.models.feedforward import FeedForward
 from gaitdisc.models.shred import ShallowDecoder
-from gaitdisc.models.trainer import PENALTIES, choose_device, choose_penalty, solve_readout, train
+from gaitdisc.models.trainer import PENALTIES, choose_device, choose_penalty, descend, solve_readout, train
 from gaitdisc.models.training_settings import ScaledSamples, TrainingSettings, count_epochs, make_schedule
 from gaitdisc.recording import fit_scale
 from gaitdisc.statistics.r2 import r2

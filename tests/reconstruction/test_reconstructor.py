@@ -2,7 +2,7 @@ import numpy as np
 import pytest
 
 from gaitdisc.errors import ChannelError, SchemaError, TrainingError
-from gaitdisc.models.descent import descend
+from gaitdisc.models.trainer import descend
 from gaitdisc.reconstruction import window_model
 from gaitdisc.reconstruction.window_model import (
     KINDS,

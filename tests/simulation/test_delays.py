@@ -8,7 +8,7 @@ from made_simulation import system
 
 from gaitdisc.errors import SchemaError, SimulationError
 from gaitdisc.simulation.compiled_simulation import Drive, Rows
-from gaitdisc.simulation.delays import delay_series, refuse_delays
+from gaitdisc.simulation.evaluating import delay_series, refuse_delays
 from gaitdisc.simulation.parts import Input, Parameter, State
 from gaitdisc.simulation.python_simulation import python_simulation
 from gaitdisc.simulation.running import compile_simulation
