@@ -5,6 +5,7 @@ Exit codes: `gaitdisc/commands/options.py`.
 
 from __future__ import annotations
 
+import gc
 import logging
 import signal
 import sys
@@ -82,11 +83,7 @@ class _Commands(TyperGroup):
 
 
 app = typer.Typer(
-    cls=_Commands,
-    add_completion=False,
-    no_args_is_help=True,
-    rich_markup_mode=None,
-    pretty_exceptions_enable=False,
+    cls=_Commands, add_completion=False, no_args_is_help=True, rich_markup_mode=None, pretty_exceptions_enable=False
 )
 
 
@@ -110,8 +107,11 @@ def _about(
 def main() -> None:
     """Run the command line; a refusal is printed as its sentence, never as a traceback."""
     signal.signal(signal.SIGTERM, lambda *_: sys.exit(ENDED))  # files that are not whole are cleared away first
+    gc.set_threshold(50_000)  # objects, of 700: libraries are no garbage, and looking through them takes a tenth
     try:
         app()
     except GaitdiscError as error:
         typer.echo(f"{type(error).__name__}: {error} [{error.code}]", err=True)
         sys.exit(REFUSED)
+    finally:
+        gc.freeze()  # nor is it looked for at the end
