@@ -8,12 +8,12 @@ import sys
 from pathlib import Path
 
 import pytest
-from chapter5.files import read_cutout, read_sst_mat, read_sst_pacific, read_variables
+from chapter5.files import is_hdf5, read_cutout, read_sst_mat, read_sst_pacific, read_variables
 
 import gaitdisc as gd
 from gaitdisc.discovery.catalogue import read_catalogue
 from gaitdisc.errors import ReadError, SchemaError
-from gaitdisc.ingest.hdf5 import hdf5_file, is_hdf5
+from gaitdisc.ingest.hdf5 import hdf5_file
 from gaitdisc.ingest.reading import ENDINGS, read_trial
 from gaitdisc.ingest.study_file import load_study
 from gaitdisc.regular_file import LARGEST_BYTES, LARGEST_TEXT_BYTES, check_regular, file_sha256

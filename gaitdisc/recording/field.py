@@ -169,13 +169,6 @@ class Field:
         nodes = self.nodes
         return np.column_stack([axis.coordinates[nodes[:, k]] for k, axis in enumerate(self.axes)])
 
-    @property
-    def number_at(self) -> NDArray[np.intp]:
-        """Number of the point at every node of the grid, -1 outside the field."""
-        numbers = np.full(self.mask.shape, -1)
-        numbers[self.mask] = np.arange(self.points)
-        return numbers
-
     def place_words(self, point: int) -> str:
         """Coordinates of a point in words.
 

@@ -13,11 +13,10 @@ from numpy.typing import NDArray
 from scipy.stats import theilslopes
 
 from gaitdisc.recording import Finding, Recording
-from gaitdisc.recording.arrays import Span, Values, finite_values, runs, spans_s
+from gaitdisc.recording.arrays import Span, Values, finite_values, robust_sd, runs, spans_s
 from gaitdisc.recording.wrapping import unwrap
 from gaitdisc.signals.contacts import RISE_N, loaded
 from gaitdisc.signals.gaps import gap_findings
-from gaitdisc.signals.series import robust_sd
 from gaitdisc.words import counted
 
 CLIPPED_SHARE = 1e-3

@@ -20,10 +20,9 @@ import numpy as np
 from gaitdisc.channel import Channel, other_side
 from gaitdisc.errors import ChannelError, SamplingError
 from gaitdisc.recording import Finding, Recording, Strides
-from gaitdisc.recording.arrays import Values, finite_rows, finite_values, spans_s
+from gaitdisc.recording.arrays import Values, finite_rows, finite_values, robust_sd, spans_s
 from gaitdisc.recording.trial import Limits
 from gaitdisc.signals.butterworth import high_pass, low_pass
-from gaitdisc.signals.series import robust_sd
 
 HIGHPASS_HZ = 40.0
 ENVELOPE_HZ = 10.0

@@ -8,9 +8,8 @@ from numpy.typing import NDArray
 from scipy.interpolate import CubicSpline
 
 from gaitdisc.recording import PERCENT, Finding, Recording, Strides
-from gaitdisc.recording.arrays import Values, finite_rows, finite_values, runs, spans_s
+from gaitdisc.recording.arrays import Values, finite_rows, finite_values, robust_sd, runs, spans_s
 from gaitdisc.recording.wrapping import unwrap, wrap_recording
-from gaitdisc.signals.series import robust_sd
 from gaitdisc.words import counted
 
 MAX_SPLINE_S = 0.1

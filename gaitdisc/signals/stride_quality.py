@@ -16,8 +16,7 @@ from scipy.signal import lfilter
 
 from gaitdisc.errors import StrideError
 from gaitdisc.recording import DroppedStride, Finding, Recording, Strides
-from gaitdisc.recording.arrays import Span, Values, runs
-from gaitdisc.signals.series import robust_sd
+from gaitdisc.recording.arrays import Span, Values, robust_sd, runs
 
 OUTLYING = 3.5  # robust standard deviations of the logarithm of a stride's distance
 FEWEST_STRIDES = 8

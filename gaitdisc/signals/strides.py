@@ -8,10 +8,9 @@ import numpy as np
 
 from gaitdisc.errors import StrideError
 from gaitdisc.recording import DroppedStride, Recording, Strides
-from gaitdisc.recording.arrays import Values, finite_values, runs
+from gaitdisc.recording.arrays import Values, finite_values, robust_sd, runs
 from gaitdisc.signals.contacts import Contacts
 from gaitdisc.signals.gaps import fill_gaps
-from gaitdisc.signals.series import robust_sd
 from gaitdisc.words import counted
 
 MIN_S, MAX_S = 0.4, 2.5  # of a stride in walking and running

@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from gaitdisc.errors import ReadError, ShapeError, UnitError
-from gaitdisc.ingest.hdf5 import attributes, data_set, hdf5_file, is_hdf5, member_names
+from gaitdisc.ingest.hdf5 import SIGNATURE, attributes, data_set, hdf5_file
 from gaitdisc.recording import Source
 from gaitdisc.recording.field import Axis, Field
 from gaitdisc.regular_file import check_regular, file_sha256
@@ -52,11 +52,21 @@ class Variable:
         return values * scale + offset
 
 
+def is_hdf5(path: Path) -> bool:
+    """Whether a file begins as HDF5 does."""
+    try:
+        check_regular(path)
+        with path.open("rb") as file:
+            return file.read(len(SIGNATURE)) == SIGNATURE
+    except OSError as error:
+        raise ReadError(f"{path.name} cannot be read", str(error.strerror), "Correct the path.") from error
+
+
 def read_variables(path: Path, names: tuple[str, ...]) -> dict[str, Variable]:
     """Read variables of a netCDF file."""
     if is_hdf5(path):
         with hdf5_file(path) as file:
-            _refuse_absent(path, names, member_names(file, path))
+            _refuse_absent(path, names, tuple(map(str, file)))
             held = ((name, data_set(file, name, path)) for name in names)
             return {name: Variable(values, attributes(file, name, path, ATTRIBUTES)) for name, values in held}
     from scipy.io import netcdf_file
@@ -235,7 +245,7 @@ def read_cutout(paths: Sequence[Path], step_s: float, quantity: str = "velocity"
 
 def _cutout_of(file: Any, path: Path, quantity: str) -> tuple[dict[int, str], list[NDArray[Any]]]:
     """Names of the snapshots by their number, and coordinates along each axis."""
-    pattern, there = re.compile(rf"{quantity}_(\d+)", re.IGNORECASE), member_names(file, path)
+    pattern, there = re.compile(rf"{quantity}_(\d+)", re.IGNORECASE), tuple(map(str, file))
     found = {int(match.group(1)): name for name in there if (match := pattern.fullmatch(name))}
     if not found:
         raise ReadError(

@@ -60,6 +60,11 @@ def fixed_at_random(field: Field, sensors: int, seed: int) -> Route:
     return fixed(field, drawn.tolist(), f"{sensors} fixed")
 
 
+def number_at(field: Field) -> NDArray[np.intp]:
+    """Number of the point at every node of the grid, -1 outside the field."""
+    return np.nan_to_num(field.on_grid(np.arange(field.points, dtype=float)), nan=-1.0).astype(int)
+
+
 def along(field: Field, places: ArrayLike, name: str) -> Route:
     """One sensor carried along a given path; at each snapshot it reads the node whose cell it is in."""
     path = np.asarray(places, float)
@@ -74,7 +79,7 @@ def along(field: Field, places: ArrayLike, name: str) -> Route:
         away = np.abs(path[:, k, None] - axis.coordinates)
         nodes[:, k] = away.argmin(axis=1)
         inside &= away.min(axis=1) <= REACH * axis.step
-    points = np.where(inside, field.number_at[tuple(nodes.T)], -1)
+    points = np.where(inside, number_at(field)[tuple(nodes.T)], -1)
     if (points < 0).any():
         first = int(np.argmax(points < 0))
         words = ", ".join(f"{a.name} {v:g} {a.unit}" for a, v in zip(field.axes, path[first], strict=True))
@@ -105,7 +110,7 @@ def random_walk(field: Field, seed: int, start: int | None = None) -> Route:
     Source: Ebers 2023, section 5.3.1.
     """
     rng = np.random.default_rng(seed)
-    number_at, shape = field.number_at, field.mask.shape
+    numbers, shape = number_at(field), field.mask.shape
     if start is None:  # the centre
         away = (field.nodes - (np.array(shape) - 1) / 2) / np.array(shape)
         start = int(np.argmin((away**2).sum(axis=1)))
@@ -115,10 +120,10 @@ def random_walk(field: Field, seed: int, start: int | None = None) -> Route:
             step = np.zeros(len(shape), int)
             step[rng.integers(len(shape))] = rng.choice([-1, 1])
             for moved in (node + step, node - step):
-                if (moved >= 0).all() and (moved < shape).all() and number_at[tuple(moved)] >= 0:
+                if (moved >= 0).all() and (moved < shape).all() and numbers[tuple(moved)] >= 0:
                     node = moved
                     break
-        points[snapshot] = number_at[tuple(node)]
+        points[snapshot] = numbers[tuple(node)]
     return Route("random walk", points[:, None])
 
 
