@@ -51,7 +51,6 @@ class Channel:
     side: str = ""
 
     def __post_init__(self) -> None:
-        """Refuse words outside the vocabulary."""
         if not self.name:
             raise ChannelError("every channel must have a name", "one name is empty", "Name the column.")
         if self.quantity not in QUANTITIES:

@@ -8,7 +8,7 @@ import sys
 from pathlib import Path
 
 import pytest
-from chapter5.files import is_hdf5, read_cutout, read_sst_mat, read_sst_pacific, read_variables
+from chapter5.files import read_cutout, read_head, read_sst_mat, read_sst_pacific, read_variables
 
 import gaitdisc as gd
 from gaitdisc.discovery.catalogue import read_catalogue
@@ -35,7 +35,7 @@ READERS = {
     "effects.toml": read_catalogue,
     "measured.csv": lambda path: read_measured(path, bundled("pendulum")),
     "field.nc": lambda path: read_variables(path, ("sst",)),
-    "field.h5": is_hdf5,
+    "field.h5": read_head,
     "open.h5": _open_hdf5,
     "cut.h5": lambda path: read_cutout([path], 0.002),
     "sst.mat": read_sst_mat,

@@ -64,8 +64,6 @@ def read_storage(path: Path | str, channels: Mapping[str, str] | None = None) ->
     how far hips and knees move; translations are in m whatever it states. Wrong counts in a header are reported where
     the rows agree among themselves; more than 1 % fewer rows than it claims are refused, since the file was cut.
 
-    channels: the study's `[channels]`: label -> `name` or `name [unit]`
-    returns: streams `kinematics`, `emg`, `forces`, `moments`, `signals`, as far as the file has them
     Source: OpenSim documentation, "Storage (.sto) Files" and "Motion (.mot) Files".
     """
     raw = read_raw(path)
@@ -230,8 +228,6 @@ def storage_columns(header: StorageHeader, file: str, channels: Mapping[str, str
     The study's map comes first, then what the file itself states, then the vocabulary, then the habits of OpenSim:
     `*_moment` in N m, `*_force` in N, `/speed` per second, EMG without a unit. Angles are marked `deg` here; whether
     the file holds radians follows from the numbers.
-
-    channels: the study's `[channels]`
     """
     words = fold_label(header.title) + " " + fold_label(file)
     known = [vocabulary().named(split_unit(label)[0]) for label in header.labels[1:]]

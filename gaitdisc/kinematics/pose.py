@@ -40,7 +40,6 @@ class Pose:
     rotation: Values
 
     def __post_init__(self) -> None:
-        """Check shapes and that every known matrix is a rotation, once."""
         freeze(self, "origin", "rotation")
         origin, rotation = self.origin, self.rotation
         if origin.ndim != 2 or origin.shape[1] != 3 or rotation.shape != (len(origin), 3, 3):

@@ -39,7 +39,6 @@ class Person:
     weighed_n: float | None = None  # of who stood on the plates, which forces are held against; mass x 9.81 without it
 
     def __post_init__(self) -> None:
-        """Check once what everything below divides by."""
         if self.mass_kg is None or not np.isfinite(self.mass_kg):
             raise UnitError(
                 "moments and powers per kg need the person's body mass [kg]",

@@ -142,7 +142,6 @@ class KineticsSettings:
     frame: str = "joint"
 
     def __post_init__(self) -> None:
-        """Check once."""
         for name in ("marker_cutoff_hz", "force_cutoff_hz"):
             if not getattr(self, name) > 0:
                 raise SamplingError(

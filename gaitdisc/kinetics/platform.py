@@ -31,7 +31,6 @@ class Wrench:
     moment: Values  # (sample, 3) [N m], about the origin of the laboratory
 
     def __post_init__(self) -> None:
-        """Check shapes once."""
         freeze(self, "force", "moment")
         force, moment = self.force, self.moment
         if force.ndim != 2 or force.shape[1] != 3 or moment.shape != force.shape:

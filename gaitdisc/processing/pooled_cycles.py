@@ -117,7 +117,6 @@ class PooledCycles(Saved, file="cycles.json"):
     raw_emg: Mapping[str, Values] = field(default_factory=dict)
 
     def __post_init__(self) -> None:
-        """Check shapes once, before they are saved."""
         if lies_on_disk(self, "curves"):
             return
         wanted = (int(self.cycles["kept"].sum()), len(PERCENT), len(self.channels))
@@ -269,7 +268,6 @@ class WalkSummary:
     files: Mapping[str, str]
 
     def __post_init__(self) -> None:
-        """Check shapes once, before they are saved."""
         if lies_on_disk(self, "curves"):
             return
         wanted = (len(PERCENT), len(self.channels))

@@ -95,8 +95,6 @@ def processed(trial: Trial, study: Study, body_weight_n: float | None = None) ->
 
     Gaps up to the study's `gap_s` are bridged by a cubic spline, up to twice that by the person's mean stride, beyond
     that left open and their strides dropped; plateaus, bridged gaps and filter edges are marked suspect.
-
-    body_weight_n: mass x 9.81, by which a plate counts as loaded; 50 N without it
     """
     raw = without_spikes(plateau_marked(_require(trial, "kinematics", study.models.angles)))
     choice = choose_contacts(trial, study.strides.detector, study.walking_direction, body_weight_n)

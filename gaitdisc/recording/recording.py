@@ -60,7 +60,6 @@ class Finding:
     spans: tuple[Span, ...] = ()
 
     def __post_init__(self) -> None:
-        """Refuse a severity that the traffic light does not know."""
         if self.severity not in SEVERITIES:
             raise ValueError(f"severity must be one of {SEVERITIES}, not {self.severity!r}")
 
@@ -130,7 +129,6 @@ class Recording:
     suspect: NDArray[np.bool_] = None  # pyright: ignore[reportAssignmentType]  # never none once it is made
 
     def __post_init__(self) -> None:
-        """Check shapes and the time base once; nothing below checks them again."""
         time, values = read_only(self.time), read_only(self.values)
         channels = tuple(self.channels)
         strange = next((one for one in channels if not isinstance(one, Channel)), None)

@@ -67,7 +67,6 @@ class Strides:
     dropped: tuple[DroppedStride, ...] = field(default_factory=tuple)
 
     def __post_init__(self) -> None:
-        """Check order once."""
         freeze(self, "start", "end")
         start, end = self.start, self.end
         if start.ndim != 1 or start.shape != end.shape:

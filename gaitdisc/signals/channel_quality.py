@@ -76,9 +76,7 @@ def channel_findings(recording: Recording) -> list[Finding]:
 
 
 def mark_clips(x: Values, rests_at_zero: bool = False) -> NDArray[np.bool_]:
-    """Mark where the largest or the smallest value is met, if it is met too often to be chance.
-
-    x (time,): one channel
+    """Mark the samples (time,) at which the largest or the smallest value is met, if too often to be chance.
 
     >>> t = np.arange(1000) / 100
     >>> bool(mark_clips(np.sin(6 * t)).any()), bool(mark_clips(np.minimum(np.sin(6 * t), 0.9)).any())
@@ -96,9 +94,7 @@ def mark_clips(x: Values, rests_at_zero: bool = False) -> NDArray[np.bool_]:
 
 
 def jumping(x: Values) -> NDArray[np.bool_]:
-    """Mark the samples beside an implausible second difference.
-
-    x (time,): one channel, not filtered
+    """Mark the samples (time,) of a channel that is not filtered beside an implausible second difference.
 
     >>> x = np.sin(np.arange(1000) / 15)
     >>> x[500] += 1
@@ -223,10 +219,7 @@ def plateaus(kinematics: Recording) -> list[Plateau]:
 
 
 def plateau_findings(kinematics: Recording) -> list[Finding]:
-    """Say which angles stop at a limit of the model, where, and for how much of the time.
-
-    kinematics: joint angles [deg]
-    """
+    """Say which angles stop at a limit of the model, where, and for how much of the time."""
     findings, file = [], kinematics.source.file
     spoils = "velocity and acceleration there; widen the coordinate's range in the model and repeat inverse kinematics"
     for plateau in plateaus(kinematics):
@@ -238,10 +231,7 @@ def plateau_findings(kinematics: Recording) -> list[Finding]:
 
 
 def plateau_marked(kinematics: Recording) -> Recording:
-    """Mark what lies on a plateau, or within 0.05 s of one, as suspect.
-
-    kinematics: joint angles [deg]; mark before filtering, so that the limits are still sharp
-    """
+    """Mark what lies on a plateau, or within 0.05 s of one, as suspect; before filtering, while limits are sharp."""
     marks = np.zeros(kinematics.values.shape, bool)
     beside = round(BESIDE_S * kinematics.rate_hz)
     for plateau in plateaus(kinematics):

@@ -39,7 +39,6 @@ def marker_contacts(
 ) -> dict[str, Contacts]:
     """Contacts of both feet: where the heel is farthest in front of the pelvis.
 
-    markers: channels `<marker>.x`, `<marker>.y`, `<marker>.z` [m]
     heels: side (`r`, `l`) to the name of its heel marker
     direction: direction of walking; inferred (`walking_direction`) and said in the note where it is not given
     returns: for each side in `heels`; foot off (heel farthest behind the pelvis) is not given, since the toe leaves
@@ -208,11 +207,9 @@ def marker_foot_off(
 ) -> Values:
     """Times at which a toe is farthest behind the pelvis, one for each window that has such a time [s].
 
-    markers: channels `<marker>.x`, `<marker>.y`, `<marker>.z` [m]
     toe: marker at the toes; one at the heel leaves earlier
     windows: from `stance_windows`
-    Source: Zeni, Richards, Higginson (2008), Gait & Posture 27, 710-714. Differs: in a turn each step has its own
-        direction.
+    Source: Zeni (2008), as in `marker_contacts`. Differs: in a turn each step has its own direction.
     """
     needed = {f"{name}.{axis}" for name in (toe, *pelvis) for axis in "xyz"}
     bridged = fill_gaps(markers.selected([name for name in markers.names if name in needed]))
@@ -221,11 +218,7 @@ def marker_foot_off(
 
 
 def angle_foot_off(kinematics: Recording, ankle: str, windows: Sequence[Span]) -> Values:
-    """Times at which an ankle is most plantarflexed, one for each window that has such a time [s].
-
-    kinematics: with the ankle, dorsiflexion positive [deg]
-    windows: from `stance_windows`
-    """
+    """Times at which an ankle is most plantarflexed, one for each of `stance_windows` that has such a time [s]."""
     time, x = _smooth(kinematics, ankle)
     return _lowest_in(windows, time, lambda _: x)
 

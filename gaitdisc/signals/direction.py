@@ -40,7 +40,7 @@ class Direction:
 
 
 def marker_position(markers: Recording, name: str) -> Values:
-    """Position of one marker, (time, 3) [m]."""
+    """Position of one marker, channels `<name>.x`, `.y` and `.z`, (time, 3) [m]."""
     return np.stack([markers[f"{name}.{axis}"] for axis in "xyz"], axis=1)
 
 

@@ -210,10 +210,7 @@ def burst_ratio(x: Values, rate_hz: float) -> float:
 
 
 def live_channels(emg: Recording) -> tuple[str, ...]:
-    """Names of the channels that carry a muscle's signal, in order.
-
-    emg: raw EMG, as digitised [V]
-    """
+    """Names of the channels of raw EMG that carry a muscle's signal, in order."""
     lost = {finding.channel for finding in emg_findings(emg) if finding.severity == "refused"}
     empty = {name for name in emg.names if not np.isfinite(emg[name]).any()}
     return tuple(name for name in emg.names if name not in lost | empty)

@@ -36,10 +36,7 @@ SUPPORT = slice(15, 41), slice(65, 91)  # % stride in which the foot, and the ot
 
 
 def knee_peak_percent(kinematics: Recording, strides: Strides, knee: str) -> float:
-    """Percent stride at which the mean curve of a knee is most flexed.
-
-    kinematics: with the knee's flexion [deg]
-    """
+    """Percent stride at which the mean curve of a knee is most flexed; NaN where it hardly bends."""
     curves = finite_rows(strides.normalised(kinematics.selected([knee]))[:, :, 0])
     if not len(curves):
         return float("nan")
@@ -81,7 +78,6 @@ def marker_side_findings(markers: Recording) -> list[Finding]:
     Up, back and front make left and right: where the spines at the back are behind those in front and the pelvis is
     above the feet, the right spine is to the right. The median over the trial is looked at, whichever way one walks.
 
-    markers: channels `<marker>.x`, `<marker>.y`, `<marker>.z` [m]
     returns: one warning, or none where the sides are right or the markers of the pelvis are not there
     """
     there = {name.rsplit(".", 1)[0] for name in markers.names}

@@ -52,19 +52,19 @@ class Variable:
         return values * scale + offset
 
 
-def is_hdf5(path: Path) -> bool:
-    """Whether a file begins as HDF5 does."""
+def read_head(path: Path) -> bytes:
+    """First bytes of a file, which show what it is."""
     try:
         check_regular(path)
         with path.open("rb") as file:
-            return file.read(len(SIGNATURE)) == SIGNATURE
+            return file.read(20)
     except OSError as error:
         raise ReadError(f"{path.name} cannot be read", str(error.strerror), "Correct the path.") from error
 
 
 def read_variables(path: Path, names: tuple[str, ...]) -> dict[str, Variable]:
     """Read variables of a netCDF file."""
-    if is_hdf5(path):
+    if read_head(path).startswith(SIGNATURE):
         with hdf5_file(path) as file:
             _refuse_absent(path, names, tuple(map(str, file)))
             held = ((name, data_set(file, name, path)) for name in names)
@@ -134,10 +134,9 @@ def read_sst_mat(path: Path) -> Field:
     from scipy.io import loadmat
 
     needed = f"{path.name} is to be read as SHRED's SST_data.mat"
-    if is_hdf5(path):
+    head = read_head(path)
+    if head.startswith(SIGNATURE):
         raise ReadError(needed, "it is a MATLAB file of version 7.3", "Save it anew with `save -v7`.")
-    with path.open("rb") as file:
-        head = file.read(20)
     if head.startswith(b"version https://git"):
         raise ReadError(needed, "it is a pointer of Git LFS, not the file", "Fetch it with `git lfs pull`.")
     try:
@@ -169,11 +168,9 @@ def read_sst_pacific(path: Path) -> Field:
     sea = held["landmask"] == 0
     rows, columns = np.searchsorted(lat, held["lat"]), np.searchsorted(lon, held["lon"])
     if len(sea) != len(lat) * len(lon) or (np.diff(rows * len(lon) + columns) != 1).any():
-        raise ReadError(
-            "Pacific temperatures are needed on a whole grid, longitude fastest",
-            f"{path.name} has {len(sea)} cells, {len(lat)} latitudes and {len(lon)} longitudes",
-            "Name the file as it was published.",
-        )
+        needed = "Pacific temperatures are needed on a whole grid, longitude fastest"
+        found = f"{path.name} has {len(sea)} cells, {len(lat)} latitudes and {len(lon)} longitudes"
+        raise ReadError(needed, found, "Name the file as it was published.")
     months, mask = np.arange(len(held["sst"]), dtype=float), sea.reshape(len(lat), len(lon))
     values, source = held["sst"][:, sea, None], Source(path.name, file_sha256(path), "npz")
     return Field(months, values, _globe(lat, lon), mask, ("sst",), ("degC",), "month", source)
@@ -184,11 +181,10 @@ def read_navy_winds(path: Path) -> Field:
     held = _arrays(path, ("u", "v", "lon", "lat"))
     lat, lon = (np.asarray(held[name], float) for name in ("lat", "lon"))
     if held["u"].shape[1:] != (len(lat), len(lon)) or held["v"].shape != held["u"].shape:
-        raise ReadError(
-            "winds are needed as u and v of shape (month, lat, lon)",
-            f"{path.name} has {held['u'].shape} and {held['v'].shape} for {len(lat)} latitudes, {len(lon)} longitudes",
-            "Name the file as it was published.",
-        )
+        needed = "winds are needed as u and v of shape (month, lat, lon)"
+        shapes = f"{path.name} has {held['u'].shape} and {held['v'].shape}"
+        found = f"{shapes} for {len(lat)} latitudes, {len(lon)} longitudes"
+        raise ReadError(needed, found, "Name the file as it was published.")
     months = 144.0 + np.arange(len(held["u"]), dtype=float)  # the file begins in January 1982
     values = np.stack([held[name].reshape(len(months), -1) for name in ("u", "v")], axis=-1)
     everywhere, source = np.ones((len(lat), len(lon)), bool), Source(path.name, file_sha256(path), "npz")

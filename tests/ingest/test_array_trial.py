@@ -5,7 +5,7 @@ import sys
 
 import numpy as np
 import pytest
-from chapter5.files import is_hdf5, read_cutout, read_oisst
+from chapter5.files import read_cutout, read_head, read_oisst
 from scipy.io import savemat
 
 from gaitdisc.errors import GaitdiscError, ReadError
@@ -109,10 +109,10 @@ def test_a_real_published_file_by_a_study(gait_data, tmp_path):
 def test_the_signature_tells(tmp_path):
     (tmp_path / "a.h5").write_bytes(SIGNATURE + b"rest")
     (tmp_path / "b.nc").write_bytes(b"CDF\x01")
-    assert is_hdf5(tmp_path / "a.h5")
-    assert not is_hdf5(tmp_path / "b.nc")
+    assert read_head(tmp_path / "a.h5").startswith(SIGNATURE)
+    assert not read_head(tmp_path / "b.nc").startswith(SIGNATURE)
     with pytest.raises(ReadError, match=r"absent.nc"):
-        is_hdf5(tmp_path / "absent.nc")
+        read_head(tmp_path / "absent.nc")
 
 
 def test_a_damaged_file_is_refused(tmp_path):

@@ -121,7 +121,7 @@ def test_clean_walking_has_no_warning(trial, study):
 
 
 def test_held_out_default_is_the_dissertation(study):
-    assert HeldOut().length_s(240.0) == 30.0
+    assert 240.0 * HeldOut().share == 30.0
     assert isinstance(study.held_out, HeldOut)
 
 
