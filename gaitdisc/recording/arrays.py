@@ -16,9 +16,7 @@ Values = NDArray[np.float64]
 
 
 def read_only(values: ArrayLike, dtype: Any = float) -> NDArray[Any]:
-    """View of an array that cannot be written through.
-
-    values: numbers; they are not copied where they already have the type
+    """View of an array that cannot be written through; numbers that already have the type are not copied.
 
     >>> read_only([1, 2]).flags.writeable
     False
@@ -114,10 +112,7 @@ def mean_rate(time: Values) -> float:
 
 
 def runs(mask: NDArray[np.bool_]) -> NDArray[np.intp]:
-    """First sample of each run of True, and the one after its last.
-
-    mask (time,): any condition on the samples
-    returns (run, 2) [sample]
+    """First sample of each run of True in a mask (time,), and the one after its last, (run, 2).
 
     >>> runs(np.array([False, True, True, False, True])).tolist()
     [[1, 3], [4, 5]]
@@ -147,10 +142,7 @@ class Span(NamedTuple):
 
 
 def spans_s(time: Values, mask: NDArray[np.bool_]) -> tuple[Span, ...]:
-    """Spans of the runs of True, from the first sample of each to one step after its last.
-
-    time (time,) [s]: even
-    mask (time,): any condition on the samples
+    """Spans of the runs of True in a mask (time,), from the first sample of each to one even step after its last.
 
     >>> spans_s(np.arange(4.0), np.array([False, True, True, False]))
     (Span(start=1.0, end=3.0),)

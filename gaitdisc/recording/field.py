@@ -135,9 +135,6 @@ class Field:
             )
         for name, value in (("time", time), ("values", values), ("mask", mask)):
             object.__setattr__(self, name, value)
-        self._refuse_missing()
-
-    def _refuse_missing(self) -> None:
         missing = np.count_nonzero(~np.isfinite(self.values))
         if missing:
             snapshot, point, quantity = (int(k) for k in np.argwhere(~np.isfinite(self.values))[0])
@@ -166,6 +163,13 @@ class Field:
         """Coordinates of every point, (point, axis) [each axis's unit]."""
         nodes = self.nodes
         return np.column_stack([axis.coordinates[nodes[:, k]] for k, axis in enumerate(self.axes)])
+
+    @property
+    def number_at(self) -> NDArray[np.intp]:
+        """Number of the point at every node of the grid, -1 outside the field."""
+        numbers = np.full(self.mask.shape, -1)
+        numbers[self.mask] = np.arange(self.points)
+        return numbers
 
     def place_words(self, point: int) -> str:
         """Coordinates of a point in words.

@@ -170,9 +170,9 @@ class Recording:
                     f"mean step is {mean:.6g} s",
                     "Export it at one rate, or resample it before reading.",
                 )
-        for name, value in (("time", time), ("values", values), ("channels", channels)):
+        checked = {"time": time, "values": values, "channels": channels, "suspect": read_only(suspect, bool)}
+        for name, value in checked.items():
             object.__setattr__(self, name, value)
-        object.__setattr__(self, "suspect", read_only(suspect, bool))
 
     @property
     def names(self) -> tuple[str, ...]:

@@ -244,11 +244,9 @@ def _cutout_of(file: Any, path: Path, quantity: str) -> tuple[dict[int, str], li
     pattern, there = re.compile(rf"{quantity}_(\d+)", re.IGNORECASE), tuple(map(str, file))
     found = {int(match.group(1)): name for name in there if (match := pattern.fullmatch(name))}
     if not found:
-        raise ReadError(
-            f"a cut-out needs data sets {quantity.capitalize()}_0001, ...",
-            f"{path.name} has {', '.join(there) or 'none'}",
-            f"Request from the service {quantity}, or name the quantity that the file has.",
-        )
+        needed, has = f"a cut-out needs data sets {quantity.capitalize()}_0001, ...", ", ".join(there) or "none"
+        remedy = f"Request from the service {quantity}, or name the quantity that the file has."
+        raise ReadError(needed, f"{path.name} has {has}", remedy)
     absent = [name for name in COORDINATES if name not in there]
     if absent:
         needed = f"a cut-out needs its coordinates {', '.join(COORDINATES)}"

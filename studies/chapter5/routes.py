@@ -46,11 +46,9 @@ def fixed(field: Field, points: Sequence[int], name: str = "fixed") -> Route:
     chosen = np.asarray(points, int)
     outside = (chosen < 0) | (chosen >= field.points)
     if not len(chosen) or outside.any():
-        raise ChannelError(
-            f"sensors need points of the field, 0 to {field.points - 1}",
-            f"requested: {', '.join(str(k) for k in chosen[outside]) or 'none'}",
-            "Name points of the field.",
-        )
+        found = f"requested: {', '.join(str(k) for k in chosen[outside]) or 'none'}"
+        needed = f"sensors need points of the field, 0 to {field.points - 1}"
+        raise ChannelError(needed, found, "Name points of the field.")
     return Route(name, np.tile(chosen, (len(field), 1)))
 
 
@@ -60,26 +58,18 @@ def fixed_at_random(field: Field, sensors: int, seed: int) -> Route:
     return fixed(field, drawn.tolist(), f"{sensors} fixed")
 
 
-def number_at(field: Field) -> NDArray[np.intp]:
-    """Number of the point at every node of the grid, -1 outside the field."""
-    return np.nan_to_num(field.on_grid(np.arange(field.points, dtype=float)), nan=-1.0).astype(int)
-
-
 def along(field: Field, places: ArrayLike, name: str) -> Route:
     """One sensor carried along a given path; at each snapshot it reads the node whose cell it is in."""
     path = np.asarray(places, float)
     if path.shape != (len(field), len(field.axes)):
-        raise ChannelError(
-            f"the path {name!r} needs a place for each of {len(field)} snapshots along {len(field.axes)} axes",
-            f"found an array of shape {path.shape}",
-            "Give one row a snapshot.",
-        )
+        needed = f"the path {name!r} needs a place for each of {len(field)} snapshots along {len(field.axes)} axes"
+        raise ChannelError(needed, f"found an array of shape {path.shape}", "Give one row a snapshot.")
     nodes, inside = np.empty(path.shape, int), np.ones(len(path), bool)
     for k, axis in enumerate(field.axes):
         away = np.abs(path[:, k, None] - axis.coordinates)
         nodes[:, k] = away.argmin(axis=1)
         inside &= away.min(axis=1) <= REACH * axis.step
-    points = np.where(inside, number_at(field)[tuple(nodes.T)], -1)
+    points = np.where(inside, field.number_at[tuple(nodes.T)], -1)
     if (points < 0).any():
         first = int(np.argmax(points < 0))
         words = ", ".join(f"{a.name} {v:g} {a.unit}" for a, v in zip(field.axes, path[first], strict=True))
@@ -110,7 +100,7 @@ def random_walk(field: Field, seed: int, start: int | None = None) -> Route:
     Source: Ebers 2023, section 5.3.1.
     """
     rng = np.random.default_rng(seed)
-    numbers, shape = number_at(field), field.mask.shape
+    number_at, shape = field.number_at, field.mask.shape
     if start is None:  # the centre
         away = (field.nodes - (np.array(shape) - 1) / 2) / np.array(shape)
         start = int(np.argmin((away**2).sum(axis=1)))
@@ -120,10 +110,10 @@ def random_walk(field: Field, seed: int, start: int | None = None) -> Route:
             step = np.zeros(len(shape), int)
             step[rng.integers(len(shape))] = rng.choice([-1, 1])
             for moved in (node + step, node - step):
-                if (moved >= 0).all() and (moved < shape).all() and numbers[tuple(moved)] >= 0:
+                if (moved >= 0).all() and (moved < shape).all() and number_at[tuple(moved)] >= 0:
                     node = moved
                     break
-        points[snapshot] = numbers[tuple(node)]
+        points[snapshot] = number_at[tuple(node)]
     return Route("random walk", points[:, None])
 
 

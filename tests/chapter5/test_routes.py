@@ -1,6 +1,6 @@
 import numpy as np
 import pytest
-from chapter5.routes import Route, along, circuit, fixed, fixed_at_random, joined, number_at, random_walk
+from chapter5.routes import Route, along, circuit, fixed, fixed_at_random, joined, random_walk
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from manufactured_field import travelling_wave
@@ -41,12 +41,6 @@ def test_steps_go_along_each_axis_and_way_equally_often():
     assert counts.sum() == len(steps)
     assert np.abs(counts - len(steps) / 6).max() < 4 * np.sqrt(len(steps) / 6)
     assert flow.nodes[random_walk(flow, 0).points[0, 0]].tolist() == [10, 10, 10]
-
-
-def test_points_are_numbered_on_the_grid_and_nodes_outside_are_not():
-    axes, mask = (Axis("y", np.arange(3.0)), Axis("x", np.arange(2.0))), np.array([[1, 0], [1, 1], [0, 1]], bool)
-    sea = Field(np.arange(2.0), np.zeros((2, 4, 1)), axes, mask, ("h",), ("m",))
-    assert number_at(sea).tolist() == [[0, -1], [1, 2], [-1, 3]]
 
 
 def test_a_walk_that_is_shut_in_stays():

@@ -5,7 +5,6 @@ import numpy as np
 import pytest
 from chapter5.files import read_navy_winds, read_oisst, read_sst_mat, read_sst_pacific, read_variables
 from chapter5.modes import season_of
-from chapter5.routes import number_at
 from manufactured_field import travelling_wave
 from scipy.io import netcdf_file, savemat
 
@@ -120,7 +119,7 @@ def test_the_pacific_as_its_source_tells_it(fields):
 def test_the_winds_as_their_source_tells_them(fields):
     field = read_navy_winds(fields / "navy_winds" / "monthly_navy_winds.npz")
     assert (len(field), field.points, field.quantities) == (132, 73 * 144, ("u", "v"))
-    trades = field.values[:, number_at(field)[42, 76], 0]  # 15 N, 150 W blows from the east
+    trades = field.values[:, field.number_at[42, 76], 0]  # 15 N, 150 W blows from the east
     assert trades.mean() < -3
 
 

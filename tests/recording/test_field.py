@@ -24,6 +24,7 @@ def test_points_lie_where_the_mask_holds_last_axis_fastest():
     sea = field()
     assert (sea.points, len(sea)) == (4, 3)
     assert sea.places.tolist() == [[10.0, 5.0], [0.0, 5.0], [0.0, 7.0], [-10.0, 7.0]]
+    assert sea.number_at.tolist() == [[0, -1], [1, 2], [-1, 3]]
     assert says(sea.place_words(2), "lat 0 deg", "lon 7 deg")
     assert not sea.values.flags.writeable
 
