@@ -1,9 +1,7 @@
 """What may stand in a result that is passed on: words of this package, of its vocabulary and of the study; no others.
 
-A recording brings words of its own: names of files and folders, labels, names in headers. Any of them may say who a
-person is. So a sentence that is written into a folder of results is held against the words that are known to be public,
-and every other word in it becomes `…`; a file is called by its participant, condition and number. The study file is the
-key between these and the names, and is not for passing on.
+Any name of a file, label or header may say who a person is. So every word of a sentence that is not known to be public
+becomes `…`, and a file is called by its participant, condition and number. The study file is the key to the names.
 """
 
 from __future__ import annotations

@@ -43,9 +43,8 @@ def foot_loads(
     Known are a foot's clean steps, the swing between two of them, the swings that its markers or the file's events
     show, and every frame where a platform names its foot.
 
-    time (frame,) [s]: of the markers
     cutoff_hz: of the filter of force and moment; infinite for none
-    airborne: spans in which a foot swings, as `swings` gives them
+    airborne: as `swings` gives it
     """
     loads = {}
     for side in "rl":
@@ -206,8 +205,6 @@ def joint_moments(
     plantarflexors' moment of push-off is negative. Powers are moment times relative angular velocity, positive when
     generated. NaN where the load of the foot or a pose is unknown.
 
-    time (frame,) [s]: of the poses
-    up (3,): unit vector against gravity
     returns: `hip_flexion_r_moment` [N m/kg], `hip_power_r` [W/kg] and so on, on the frames of the poses
     """
     columns: list[Values] = []

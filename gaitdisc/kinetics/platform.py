@@ -117,8 +117,6 @@ class Platform:
 
         What an empty plate shows is no force on a foot and is taken as zero before the filter. Force and moment about
         the surface are filtered; the centre of pressure is not, as it is a quotient.
-
-        spans: loadings by the foot that is meant
         """
         on = np.any([span.holds(self.time) for span in spans], axis=0)
         values = np.hstack([self.wrench.force, self.wrench.about(self.point)]) * on[:, None]

@@ -112,10 +112,7 @@ def jumping(x: Values) -> NDArray[np.bool_]:
 
 
 def swing_baseline(force_n: Values, rate_hz: float) -> Values:
-    """Force in the middle half of every unloaded phase: its sample and its median.
-
-    force_n (time,) [N]: vertical force of one plate, of either sign
-    returns (swing, 2) [sample, N]
+    """Sample and median force [N] of the middle half of every unloaded phase of a plate, (swing, 2).
 
     >>> step = np.r_[np.full(60, 700.0), np.full(40, 3.0)]
     >>> swing_baseline(np.tile(step, 3), 100.0).tolist()
@@ -189,9 +186,6 @@ def plateaus(kinematics: Recording) -> list[Plateau]:
     of treadmill_walk_ik, whose model's limit is soft, have 74 to 88 % there, knees at their limit 70 to 74 %, ordinary
     peaks of C3D files that pass (1) to (3) 11 to 28 %. Angles of a C3D file come from no model with limits: none is
     looked for.
-
-    kinematics: joint angles [deg], not filtered or filtered
-    returns: one a channel and limit; constant channels have none
 
     >>> from gaitdisc.channel import Channel
     >>> t, rng = np.arange(2000) / 100, np.random.default_rng(0)

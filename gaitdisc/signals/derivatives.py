@@ -62,7 +62,6 @@ def differentiate_recording(recording: Recording, order: int = 1) -> Recording:
 def trajectory(filtered: Recording, strides: Strides) -> Trajectory:
     """State, velocity, acceleration and percent stride of a filtered recording.
 
-    strides: strides of the leg that percent stride is counted by
     returns: `usable` where x, xdot and xddot are there and none of the five samples they rest on is suspect: not in
         filled gaps, not at the filter's edges, not on plateaus. phi is NaN outside of the strides
     Source: Ebers (2023), Eqs. 4.1-4.4. Differs: the operator, which the text does not state, and the marks.

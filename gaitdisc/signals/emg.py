@@ -96,9 +96,6 @@ def amplifier_range(emg: Recording, given_v: float | None = None) -> AmplifierRa
     one channel, exactly); 32768 times the quantisation step, which quiet channels show; the smallest usual range
     (1.25, 2.5, 5, 10 V) that holds the largest value.
 
-    emg: raw EMG, as digitised [V]
-    given_v: range that the laboratory states [V]
-
     >>> from gaitdisc.channel import Channel
     >>> clipped = np.clip(np.random.default_rng(0).normal(size=(999, 1)), -1.25, 1.25)
     >>> amplifier_range(Recording(np.arange(999) / 1000, clipped, (Channel("emg_sol_r", "emg", "V", "r"),))).how
@@ -123,7 +120,7 @@ def amplifier_range(emg: Recording, given_v: float | None = None) -> AmplifierRa
 
 
 def emg_findings(emg: Recording, range_v: float | None = None) -> list[Finding]:
-    """Say which EMG channels are dead, unplugged or clipped.
+    """Say which channels of raw EMG [V] are dead, unplugged or clipped.
 
     - dead: the standard deviation is below 0.1 % of the range, or below 0.4 % in a channel whose envelope has no bursts
       (its 99th percentile stays below 3.4 times its median): nothing but the amplifier's noise, or a muscle that rests.
@@ -137,8 +134,7 @@ def emg_findings(emg: Recording, range_v: float | None = None) -> list[Finding]:
     The limits were set on the 14 files of young_straight_and_turn, whose manifest lists the live channels; dead ones
     have bursts of at most 3.3, live ones of that size at least 3.5.
 
-    emg: raw EMG, as digitised [V]
-    range_v: range of the amplifier; inferred (`amplifier_range`) and said where it is not given
+    range_v: range of the amplifier [V]; inferred (`amplifier_range`) and said where it is not given
     returns: `refused` for dead and unplugged channels: leave them out. `warning` for clipped ones
     """
     limit = amplifier_range(emg, range_v)

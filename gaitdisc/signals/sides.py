@@ -51,7 +51,6 @@ def verify_sides(kinematics: Recording, strides: Strides) -> float:
     earlier, at about 20 %. Both being wrong means that the sides are swapped in the contacts or in the angles, one that
     it is stiff. A swap of everything cannot be seen. Verify that the trial is walking first (`verify_walking`).
 
-    kinematics: with both knees, flexion positive [deg]
     returns: percent stride of the knee's peak; NaN where no stride has the knee
     """
     own, other = (f"knee_angle_{side}" for side in (strides.side, other_side(strides.side)))
@@ -142,8 +141,6 @@ def sway_findings(kinematics: Recording, strides: Sequence[Strides]) -> list[Fin
 def load_findings(kinematics: Recording, forces: Recording) -> list[Finding]:
     """Say that the force of one foot goes with the knee of the other: a knee is bent least while its foot stands.
 
-    kinematics: with both knees, flexion positive [deg]
-    forces: vertical forces that name their foot [N]
     returns: one warning where both knees bend more under load than in the air, by 5 deg or more
     """
     found: dict[str, float] = {}

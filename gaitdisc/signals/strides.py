@@ -89,7 +89,6 @@ def duration_reasons(duration: np.ndarray, min_s: float, max_s: float) -> list[s
 def gap_reasons(start: np.ndarray, end: np.ndarray, recording: Recording) -> list[str]:
     """Why strides are left out for what a recording lacks in them: a sentence for each, empty where it lacks nothing.
 
-    start, end (stride,) [s]: initial contacts
     recording: channels without any value do not count; gaps of up to 0.1 s are bridged
     """
     missing = ~np.isfinite(fill_gaps(recording).values)
