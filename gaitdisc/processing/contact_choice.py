@@ -166,13 +166,10 @@ def find_contacts(
     refused: dict[str, GaitdiscError | None] = {}
     for name, attempt in attempts.items():
         try:
-            contacts = attempt()
+            found[name] = attempt()
+            refused |= {} if _stride_count(found[name]) else {name: None}
         except (StrideError, ChannelError) as error:
             refused[name] = error
-            continue
-        found[name] = contacts
-        if not _stride_count(contacts):
-            refused[name] = None
     return found, refused
 
 

@@ -84,7 +84,7 @@ def walks_and_errors(study: Study, participant: Participant) -> tuple[dict[str, 
             public = of_trial(words, participant, planned)
             try:
                 walk = own.read_walk(planned).processed(study)
-                left_away = gait_samples(walk.trajectory, study.models.outputs)[1].finding()
+                left_away = gait_samples(walk.trajectory, study.models.outputs)[1]
             except GaitdiscError as error:
                 errors[word] = public.error(error)
             else:

@@ -232,14 +232,12 @@ def with_gaps(cycles: list[Cycle], legs: Recording | None) -> list[Cycle]:
     """Same cycles, left out where an angle of the own leg is missing after bridging, or nothing was recorded."""
     if legs is None:
         return cycles
-    found = []
-    for one in cycles:
-        own = [channel.name for channel in legs.channels if channel.side == one.side]
-        if one.reason or not own:
-            found.append(one)
-            continue
-        (reason,) = gap_reasons(np.array([one.start]), np.array([one.end]), legs.selected(own))
-        found.append(replace(one, reason=reason))
+    own = {side: legs.selected([channel.name for channel in legs.channels if channel.side == side]) for side in "lr"}
+    found = list(cycles)
+    for place, one in enumerate(cycles):
+        if not one.reason and own[one.side].names:
+            (reason,) = gap_reasons(np.array([one.start]), np.array([one.end]), own[one.side])
+            found[place] = replace(one, reason=reason)
     return found
 
 

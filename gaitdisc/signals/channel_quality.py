@@ -255,8 +255,5 @@ def _dwells(x: Values, rate_hz: float) -> NDArray[np.bool_] | None:
     for dwell, (start, end) in enumerate(spans):
         peak = start + int(np.argmax(x[start:end]))
         for column, share in enumerate((BAND_SHARE, 4 * BAND_SHARE)):
-            below = np.flatnonzero(~(x >= x[peak] - share * reach))
-            at = int(np.searchsorted(below, peak))
-            first = below[at - 1] if at else -1
-            wide[dwell, column] = (below[at] if at < len(below) else len(x)) - first - 1
+            wide[dwell, column] = next(b - a for a, b in runs(x >= x[peak] - share * reach) if a <= peak < b)
     return marks if np.median(wide[:, 0] / wide[:, 1]) >= CORNER else None

@@ -135,7 +135,6 @@ class LateChange:
     # each shift over its standard deviation within the parts
     size_sd: float
     shifts: dict[str, float]  # root mean square shift of the mean curve of each channel [channel's unit]
-    dependence: float  # largest lag-one correlation from stride to stride that was found
 
 
 def late_change(recording: Recording, strides: Strides, seed: int = 0) -> LateChange:
@@ -185,7 +184,6 @@ def late_change(recording: Recording, strides: Strides, seed: int = 0) -> LateCh
         float(p),
         float(np.sqrt(np.sum((moved / residual.std(axis=0)) ** 2))),
         dict(zip(names, np.sqrt(np.mean(shift**2, axis=0)).tolist(), strict=True)),
-        float(dependence.max()),
     )
 
 
