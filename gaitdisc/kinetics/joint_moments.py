@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from gaitdisc.channel import Channel
 from gaitdisc.errors import SamplingError, SchemaError, ShapeError
 from gaitdisc.kinematics.pose import JOINT_CHANNELS, SEGMENTS_OF, Pose, angle_signs
-from gaitdisc.kinetics.body_inertia import LEG, TABLES, Person, leg_inertia, segment_lengths
+from gaitdisc.kinetics.body_inertia import LEG, Person, leg_inertia, segment_lengths
 from gaitdisc.kinetics.newton_euler import RigidBody, SegmentMotion, compute_wrench, joint_wrenches, segment_motions
 from gaitdisc.kinetics.plate_steps import FootPath, PlateStep
 from gaitdisc.kinetics.platform import Platform, Wrench
@@ -135,7 +135,6 @@ class KineticsSettings:
     # have lost as a moment that nobody made after an impact (Kristianslund 2012); alike ones take both away
     marker_cutoff_hz: float = 6.0
     force_cutoff_hz: float = 20.0
-    inertia: str = "dumas2007"  # table of segment inertia: `dumas2007` or `deleva1996`
     # `joint`: parts along the axes of the joint angles; `distal`: along the axes of the segment beyond the joint, as
     # Plug-in Gait gives them
     frame: str = "joint"
@@ -146,11 +145,10 @@ class KineticsSettings:
                 raise SamplingError(
                     f"{name} must be positive", f"it is {getattr(self, name):g} Hz", "Use Hz, or inf for no filter."
                 )
-        for name, known in (("inertia", TABLES), ("frame", FRAMES)):
-            if getattr(self, name) not in known:
-                raise SchemaError(
-                    f"{name} must be one of {', '.join(known)}", f"it is {getattr(self, name)!r}", "Name one of these."
-                )
+        if self.frame not in FRAMES:
+            raise SchemaError(
+                f"frame must be one of {', '.join(FRAMES)}", f"it is {self.frame!r}", "Name one of these."
+            )
 
 
 @dataclass(frozen=True, eq=False)
@@ -185,8 +183,7 @@ def legs(
                 "no frame has all three",
                 "Fill the gaps in the markers of this foot, or name others.",
             )
-        heel, toe = (np.median(place[seen], axis=0) for place in places)
-        bodies = leg_inertia(person, side, lengths, heel, toe, settings.inertia)
+        bodies = leg_inertia(person, side, lengths, np.median(places[1][seen], axis=0))
         found[side] = Leg({short: moving[name] for short, name in own.items()}, bodies)
     return found
 

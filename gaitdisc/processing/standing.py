@@ -236,8 +236,7 @@ class Standing:
             found = self._measures(self.planned)
             mass = self.participant.mass_kg or found.mass_kg or self._measures(planned).mass_kg
             said = check_weight(self.weighed_n, mass, trial.name)
-            height_m = self.participant.height_m or found.height_m
-            return Person(mass, self.participant.sex, height_m, self.weighed_n), tuple(said)
+            return Person(mass, self.participant.sex, self.weighed_n), tuple(said)
         except GaitdiscError as error:
             what = str(error).rstrip(".")
             return None, (Finding("warning", "no moments", self.participant.id, what, "moments and powers"),)
