@@ -32,12 +32,8 @@ DIRECTIONS = {
     "inversion": ("inverted", "everted"),
 }
 JOINTS = {
-    "hip_flexion": "hip",
-    "hip_adduction": "hip",
-    "hip_rotation": "hip",
-    "knee_angle": "knee",
-    "knee_adduction": "knee",
-    "knee_rotation": "knee",
+    **dict.fromkeys(("hip_flexion", "hip_adduction", "hip_rotation"), "hip"),
+    **dict.fromkeys(("knee_angle", "knee_adduction", "knee_rotation"), "knee"),
     "ankle_angle": "ankle",
     "subtalar_angle": "subtalar joint",
 }

@@ -46,12 +46,9 @@ _ROWS, _COLUMNS = ("nrows", "datarows"), ("ncolumns", "datacolumns")
 _OWN_COLUMN = re.compile(r"column\s+(\d+)\s*=\s*(\w+)\s*\[([^\]]*)\]\s*(r|l|)\s*", re.IGNORECASE)
 _GROUND = re.compile(r"(?:.*_)?(?:ground|grf|fp_?\d)\w*?_([vpm]?)([xyz])", re.IGNORECASE)
 _GROUND_WORD = re.compile(r"force|torque|moment", re.IGNORECASE)
-_RATES = {
-    "speeds": "/s",
-    "velocities": "/s",
-    "accelerations": "/s2",
-    "kinematics_u": "/s",  # what OpenSim's analyses write
-    "kinematics_dudt": "/s2",
+_RATES = {  # kinematics_u and _dudt are what OpenSim's analyses write
+    **dict.fromkeys(("speeds", "velocities", "kinematics_u"), "/s"),
+    **dict.fromkeys(("accelerations", "kinematics_dudt"), "/s2"),
 }
 # What OpenSim's analyses write of muscles under the names of the muscles, which elsewhere are those of EMG
 _OF_ACTUATORS = {"actuation_force": "N", "actuation_power": "W", "forcereporter": "N"}

@@ -57,8 +57,7 @@ _KINDS = {  # kind of a finding of pydantic, or how it begins -> what a value mu
     "int": ("be a whole number", "Write it without quotes and without a point, for example 4."),
     "string": ("be text", 'Write it in quotes: "...".'),
     "tuple": ("be a list", "Write it in brackets: [...]."),
-    "model": ("be a table", "Write its keys under a header in brackets."),
-    "dict": ("be a table", "Write its keys under a header in brackets."),
+    **dict.fromkeys(("model", "dict"), ("be a table", "Write its keys under a header in brackets.")),
 }
 _LIMITS = {
     "greater_than": ("above", "gt"),

@@ -146,9 +146,8 @@ class KineticsSettings:
                     f"{name} must be positive", f"it is {getattr(self, name):g} Hz", "Use Hz, or inf for no filter."
                 )
         if self.frame not in FRAMES:
-            raise SchemaError(
-                f"frame must be one of {', '.join(FRAMES)}", f"it is {self.frame!r}", "Name one of these."
-            )
+            known = ", ".join(FRAMES)
+            raise SchemaError(f"frame must be one of {known}", f"it is {self.frame!r}", "Name one of these.")
 
 
 @dataclass(frozen=True, eq=False)

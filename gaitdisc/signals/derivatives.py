@@ -1,9 +1,7 @@
 """First and second derivatives of filtered signals, and the trajectory made of them (Eqs. 4.1-4.4).
 
-The operator is the smallest part of the error: with the same 6 Hz filter every central difference and the spectral
-derivative agree to 1-2 %, while the cut-off decides what is lost (docs/derivatives.md, made by
-benchmarks/derivatives.py). So the operator is the narrowest that is accurate to fourth order, five points wide, and the
-cut-off is a setting of the filter.
+The operator is the smallest part of the error, the cut-off decides what is lost (docs/derivatives.md). So the operator
+is the narrowest that is accurate to fourth order, five points wide, and the cut-off is a setting of the filter.
 """
 
 from __future__ import annotations

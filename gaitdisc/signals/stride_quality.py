@@ -1,9 +1,8 @@
 """Strides unlike the person's other strides, and a change of gait late in a trial.
 
-What a model trained on the first part of a trial cannot know: the dissertation left one of twelve people out "due to
-changes in gait [...] late in the Exo condition walking trial" (section 4.2.4) without a rule. This is one: a change
-point in the last half of the trial, tested against stride series that are as dependent as this person's own, but
-stationary.
+The dissertation left one of twelve people out "due to changes in gait [...] late in the Exo condition walking trial"
+(section 4.2.4) without a rule. This is one: a change point in the last half of the trial, tested against stride series
+that are as dependent as this person's own, but stationary.
 """
 
 from __future__ import annotations
