@@ -154,9 +154,7 @@ def fold_label(label: str) -> str:
 
 
 def path_label(label: str) -> str:
-    """Last part of an OpenSim full-path label that names the coordinate.
-
-    label: `/jointset/hip_r/hip_flexion_r/value`, or a plain label, which is returned as it is
+    """Last part of an OpenSim full-path label that names the coordinate; a plain label is returned as it is.
 
     >>> path_label("/jointset/hip_r/hip_flexion_r/value")
     'hip_flexion_r'

@@ -49,9 +49,7 @@ def sideless(name: str) -> str:
 
 
 def label(name: str) -> str:
-    """Name of a channel as it is read in a title.
-
-    name: name of a channel; one that the vocabulary lacks is left as it is, but for its underscores
+    """Name of a channel as it is read in a title; one that the vocabulary lacks only loses its underscores.
 
     >>> label("ankle_angle_r"), label("emg_sol_l"), label("pelvis_tilt")
     ('ankle angle, right', 'EMG soleus, left', 'pelvis tilt')

@@ -115,10 +115,7 @@ class PublicWords:
 
 
 def list_words(study: Study, participant: Participant, named: Iterable[str] = ()) -> PublicWords:
-    """Public words of one participant's recordings.
-
-    named: channels that the user named, beside those of the study
-    """
+    """Public words of one participant's recordings, of the study and of channels that the user named."""
     said = [study.title, *study.sessions, *study.conditions.words, participant.group, participant.excluded, *named]
     said += [each.id for each in study.participants]
     said += [trial.leave_out for trial in participant.trials]
@@ -136,10 +133,7 @@ def of_trial(words: PublicWords, participant: Participant, planned: PlannedTrial
 
 
 def with_public_labels(recording: Recording) -> tuple[Recording, int]:
-    """Recording whose channels of other names are numbered, and how many these are.
-
-    recording: of any channels; a marker's three keep their `.x`, `.y` and `.z`
-    """
+    """Recording whose channels of other names are numbered, a marker's three alike, and how many these are."""
     public, called = PublicWords(), dict[str, str]()
     names = []
     for channel in recording.channels:

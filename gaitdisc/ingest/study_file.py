@@ -173,8 +173,6 @@ def grow_study(study: Study, draft: Study) -> Study:
 
     Whoever is in the study keeps the pseudonym, also where the draft has another one for the same files; each trial
     keeps its condition and session. Files that belong to a trial of the study are added to it.
-
-    draft: of all recordings, its paths relative to the same folder
     """
     owner = {_place(study, file): one.id for one in study.participants for trial in one.trials for file in trial.files}
     people = {one.id: one for one in study.participants}

@@ -100,7 +100,6 @@ def joint_axes(nearer: Pose, farther: Pose) -> Values:
     to both others, forwards; the farther segment's y (along the bone), about which rotation turns. Projections of a
     moment on them times the rates of their angles are the joint's power, as with OpenSim's generalised forces.
 
-    nearer, farther: the segments on the trunk's side of the joint and beyond it
     Source: Grood & Suntay (1983), J. Biomech. Eng. 105, 136-144. Schache & Baker (2007), Gait Posture 25, 440-452,
         compare the frames in which joint moments are given, and recommend these axes.
 

@@ -148,4 +148,4 @@ def _envelopes(trial: Trial, study: Study, side: str, time: Values) -> tuple[Val
     smooth = [make_envelope(own.selected([name]), study.filters) for name in own.names]
     values = np.hstack([interpolate(one.time, one.values, time) for one in smooth])
     left_out = [replace(one, severity="warning", spoils="this muscle, which is excluded") for one in dead]
-    return np.maximum(values, 0.0), tuple(own.names), left_out
+    return np.maximum(values, 0.0), own.names, left_out

@@ -29,8 +29,7 @@ def gait_samples(trajectory: Trajectory, outputs: Sequence[str]) -> tuple[Sample
         raise ChannelError(
             "a response must predict at least one channel", f"none is named for {named}", "Name them in outputs."
         )
-    absent = [name for name in outputs if name not in trajectory.names]
-    if absent:
+    if absent := [name for name in outputs if name not in trajectory.names]:
         raise ChannelError(
             f"{absent[0]!r}, whose acceleration is predicted, must be among the channels",
             f"{named} has {len(trajectory.names)} channels{hint_nearest(absent[0], trajectory.names)}",

@@ -181,10 +181,8 @@ class Strides:
 def interpolate(time: Values, values: Values, points: Values) -> Values:
     """Linear interpolation on an even time base that lets NaN through and does not extrapolate.
 
-    time (time,) [s]: even
     values (time, channel): NaN allowed
-    points , any shape [s]: where to read the values
-    returns (*points.shape, channel)
+    points , any shape [s]: where to read the values, (*points.shape, channel)
 
     >>> interpolate(np.arange(3.0), np.arange(3.0)[:, None] ** 2, np.array([0.5, 2.0, 3.0])).ravel()
     array([0.5, 4. , nan])

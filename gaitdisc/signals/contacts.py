@@ -233,7 +233,6 @@ def loaded(force_n: Values, rate_hz: float, rise_n: float = RISE_N) -> NDArray[n
     counts as unloaded; what is then unloaded for less than 0.1 s counts as loaded.
 
     force_n (time,) [N]: positive upwards on the foot; NaN counts as unloaded
-    rise_n: force above which a foot is on the ground [N]
     returns (loading, 2) [sample]: first sample above `rise_n`, and the one after the last above 20 N
 
     >>> f = np.r_[np.zeros(30), 40, 0, np.full(60, 700.0), np.zeros(30)]

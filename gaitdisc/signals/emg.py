@@ -2,10 +2,8 @@
 
 The calf works while its foot stands, the tibialis anterior while it swings: in eleven walks of six young people
 (young_straight_and_turn) the natural logarithm of stance over swing is 1.0 to 3.4 in the calf and -1.5 to -0.66 in the
-tibialis anterior; -0.1 and 0.15 in one leg of which both are clipped.
-
-V and mV are a factor of 1000 apart, in every channel. A muscle that rests in one trial, or an electrode that comes off,
-changes single channels by as much (young_straight_and_turn has both), so that four of five have to agree.
+tibialis anterior. A muscle that rests or an electrode that comes off changes single channels by as much as another unit
+does, so that four of five have to agree on one.
 """
 
 from __future__ import annotations
