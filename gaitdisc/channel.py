@@ -51,7 +51,6 @@ class Channel:
     side: str = ""
 
     def __post_init__(self) -> None:
-        """Refuse words outside the vocabulary."""
         if not self.name:
             raise ChannelError("every channel must have a name", "one name is empty", "Name the column.")
         if self.quantity not in QUANTITIES:
@@ -155,9 +154,7 @@ def fold_label(label: str) -> str:
 
 
 def path_label(label: str) -> str:
-    """Last part of an OpenSim full-path label that names the coordinate.
-
-    label: `/jointset/hip_r/hip_flexion_r/value`, or a plain label, which is returned as it is
+    """Last part of an OpenSim full-path label that names the coordinate; a plain label is returned as it is.
 
     >>> path_label("/jointset/hip_r/hip_flexion_r/value")
     'hip_flexion_r'

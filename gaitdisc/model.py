@@ -38,7 +38,6 @@ class Augmented:
     missing: Model  # the Discrepancy model; same inputs and outputs
 
     def __post_init__(self) -> None:
-        """Refuse models that cannot be added."""
         for what in ("inputs", "outputs"):
             one, other = getattr(self.known, what), getattr(self.missing, what)
             if one != other:

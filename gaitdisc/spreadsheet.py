@@ -47,9 +47,8 @@ def unquote(text: str) -> str:
 def write_csv(
     table: pd.DataFrame, path: Path, float_format: str | None = None, rest: Iterable[pd.DataFrame] = ()
 ) -> None:
-    """Write a table as CSV, whole or not at all.
+    """Write a table without its index as CSV, whole or not at all.
 
-    table: its index is not written
     float_format: of every number; by default as many digits as it takes to read the same number again
     rest: further rows, tables of the same columns, of which one at a time is held
     """

@@ -19,9 +19,7 @@ _TOGETHER: ContextVar[list[tuple[Path, Path]] | None] = ContextVar("together", d
 
 @contextmanager
 def whole_file(path: Path) -> Iterator[Path]:
-    """Path to write to; it takes the place of `path` when the block ends well, and vanishes when it does not.
-
-    returns: a file of the same ending in the same folder
+    """Path beside it to write to; it takes the place of `path` when the block ends well, and vanishes when it does not.
 
     >>> import tempfile
     >>> folder = Path(tempfile.mkdtemp())

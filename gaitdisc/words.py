@@ -32,12 +32,8 @@ DIRECTIONS = {
     "inversion": ("inverted", "everted"),
 }
 JOINTS = {
-    "hip_flexion": "hip",
-    "hip_adduction": "hip",
-    "hip_rotation": "hip",
-    "knee_angle": "knee",
-    "knee_adduction": "knee",
-    "knee_rotation": "knee",
+    **dict.fromkeys(("hip_flexion", "hip_adduction", "hip_rotation"), "hip"),
+    **dict.fromkeys(("knee_angle", "knee_adduction", "knee_rotation"), "knee"),
     "ankle_angle": "ankle",
     "subtalar_angle": "subtalar joint",
 }
@@ -53,9 +49,7 @@ def sideless(name: str) -> str:
 
 
 def label(name: str) -> str:
-    """Name of a channel as it is read in a title.
-
-    name: name of a channel; one that the vocabulary lacks is left as it is, but for its underscores
+    """Name of a channel as it is read in a title; one that the vocabulary lacks only loses its underscores.
 
     >>> label("ankle_angle_r"), label("emg_sol_l"), label("pelvis_tilt")
     ('ankle angle, right', 'EMG soleus, left', 'pelvis tilt')

@@ -47,7 +47,7 @@ def walks(data: Path, quick: bool = False) -> list[Walk]:
             bodies = {source: calibrate_body(static, one, measures) for source, one in sets.items()}
             for kind in ("straight", "turn"):
                 path = next((data / "gait" / "young_straight_and_turn" / person / kind).glob("*.c3d"))
-                trial, who = reader.read(path), Person(measures.mass_kg, "", measures.height_m)
+                trial, who = reader.read(path), Person(measures.mass_kg)
                 segments = {one: motion(trial.stream("markers"), body).poses for one, body in bodies.items()}
                 for source, poses in {**segments, "bones": bones(trial)}.items():
                     for name, settings in SETTINGS.items():

@@ -29,7 +29,10 @@ def test_type_checkers_see_the_names_that_are_loaded():
     seen = {}
     for node in ast.walk(ast.parse(SOURCE.read_text(encoding="utf-8"))):
         if isinstance(node, ast.ImportFrom) and (node.module or "").startswith("gaitdisc"):
-            seen |= {alias.asname: (node.module, alias.name) for alias in node.names}
+            seen |= {alias.asname or alias.name: (node.module, alias.name) for alias in node.names}
+        if isinstance(node, ast.Assign) and isinstance(node.value, ast.Tuple):  # those of another name inside
+            for name, inside in zip(node.targets[0].elts, node.value.elts, strict=True):
+                seen[name.id] = seen.pop(inside.id)
     loaded = {
         name: (f"gaitdisc.{module}", inside) if inside else (f"gaitdisc.{module.rpartition('.')[0]}", name)
         for name, (module, inside) in gd._HOME.items()

@@ -8,12 +8,12 @@ import sys
 from pathlib import Path
 
 import pytest
-from chapter5.files import read_cutout, read_sst_mat, read_sst_pacific, read_variables
+from chapter5.files import read_cutout, read_head, read_sst_mat, read_sst_pacific, read_variables
 
 import gaitdisc as gd
 from gaitdisc.discovery.catalogue import read_catalogue
 from gaitdisc.errors import ReadError, SchemaError
-from gaitdisc.ingest.hdf5 import hdf5_file, is_hdf5
+from gaitdisc.ingest.hdf5 import hdf5_file
 from gaitdisc.ingest.reading import ENDINGS, read_trial
 from gaitdisc.ingest.study_file import load_study
 from gaitdisc.regular_file import LARGEST_BYTES, LARGEST_TEXT_BYTES, check_regular, file_sha256
@@ -35,7 +35,7 @@ READERS = {
     "effects.toml": read_catalogue,
     "measured.csv": lambda path: read_measured(path, bundled("pendulum")),
     "field.nc": lambda path: read_variables(path, ("sst",)),
-    "field.h5": is_hdf5,
+    "field.h5": read_head,
     "open.h5": _open_hdf5,
     "cut.h5": lambda path: read_cutout([path], 0.002),
     "sst.mat": read_sst_mat,

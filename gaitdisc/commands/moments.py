@@ -36,7 +36,7 @@ def moments(
     walk, stood = read_trial(trial), read_trial(static)
     standing, measures = stood.stream("markers"), read_body_measures(static)
     weighed_n = standing_weight_n(stood)
-    person = Person(measures.mass_kg if mass is None else mass, sex, measures.height_m, weighed_n)
+    person = Person(measures.mass_kg if mass is None else mass, sex, weighed_n)
     weighed = check_weight(weighed_n, person.kg, static.name)
     moved = move_body(walk.stream("markers"), standing, marker_set or None, measures)
     settings = KineticsSettings(force_cutoff_hz=force_hz)

@@ -133,10 +133,6 @@ class ArrayFile:
             raise self._refuse(path, f"it is {_shape(values)}", remedy)
         return values[tuple(slice(None) if one == ":" else int(one) - 1 for one in wanted)]
 
-    def overview(self) -> str:
-        """Variables at the top of the file, in words."""
-        return f"{self.raw.name} holds {list_names(self.names, _SHOWN)}"
-
 
 def open_arrays(path: Path | str, process: ReaderProcess | None = None) -> ArrayFile:
     """File of variables, opened, nothing unpickled; a process reads all but `.mat` of v7.3, which HDF5 reads here."""
@@ -273,7 +269,7 @@ def read_arrays(
     if not wanted:
         raise ReadError(
             f"the study's [channels] must state the channel, unit and rate of each variable of {file.raw.name}",
-            f"none is mapped; {file.overview()}",
+            f"none is mapped; {file.raw.name} holds {list_names(file.names, _SHOWN)}",
             'Write for example "knee(:,1)" = "knee_angle_r [deg] @ 100 Hz"; see docs/sessions.md.',
         )
     bases: list[tuple[Values, list[Values], list[Column]]] = []

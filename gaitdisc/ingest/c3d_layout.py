@@ -40,10 +40,6 @@ class C3DLayout:
         """Bytes that the file has at least."""
         return (self.data_block - 1) * BLOCK + self.frames * self.frame_bytes
 
-    def fits(self, size: int) -> bool:
-        """Whether a file of that size [bytes] can hold the data."""
-        return self.end <= size
-
     def fills(self, size: int) -> bool:
         """Whether a file of that size [bytes] holds the data and no more than the padding of the last block."""
         return self.end <= size < self.end + BLOCK
@@ -147,7 +143,7 @@ def _distinct(*values):
 
 
 def _refuse_impossible(layout: C3DLayout, header: C3DHeader) -> None:
-    if not layout.fits(header.size):
+    if layout.end > header.size:
         whole = max((header.size - (layout.data_block - 1) * BLOCK) // max(layout.frame_bytes, 1), 0)
         raise ReadError(
             f"a C3D file of {layout.frames} frames, {layout.points} points and {layout.channels} analog channels must "

@@ -77,10 +77,9 @@ def length_unit(parameters: C3DParameters, places: Values) -> tuple[str, list[Fi
 
 
 def point_streams(rows: Values, parameters: C3DParameters, labels: LabelMap) -> tuple[Streams, str, list[Finding]]:
-    """Streams `markers`, `kinematics` and `moments` of the points.
+    """Streams `markers`, `kinematics` and `moments` of the points that the file has, in m, deg, N, N m and W.
 
     rows (frame, 3 * point): in the file's units, NaN where a point was not seen
-    returns streams dict of str to (values, channels): in m, deg, N, N m and W; only those that the file has
     """
     names, file = point_names(parameters, rows.shape[1] // 3), parameters.file
     kinds = _kinds(names, parameters)

@@ -205,27 +205,18 @@ def even_time(time: Values, digit_s: float, file: str, lines: NDArray[np.intp] |
         )
     step = mean_step(time)
     even = time[0] + step * np.arange(len(time))
-    if np.abs(time - even).max() <= ALREADY_EVEN * step:
+    drift, off = np.abs(time - even).max(), np.abs(steps - step).max()
+    if drift <= ALREADY_EVEN * step:
         return time
-    _check_rounding(time, digit_s, file, place)
+    if max(off, drift) > max(1.01 * digit_s if digit_s <= COARSE * step else 0.0, 1e-3 * step):
+        row, usual = int(np.argmax(np.abs(steps - np.median(steps)))), np.median(steps)
+        raise SamplingError(
+            f"{file}: a recording must have a constant rate",
+            f"between {place(row)} and {place(row + 1)} the step is {steps[row]:.6g} s (t = {time[row]:.6g} s), the "
+            f"usual step is {usual:.6g} s, and times have a resolution of {digit_s:.0e} s",
+            "Samples are missing, or times have too few digits. Export at one rate and with more digits.",
+        )
     # a whole number of samples a second where the digits allow one, else from first to last time
     rate = round(mean_rate(time))
     whole = time[0] + np.arange(len(time)) / rate if rate > 0 else even
     return whole if np.abs(time - whole).max() <= 1.01 * digit_s else even
-
-
-def _check_rounding(time: Values, digit_s: float, file: str, place) -> None:
-    steps = np.diff(time)
-    step = (time[-1] - time[0]) / len(steps)
-    off = np.abs(steps - step)
-    allowed = 1.01 * digit_s if digit_s <= COARSE * step else 0.0
-    drift = np.abs(time - (time[0] + step * np.arange(len(time))))
-    if off.max() <= max(allowed, 1e-3 * step) and drift.max() <= max(allowed, 1e-3 * step):
-        return
-    row = int(np.argmax(np.abs(steps - np.median(steps))))
-    raise SamplingError(
-        f"{file}: a recording must have a constant rate",
-        f"between {place(row)} and {place(row + 1)} the step is {steps[row]:.6g} s (t = {time[row]:.6g} s), the usual "
-        f"step is {np.median(steps):.6g} s, and times have a resolution of {digit_s:.0e} s",
-        "Samples are missing, or times have too few digits. Export at one rate and with more digits.",
-    )

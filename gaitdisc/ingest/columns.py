@@ -14,35 +14,24 @@ from gaitdisc.recording import Finding, Recording, Source, Trial
 from gaitdisc.recording.arrays import Values
 from gaitdisc.units import convert, inner_unit, list_units, offset_words, parse_unit
 
-# quantity -> units it may have inside; the first one is usual, the others are normalised by mass or by a maximum
-_UNITS_OF = {
-    "angle": ("deg",),
-    "translation": ("m",),
-    "marker": ("m",),
-    "pressure_centre": ("m",),
-    "moment": ("N m", "N m/kg", "%", "1"),
-    "force": ("N", "N/kg", "%", "1"),
-    "vertical_force": ("N", "N/kg", "%", "1"),
-    "power": ("W", "W/kg", "1"),
-    "emg": ("V", "1", "%"),
+# quantity -> its stream, and units it may have inside; the first is usual, others are normalised by mass or a maximum
+_KINDS = {
+    "angle": ("kinematics", "deg"),
+    "translation": ("kinematics", "m"),
+    "marker": ("markers", "m"),
+    "pressure_centre": ("forces", "m"),
+    "moment": ("moments", "N m", "N m/kg", "%", "1"),
+    "force": ("forces", "N", "N/kg", "%", "1"),
+    "vertical_force": ("forces", "N", "N/kg", "%", "1"),
+    "power": ("moments", "W", "W/kg", "1"),
+    "emg": ("emg", "V", "1", "%"),
+    "signal": ("signals",),  # of any unit
 }
 _CLOCK = " @ "
 IGNORE = "ignore"  # what the study calls a column, a marker or a channel that is not used
 RATE_WORDS = {"/s": "speed", "/s2": "accel"}  # how OpenSim calls the derivatives of a coordinate
 SLOWEST_S = 0.2  # between samples: people make up to 2.5 steps a second, which fewer than 5 Hz cannot show (Nyquist)
 FEW = 50  # samples, of which fewer are no recording of a walk
-_STREAM = {
-    "angle": "kinematics",
-    "translation": "kinematics",
-    "marker": "markers",
-    "emg": "emg",
-    "force": "forces",
-    "vertical_force": "forces",
-    "pressure_centre": "forces",
-    "moment": "moments",
-    "power": "moments",
-    "signal": "signals",
-}
 
 
 @dataclass(frozen=True)
@@ -87,6 +76,8 @@ def find_clock(said: str) -> str:
 
 def map_label(label: str, channels: Mapping[str, str] | None) -> str | None:
     """What the study's `[channels]` says of a label, or None; case, blanks, punctuation count only where they must.
+
+    channels: label -> `name` or `name [unit]`, here and in all readers of text
 
     >>> map_label("Sensor 1.EMG", {"sensor 1 emg": "emg_sol_r [mV]"})
     'emg_sol_r [mV]'
@@ -158,10 +149,9 @@ def column_in_unit(label: str, channel: Channel, unit_text: str, file: str) -> C
             f"Use one of: {', '.join(list_units())}.",
         )
     inner = inner_unit(unit)
-    allowed = _UNITS_OF.get(channel.quantity)
     if rate and channel.quantity != "signal":
         channel = replace(channel, name=f"{channel.name}/{RATE_WORDS[rate]}", quantity="signal")
-        allowed = None
+    _, *allowed = _KINDS[channel.quantity]
     if allowed and inner not in allowed:
         kind = "EMG" if channel.quantity == "emg" else channel.quantity.replace("_", " ")
         kind = f"{'an' if kind[0] in 'aE' else 'a'} {kind}"
@@ -205,7 +195,7 @@ def find_stream(channel: Channel) -> str:
         return "forces"
     if channel.quantity == "force" and channel.name.endswith("_force"):
         return "moments"
-    return _STREAM[channel.quantity]
+    return _KINDS[channel.quantity][0]
 
 
 def sort_trial(

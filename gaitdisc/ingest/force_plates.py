@@ -45,11 +45,6 @@ class ForcePlate:
         return Surface(f"plate_{self.number}", self.corners)
 
     @property
-    def centre(self) -> Values:
-        """Centre of the surface, (3,) [m], in the laboratory's axes."""
-        return self.corners.mean(axis=0)
-
-    @property
     def axes(self) -> Values:
         """The plate's axes as columns, (3, 3), in the laboratory's axes; NaN where the corners span no surface."""
         first, second, third, fourth = self.corners
@@ -204,7 +199,7 @@ def plate_streams(
         sign = sense or most or 1.0
         pressure = centre_of_pressure(force, moment)
         axes = plate.axes.T
-        parts.append(np.hstack([sign * force @ axes, sign * moment @ axes, plate.centre + pressure @ axes]))
+        parts.append(np.hstack([sign * force @ axes, sign * moment @ axes, plate.surface.centre + pressure @ axes]))
         forces = ["vertical_force" if place == plate.vertical else "force" for place in range(3)]
         kinds = (("f", forces, "N"), ("m", ["moment"] * 3, "N m"), ("p", ["pressure_centre"] * 3, "m"))
         channels += [
@@ -321,7 +316,7 @@ def _beside_either(plate: ForcePlate, values: Values, units: tuple[str, ...]) ->
 def _beside(plate: ForcePlate, values: Values, units: tuple[str, ...]) -> float:
     """Share of the loaded samples whose centre of pressure lies beside the plate."""
     pressure = centre_of_pressure(*plate.wrench(values, units))
-    half = np.abs((plate.corners - plate.centre) @ plate.axes)[:, :2].max(axis=0)
+    half = np.abs((plate.corners - plate.surface.centre) @ plate.axes)[:, :2].max(axis=0)
     loaded = np.isfinite(pressure[:, 0])
     outside = np.any(np.abs(pressure[loaded, :2]) > half + BESIDE_M, axis=1)
     return float(outside.mean()) if outside.size else 0.0

@@ -19,19 +19,9 @@ TEXT_LIMIT_S = 10.0  # of processor time; a text takes a thousandth of it
 SIGNATURE = b"\x89HDF\r\n\x1a\n"
 
 
-def is_hdf5(path: Path) -> bool:
-    """Whether a file begins as HDF5 does."""
-    try:
-        check_regular(path)
-        with path.open("rb") as file:
-            return file.read(len(SIGNATURE)) == SIGNATURE
-    except OSError as error:
-        raise ReadError(f"{path.name} cannot be read", str(error.strerror), "Correct the path.") from error
-
-
 @contextmanager
 def hdf5_file(path: Path) -> Iterator[Any]:
-    """Open an HDF5 file for reading."""
+    """Open an HDF5 file for reading, and say in words what the library finds wrong with it."""
     try:
         import h5py
     except ImportError as error:
@@ -40,40 +30,38 @@ def hdf5_file(path: Path) -> Iterator[Any]:
             f"it cannot be imported ({error})",
             "Install the extra: pip install 'gaitdisc[fields]'.",
         ) from error
-    with _in_words(path):
-        check_regular(path)
-        file = h5py.File(path, "r")
     try:
-        yield file
-    finally:
-        with _in_words(path):
-            file.close()
-
-
-def member_names(file: Any, path: Path) -> tuple[str, ...]:
-    """Names at the top of an HDF5 file."""
-    with _in_words(path):
-        return tuple(map(str, file))
+        check_regular(path)
+        with h5py.File(path, "r") as file:
+            yield file
+    except GaitdiscError:
+        raise
+    except Exception as error:  # its errors have no common ancestor
+        said = " ".join(str(error).split())[:200] or type(error).__name__
+        raise ReadError(
+            f"{path.name} must be an HDF5 file",
+            f"it cannot be read: {said}",
+            "Download or copy the file again. It may be incomplete.",
+        ) from error
 
 
 def data_set(file: Any, name: str, path: Path) -> NDArray[Any]:
     """Numbers of one data set."""
-    with _in_words(path):
-        held = file[name]
-        kind = getattr(getattr(held, "dtype", None), "kind", "")
-        if kind not in tuple("iuf"):
-            raise ReadError(
-                f"{path.name}: {name!r} must be a data set of numbers",
-                f"it is {'of another type' if kind else 'missing'}",
-                "Download or copy the file again. It may be damaged.",
-            )
-        if held.nbytes > LARGEST_BYTES:
-            raise ReadError(
-                f"{path.name}: a data set may have at most {LARGEST_BYTES} bytes",
-                f"{name!r} claims {held.nbytes}",
-                "Extract a part of it, or download the file again. It may be damaged.",
-            )
-        return np.asarray(held[()])
+    held = file[name]
+    kind = getattr(getattr(held, "dtype", None), "kind", "")
+    if kind not in tuple("iuf"):
+        raise ReadError(
+            f"{path.name}: {name!r} must be a data set of numbers",
+            f"it is {'of another type' if kind else 'missing'}",
+            "Download or copy the file again. It may be damaged.",
+        )
+    if held.nbytes > LARGEST_BYTES:
+        raise ReadError(
+            f"{path.name}: a data set may have at most {LARGEST_BYTES} bytes",
+            f"{name!r} claims {held.nbytes}",
+            "Extract a part of it, or download the file again. It may be damaged.",
+        )
+    return np.asarray(held[()])
 
 
 def attributes(file: Any, name: str, path: Path, wanted: Collection[str]) -> dict[str, Any]:
@@ -83,36 +71,19 @@ def attributes(file: Any, name: str, path: Path, wanted: Collection[str]) -> dic
     runs in a circle, and nothing can stop it from within.
     """
     found = {}
-    with _in_words(path):
-        held = file[name].attrs
-        for one in (one for one in wanted if one in held):
-            if held.get_id(one).dtype.kind != "O":
-                found[one] = held[one]
-                continue
-            request = ReadRequest.of_size(str(path), "hdf5 text", (name, one), check_regular(path))
-            with closing(ReaderProcess()) as process:
-                answer, _ = process.read(replace(request, limit_s=TEXT_LIMIT_S))
-            if "text" not in answer:
-                raise ReadError(
-                    f"{path.name} must be an HDF5 file",
-                    f"attribute {one!r} of {name!r} cannot be read: {answer['said']}",
-                    "Download or copy the file again. It is damaged.",
-                )
-            found[one] = str(answer["text"])
+    held = file[name].attrs
+    for one in (one for one in wanted if one in held):
+        if held.get_id(one).dtype.kind != "O":
+            found[one] = held[one]
+            continue
+        request = ReadRequest.of_size(str(path), "hdf5 text", (name, one), check_regular(path))
+        with closing(ReaderProcess()) as process:
+            answer, _ = process.read(replace(request, limit_s=TEXT_LIMIT_S))
+        if "text" not in answer:
+            raise ReadError(
+                f"{path.name} must be an HDF5 file",
+                f"attribute {one!r} of {name!r} cannot be read: {answer['said']}",
+                "Download or copy the file again. It is damaged.",
+            )
+        found[one] = str(answer["text"])
     return found
-
-
-@contextmanager
-def _in_words(path: Path) -> Iterator[None]:
-    """Say in words what the library finds wrong with a file; its errors have no common ancestor."""
-    try:
-        yield
-    except GaitdiscError:
-        raise
-    except Exception as error:
-        said = " ".join(str(error).split())[:200] or type(error).__name__
-        raise ReadError(
-            f"{path.name} must be an HDF5 file",
-            f"it cannot be read: {said}",
-            "Download or copy the file again. It may be incomplete.",
-        ) from error

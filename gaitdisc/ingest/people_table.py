@@ -238,9 +238,7 @@ def session_word(path: Path) -> tuple[str, str]:
     """Word of a path that names the session, and what it is put in order by; the word of a date is empty.
 
     A word counts before any date, and the date of an inner folder before that of an outer one, which may be of birth.
-
-    returns word: such as `pre` or `visit 2`; empty for a date and where no word names one
-    returns order: later sessions have a greater one; empty where no word names one
+    Where neither names a session both are empty.
 
     >>> session_word(Path("P01/post/walk.c3d")), session_word(Path("P01/2024-03-01/walk.c3d"))
     (('post', 'a04'), ('', 'd20240301'))

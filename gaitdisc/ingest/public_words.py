@@ -1,9 +1,7 @@
 """What may stand in a result that is passed on: words of this package, of its vocabulary and of the study; no others.
 
-A recording brings words of its own: names of files and folders, labels, names in headers. Any of them may say who a
-person is. So a sentence that is written into a folder of results is held against the words that are known to be public,
-and every other word in it becomes `…`; a file is called by its participant, condition and number. The study file is the
-key between these and the names, and is not for passing on.
+Any name of a file, label or header may say who a person is. So every word of a sentence that is not known to be public
+becomes `…`, and a file is called by its participant, condition and number. The study file is the key to the names.
 """
 
 from __future__ import annotations
@@ -117,10 +115,7 @@ class PublicWords:
 
 
 def list_words(study: Study, participant: Participant, named: Iterable[str] = ()) -> PublicWords:
-    """Public words of one participant's recordings.
-
-    named: channels that the user named, beside those of the study
-    """
+    """Public words of one participant's recordings, of the study and of channels that the user named."""
     said = [study.title, *study.sessions, *study.conditions.words, participant.group, participant.excluded, *named]
     said += [each.id for each in study.participants]
     said += [trial.leave_out for trial in participant.trials]
@@ -138,10 +133,7 @@ def of_trial(words: PublicWords, participant: Participant, planned: PlannedTrial
 
 
 def with_public_labels(recording: Recording) -> tuple[Recording, int]:
-    """Recording whose channels of other names are numbered, and how many these are.
-
-    recording: of any channels; a marker's three keep their `.x`, `.y` and `.z`
-    """
+    """Recording whose channels of other names are numbered, a marker's three alike, and how many these are."""
     public, called = PublicWords(), dict[str, str]()
     names = []
     for channel in recording.channels:

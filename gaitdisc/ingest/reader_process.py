@@ -64,42 +64,39 @@ class ReaderProcess:
     def read(self, request: ReadRequest) -> Answer:
         """Answer to one request, and its arrays; `said` in it is why there are none. No file makes it raise."""
         with self._lock:
-            return self._read(request)
+            process = self._running()
+            self._files += 1
+            answers: list[Answer] = []
 
-    def _read(self, request: ReadRequest) -> Answer:
-        process = self._running()
-        self._files += 1
-        answers: list[Answer] = []
+            def converse() -> None:
+                assert process.stdin is not None and process.stdout is not None  # both are pipes
+                with contextlib.suppress(Exception):  # whatever a dying reader babbles, there is no answer then
+                    process.stdin.write(json.dumps({**asdict(request), "clock_s": request.clock_s}).encode() + b"\n")
+                    process.stdin.flush()
+                    head: dict[str, Any] = json.loads(process.stdout.readline())
+                    shapes = () if "said" in head else head["shapes"]
+                    answers.append((head, [_receive(process.stdout, shape) for shape in shapes]))
 
-        def converse() -> None:
-            assert process.stdin is not None and process.stdout is not None  # both are pipes
-            with contextlib.suppress(Exception):  # whatever a dying reader babbles, there is no answer then
-                process.stdin.write(json.dumps({**asdict(request), "clock_s": request.clock_s}).encode() + b"\n")
-                process.stdin.flush()
-                head: dict[str, Any] = json.loads(process.stdout.readline())
-                shapes = () if "said" in head else head["shapes"]
-                answers.append((head, [_receive(process.stdout, shape) for shape in shapes]))
-
-        # A pipe cannot be waited on with a time limit on every system; a thread can.
-        thread = threading.Thread(target=converse, daemon=True)
-        thread.start()
-        try:
-            thread.join(request.clock_s)
-            if not thread.is_alive() and answers:
-                return answers[0]
-            late = thread.is_alive()
-        except BaseException:
-            self._stop()
-            raise
-        code = self._stop()
-        thread.join(5)
-        if late:
-            failure = f"it did not finish within {request.clock_s:.3g} s"
-        elif code == -getattr(signal, "SIGXCPU", np.inf):
-            failure = f"it did not finish within {request.limit_s:.3g} s of processor time"
-        else:
-            failure = f"it crashed (exit code {code})"
-        return {"said": failure}, []
+            # A pipe cannot be waited on with a time limit on every system; a thread can.
+            thread = threading.Thread(target=converse, daemon=True)
+            thread.start()
+            try:
+                thread.join(request.clock_s)
+                if not thread.is_alive() and answers:
+                    return answers[0]
+                late = thread.is_alive()
+            except BaseException:
+                self._stop()
+                raise
+            code = self._stop()
+            thread.join(5)
+            if late:
+                failure = f"it did not finish within {request.clock_s:.3g} s"
+            elif code == -getattr(signal, "SIGXCPU", np.inf):
+                failure = f"it did not finish within {request.limit_s:.3g} s of processor time"
+            else:
+                failure = f"it crashed (exit code {code})"
+            return {"said": failure}, []
 
     def close(self) -> None:
         """End the process."""

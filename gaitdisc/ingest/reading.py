@@ -27,14 +27,8 @@ if TYPE_CHECKING:
     from gaitdisc.ingest.study import Participant, PlannedTrial, Study
 
 EDGE_S = 0.05  # by which an event may lie outside of its recording
-READERS = {
-    ".mot": read_storage,
-    ".sto": read_storage,
-    ".trc": read_trc,
-    ".csv": read_table,
-    ".tsv": read_table,
-    ".parquet": read_table,
-}
+READERS = {**dict.fromkeys((".mot", ".sto"), read_storage), ".trc": read_trc}
+READERS |= dict.fromkeys((".csv", ".tsv", ".parquet"), read_table)
 ARRAYS = (".mat", ".npz")
 ENDINGS = (".c3d", *READERS, *ARRAYS)
 

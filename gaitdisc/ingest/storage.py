@@ -46,12 +46,9 @@ _ROWS, _COLUMNS = ("nrows", "datarows"), ("ncolumns", "datacolumns")
 _OWN_COLUMN = re.compile(r"column\s+(\d+)\s*=\s*(\w+)\s*\[([^\]]*)\]\s*(r|l|)\s*", re.IGNORECASE)
 _GROUND = re.compile(r"(?:.*_)?(?:ground|grf|fp_?\d)\w*?_([vpm]?)([xyz])", re.IGNORECASE)
 _GROUND_WORD = re.compile(r"force|torque|moment", re.IGNORECASE)
-_RATES = {
-    "speeds": "/s",
-    "velocities": "/s",
-    "accelerations": "/s2",
-    "kinematics_u": "/s",  # what OpenSim's analyses write
-    "kinematics_dudt": "/s2",
+_RATES = {  # kinematics_u and _dudt are what OpenSim's analyses write
+    **dict.fromkeys(("speeds", "velocities", "kinematics_u"), "/s"),
+    **dict.fromkeys(("accelerations", "kinematics_dudt"), "/s2"),
 }
 # What OpenSim's analyses write of muscles under the names of the muscles, which elsewhere are those of EMG
 _OF_ACTUATORS = {"actuation_force": "N", "actuation_power": "W", "forcereporter": "N"}
@@ -64,8 +61,6 @@ def read_storage(path: Path | str, channels: Mapping[str, str] | None = None) ->
     how far hips and knees move; translations are in m whatever it states. Wrong counts in a header are reported where
     the rows agree among themselves; more than 1 % fewer rows than it claims are refused, since the file was cut.
 
-    channels: the study's `[channels]`: label -> `name` or `name [unit]`
-    returns: streams `kinematics`, `emg`, `forces`, `moments`, `signals`, as far as the file has them
     Source: OpenSim documentation, "Storage (.sto) Files" and "Motion (.mot) Files".
     """
     raw = read_raw(path)
@@ -230,8 +225,6 @@ def storage_columns(header: StorageHeader, file: str, channels: Mapping[str, str
     The study's map comes first, then what the file itself states, then the vocabulary, then the habits of OpenSim:
     `*_moment` in N m, `*_force` in N, `/speed` per second, EMG without a unit. Angles are marked `deg` here; whether
     the file holds radians follows from the numbers.
-
-    channels: the study's `[channels]`
     """
     words = fold_label(header.title) + " " + fold_label(file)
     known = [vocabulary().named(split_unit(label)[0]) for label in header.labels[1:]]

@@ -246,34 +246,12 @@ class Study(StudyPart):
             raise SchemaError("the participant must be in the study", f"{subject!r} is not", f"Use one of: {ids}.")
         return found
 
-    def complete(self) -> tuple[Participant, ...]:
-        """Participants who are not excluded, with trials of both conditions where a device is compared."""
-        lacking = set(self.one_condition_only())
-        return tuple(each for each in self.participants if each.id not in lacking and not each.excluded)
-
     def one_condition_only(self) -> tuple[str, ...]:
         """Pseudonyms of those who lack a trial of one of the two conditions; none where no device is compared."""
         if self.conditions.device is None:
             return ()
         both = self.conditions.both
         return tuple(each.id for each in self.participants if not all(each.trials_of(word) for word in both))
-
-    def missing_files(self) -> tuple[str, ...]:
-        """Files that the study names and that are not there, as written in it."""
-        named = [file for each in self.participants for trial in each.trials for file in trial.files]
-        if self.kinematics and self.kinematics.marker_set.endswith(".toml"):
-            named.append(self.kinematics.marker_set)
-        return tuple(file for file in dict.fromkeys(named) if not self.path_of(file).is_file())
-
-    def check_files(self) -> None:
-        """Refuse a study whose files are not all there."""
-        missing = self.missing_files()
-        if missing:
-            raise SchemaError(
-                "all files of the study must exist, relative to the study file",
-                f"{len(missing)} missing: {', '.join(missing)}",
-                "Correct the names in [[participants.trials]], or copy the files there.",
-            )
 
 
 def check_conditions(conditions: Conditions) -> None:

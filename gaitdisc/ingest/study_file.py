@@ -57,8 +57,7 @@ _KINDS = {  # kind of a finding of pydantic, or how it begins -> what a value mu
     "int": ("be a whole number", "Write it without quotes and without a point, for example 4."),
     "string": ("be text", 'Write it in quotes: "...".'),
     "tuple": ("be a list", "Write it in brackets: [...]."),
-    "model": ("be a table", "Write its keys under a header in brackets."),
-    "dict": ("be a table", "Write its keys under a header in brackets."),
+    **dict.fromkeys(("model", "dict"), ("be a table", "Write its keys under a header in brackets.")),
 }
 _LIMITS = {
     "greater_than": ("above", "gt"),
@@ -174,8 +173,6 @@ def grow_study(study: Study, draft: Study) -> Study:
 
     Whoever is in the study keeps the pseudonym, also where the draft has another one for the same files; each trial
     keeps its condition and session. Files that belong to a trial of the study are added to it.
-
-    draft: of all recordings, its paths relative to the same folder
     """
     owner = {_place(study, file): one.id for one in study.participants for trial in one.trials for file in trial.files}
     people = {one.id: one for one in study.participants}

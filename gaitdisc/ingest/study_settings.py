@@ -124,10 +124,6 @@ class HeldOut(StudyPart):
             refuse(("seconds",), "replace 'share'", "both are there" if both else "none is", "Write one.")
         return self
 
-    def length_s(self, duration_s: float) -> float:
-        """Return the length of the held-out part of a trial that lasts `duration_s` [s]."""
-        return self.seconds if self.seconds is not None else (self.share or 0.0) * duration_s
-
 
 class Quality(StudyPart):
     """What a trial must have to be used."""

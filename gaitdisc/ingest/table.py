@@ -46,8 +46,6 @@ def read_table(path: Path | str, channels: Mapping[str, str] | None = None) -> T
     vocabulary have their unit by definition; every other name must state one. A column of times of another name is
     named by the study: `"Frame time" = "time [s]"`. A line of units below the header counts as part of it. A table of
     events (`read_events`) gives a trial of events alone.
-
-    channels: the study's `[channels]`: label -> `name` or `name [unit]`
     """
     raw = read_raw(path)
     if raw.name.lower().endswith(".parquet"):
@@ -73,8 +71,6 @@ def read_table(path: Path | str, channels: Mapping[str, str] | None = None) -> T
 
 def read_frame(frame: pd.DataFrame, channels: Mapping[str, str] | None = None) -> Trial:
     """Trial of a DataFrame with the columns of a plain table; times may stand in its index.
-
-    channels: as `read_table` takes it
 
     >>> import pandas as pd
     >>> table = pd.DataFrame({"time": [0.0, 0.01, 0.02], "knee_angle_r": [5.0, 6.0, 7.0]})

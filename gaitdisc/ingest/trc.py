@@ -41,7 +41,6 @@ def read_trc(path: Path | str, channels: Mapping[str, str] | None = None) -> Tri
     Labels are taken in their order, whatever column they stand over, since exporters shift that line by one tab. What
     stands before a colon in a label is the subject's name and is dropped. A marker at exactly (0, 0, 0) was not seen.
 
-    channels: the study's `[channels]`: label -> name of the marker
     returns: one stream, `markers`: `<marker>.x`, `.y`, `.z` [m], NaN in gaps
     """
     raw = read_raw(path)

@@ -261,12 +261,8 @@ class _Builder:
         self.places = swap(self.places, pair)
         self.exchanged = pair
         what = f"{wrong[1]}: exchanging {' and '.join(pair)} in the static trial corrects this"
-        self._note(
-            "exchanged markers",
-            what,
-            "the segments of these markers and those distal to them; correct the labels",
-            "warning",
-        )
+        spoils = "the segments of these markers and those distal to them; correct the labels"
+        self._note("exchanged markers", what, spoils, "warning")
 
     def _list_spoiled(self) -> tuple[str, ...]:
         """Segments that hold an exchanged marker, and those below them."""

@@ -144,7 +144,6 @@ def walking_frame(
 
     origin (frame, 3) [m]: the pelvis over time; NaN allowed
     facing (frame, 3): axis of the pelvis that points forward
-    up (3,): up in the laboratory
     """
     if given is not None:
         stated = np.asarray(given, float)

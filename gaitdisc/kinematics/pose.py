@@ -40,7 +40,6 @@ class Pose:
     rotation: Values
 
     def __post_init__(self) -> None:
-        """Check shapes and that every known matrix is a rotation, once."""
         freeze(self, "origin", "rotation")
         origin, rotation = self.origin, self.rotation
         if origin.ndim != 2 or origin.shape[1] != 3 or rotation.shape != (len(origin), 3, 3):
@@ -248,8 +247,7 @@ def chord_centre(proximal: Values, wand: Values, lateral: Values, distance_m: fl
     angles; of the two such points the one away from the wand is taken.
 
     proximal (3,) [m]: joint centre above
-    wand (3,) [m]: marker that shows the plane, lateral of the segment
-    lateral (3,) [m]: marker over the lateral condyle or malleolus
+    wand, lateral (3,) [m]: markers that show the plane, and over the lateral condyle or malleolus
     distance_m: half the width of the joint and the radius of the marker [m]
     Source: Davis 1991, Hum Mov Sci 10:575; Plug-in Gait calls it CHORD.
 

@@ -109,8 +109,7 @@ def _chain(segment: str) -> tuple[str, ...]:
 
 def _beginning(first: Mapping[str, Pose]) -> tuple[Turns, Values]:
     """Rotations and the place of the pelvis, where they are unknown between those before and after."""
-    turns: Turns = {}
-    origin = np.empty(0)
+    turns, origin = {}, np.zeros(first["pelvis"].origin.shape)
     for segment in SEGMENTS:
         pose = first[segment]
         known, frames = np.flatnonzero(pose.known), np.arange(len(pose))
@@ -120,8 +119,6 @@ def _beginning(first: Mapping[str, Pose]) -> tuple[Turns, Values]:
             turns[segment] = _between(known, pose.rotation[known], np.clip(frames, known[0], known[-1]))
         if segment == "pelvis" and len(known):
             origin = np.stack([np.interp(frames, known, pose.origin[known, axis]) for axis in range(3)], axis=1)
-        elif segment == "pelvis":
-            origin = np.zeros((len(pose), 3))
     return turns, origin
 
 
@@ -211,8 +208,7 @@ def hold_in_gaps(
     free: each segment over its own points, NaN where too few; placed, points: as `hold_together` takes them
     """
     unknown = ~np.logical_and.reduce([free[segment].known for segment in SEGMENTS])
-    beside = np.convolve(unknown, np.ones(3), "same") > 0
-    rows: NDArray[np.intp] = np.flatnonzero(beside)
+    rows: NDArray[np.intp] = np.flatnonzero(np.convolve(unknown, np.ones(3), "same") > 0)
     held = {}
     some = {segment: one.among(rows) for segment, one in placed.items()}
     part = {segment: Pose(pose.origin[rows], pose.rotation[rows]) for segment, pose in free.items()}

@@ -16,10 +16,7 @@ from gaitdisc.kinetics.newton_euler import RigidBody
 from gaitdisc.recording.arrays import Values, finite_values
 from gaitdisc.recording.trial import MASS_KG
 
-TABLES = ("dumas2007", "deleva1996")
 LEG: tuple[str, ...] = ("foot", "shank", "thigh")
-# de Leva (1996), Table 4, mean lengths of foot over mean statures of the people measured
-_FOOT_OF_STATURE = {"f": 0.2283 / 1.735, "m": 0.2581 / 1.741}
 _SPREAD_OF_LENGTH = 0.1  # a bone whose length varies by more than a tenth is none
 
 
@@ -34,12 +31,10 @@ class Person:
     """
 
     mass_kg: float | None
-    sex: str = ""  # `f`, `m`, or empty where it is unknown: then the means of both columns of a table are taken
-    stature_m: float | None = None  # only for de Leva's foot, which is measured from heel to the tip of the toes
+    sex: str = ""  # `f`, `m`, or empty where it is unknown: then the means of both columns of the table are taken
     weighed_n: float | None = None  # of who stood on the plates, which forces are held against; mass x 9.81 without it
 
     def __post_init__(self) -> None:
-        """Check once what everything below divides by."""
         if self.mass_kg is None or not np.isfinite(self.mass_kg):
             raise UnitError(
                 "moments and powers per kg need the person's body mass [kg]",
@@ -69,8 +64,7 @@ class TableRow:
     """One segment of a table, for one sex."""
 
     mass: float  # [% of body mass], of one segment
-    # tuple of float [% of the segment's length], x, y, z of the right side, from the proximal joint's centre (de Leva's
-    # foot: from the heel); empty where the table is read for its masses only
+    # tuple of float [% of the segment's length], x, y, z of the right side, from the proximal joint's centre
     centre: tuple[float, ...]
     # tuple of float [% of the segment's length], xx, yy, zz, xy, xz, yz of the right side; a negative product of
     # inertia has a negative number
@@ -79,22 +73,17 @@ class TableRow:
 
 
 @cache
-def inertia_table(table: str, sex: str) -> Mapping[str, TableRow]:
-    """Segments of a table for one sex, as `data_schema/segment_inertia.csv` has them.
+def inertia_table(sex: str) -> Mapping[str, TableRow]:
+    """Segments of one sex, as `data_schema/segment_inertia.csv` has them.
 
-    Source: Dumas, Chèze & Verriest (2007), J. Biomech. 40, 543-553, and its corrigendum, 40, 1651-1652. de Leva
-        (1996), J. Biomech. 29, 1223-1230. Both as other programs print them: docs/kinetics.md says which numbers
-        differ there.
+    Source: Dumas, Chèze & Verriest (2007), J. Biomech. 40, 543-553, and its corrigendum, 40, 1651-1652, as other
+        programs print them: docs/kinetics.md says which numbers differ there.
 
-    >>> inertia_table("dumas2007", "m")["thigh"].mass
+    >>> inertia_table("m")["thigh"].mass
     12.3
     """
-    if table not in TABLES:
-        raise SchemaError(
-            f"the table of segment inertia must be one of {', '.join(TABLES)}", f"it is {table!r}", "Name one of these."
-        )
     with (schema_folder() / "segment_inertia.csv").open(newline="", encoding="utf-8") as file:
-        rows = [row for row in csv.DictReader(file) if (row["table"], row["sex"]) == (table, sex)]
+        rows = [row for row in csv.DictReader(file) if row["sex"] == sex]
     return {
         row["segment"]: TableRow(
             float(row["mass"]),
@@ -106,14 +95,11 @@ def inertia_table(table: str, sex: str) -> Mapping[str, TableRow]:
     }
 
 
-def leg_inertia(
-    person: Person, side: str, lengths_m: Mapping[str, float], heel: Values, toe: Values, table: str = "dumas2007"
-) -> dict[str, RigidBody]:
+def leg_inertia(person: Person, side: str, lengths_m: Mapping[str, float], toe: Values) -> dict[str, RigidBody]:
     """Inertia of foot, shank and thigh of side `r` or `l`; the left leg is the right one's mirror image.
 
-    heel (3,) [m]: back of the heel, from the centre of the ankle in the foot's frame
-    toe (3,) [m]: over the head of the second metatarsal, or midway between the first and the fifth; Dumas' foot ends
-        there
+    toe (3,) [m]: over the head of the second metatarsal, or midway between the first and the fifth, from the centre of
+        the ankle in the foot's frame; Dumas' foot ends there
     """
     lengths = {**lengths_m, "foot": float(np.linalg.norm(toe))}
     for segment in LEG:
@@ -124,17 +110,10 @@ def leg_inertia(
                 f"{segment}_{side} is {lengths[segment]:.4g} m",
                 "Check the markers' unit and the joint centres.",
             )
-    sexes = person.sex or "fm"
-    bodies = [
-        {segment: _body(inertia_table(table, sex)[segment], person.kg, lengths[segment], side) for segment in LEG}
-        for sex in sexes
-    ]
-    if table == "deleva1996":
-        for found, sex in zip(bodies, sexes, strict=True):
-            found["foot"] = _foot_from_heel(inertia_table(table, sex)["foot"], person, sex, heel, toe)
     means = {}
     for segment in LEG:
-        each = [found[segment] for found in bodies]
+        rows = [inertia_table(sex)[segment] for sex in person.sex or "fm"]
+        each = [_body(row, person.kg, lengths[segment], side) for row in rows]
         mass = float(np.mean([body.mass_kg for body in each]))
         centre = np.mean([body.centre for body in each], axis=0)
         means[segment] = RigidBody(mass, centre, np.mean([body.tensor for body in each], axis=0))
@@ -176,20 +155,3 @@ def _body(row: TableRow, mass_kg: float, length_m: float, side: str) -> RigidBod
     mass = row.mass / 100 * mass_kg
     tensor = mass * np.array([[xx, xy, xz], [xy, yy, yz], [xz, yz, zz]])
     return RigidBody(mass, mirror @ np.array(row.centre) / 100 * length_m, mirror @ tensor @ mirror)
-
-
-def _foot_from_heel(row: TableRow, person: Person, sex: str, heel: Values, toe: Values) -> RigidBody:
-    """De Leva's foot: along the line from heel to toes, whose tips are known by the stature."""
-    if person.stature_m is None:
-        raise UnitError(
-            "the foot of de Leva (1996) is measured from heel to toe tip and needs the person's stature [m]",
-            "no stature is stated",
-            "State it, or use the table dumas2007.",
-        )
-    length = _FOOT_OF_STATURE[sex] * person.stature_m
-    ahead = (toe - heel) / np.linalg.norm(toe - heel)
-    plain = _body(row, person.kg, length, "r")
-    across = np.cross(ahead, [0.0, 1.0, 0.0])
-    across /= np.linalg.norm(across)
-    axes = np.column_stack([ahead, np.cross(across, ahead), across])
-    return RigidBody(plain.mass_kg, heel + axes @ plain.centre, axes @ plain.tensor @ axes.T)

@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from gaitdisc.channel import Channel
 from gaitdisc.errors import SamplingError, SchemaError, ShapeError
 from gaitdisc.kinematics.pose import JOINT_CHANNELS, SEGMENTS_OF, Pose, angle_signs
-from gaitdisc.kinetics.body_inertia import LEG, TABLES, Person, leg_inertia, segment_lengths
+from gaitdisc.kinetics.body_inertia import LEG, Person, leg_inertia, segment_lengths
 from gaitdisc.kinetics.newton_euler import RigidBody, SegmentMotion, compute_wrench, joint_wrenches, segment_motions
 from gaitdisc.kinetics.plate_steps import FootPath, PlateStep
 from gaitdisc.kinetics.platform import Platform, Wrench
@@ -43,9 +43,8 @@ def foot_loads(
     Known are a foot's clean steps, the swing between two of them, the swings that its markers or the file's events
     show, and every frame where a platform names its foot.
 
-    time (frame,) [s]: of the markers
     cutoff_hz: of the filter of force and moment; infinite for none
-    airborne: spans in which a foot swings, as `swings` gives them
+    airborne: as `swings` gives it
     """
     loads = {}
     for side in "rl":
@@ -101,7 +100,6 @@ def joint_axes(nearer: Pose, farther: Pose) -> Values:
     to both others, forwards; the farther segment's y (along the bone), about which rotation turns. Projections of a
     moment on them times the rates of their angles are the joint's power, as with OpenSim's generalised forces.
 
-    nearer, farther: the segments on the trunk's side of the joint and beyond it
     Source: Grood & Suntay (1983), J. Biomech. Eng. 105, 136-144. Schache & Baker (2007), Gait Posture 25, 440-452,
         compare the frames in which joint moments are given, and recommend these axes.
 
@@ -136,23 +134,19 @@ class KineticsSettings:
     # have lost as a moment that nobody made after an impact (Kristianslund 2012); alike ones take both away
     marker_cutoff_hz: float = 6.0
     force_cutoff_hz: float = 20.0
-    inertia: str = "dumas2007"  # table of segment inertia: `dumas2007` or `deleva1996`
     # `joint`: parts along the axes of the joint angles; `distal`: along the axes of the segment beyond the joint, as
     # Plug-in Gait gives them
     frame: str = "joint"
 
     def __post_init__(self) -> None:
-        """Check once."""
         for name in ("marker_cutoff_hz", "force_cutoff_hz"):
             if not getattr(self, name) > 0:
                 raise SamplingError(
                     f"{name} must be positive", f"it is {getattr(self, name):g} Hz", "Use Hz, or inf for no filter."
                 )
-        for name, known in (("inertia", TABLES), ("frame", FRAMES)):
-            if getattr(self, name) not in known:
-                raise SchemaError(
-                    f"{name} must be one of {', '.join(known)}", f"it is {getattr(self, name)!r}", "Name one of these."
-                )
+        if self.frame not in FRAMES:
+            known = ", ".join(FRAMES)
+            raise SchemaError(f"frame must be one of {known}", f"it is {self.frame!r}", "Name one of these.")
 
 
 @dataclass(frozen=True, eq=False)
@@ -187,8 +181,7 @@ def legs(
                 "no frame has all three",
                 "Fill the gaps in the markers of this foot, or name others.",
             )
-        heel, toe = (np.median(place[seen], axis=0) for place in places)
-        bodies = leg_inertia(person, side, lengths, heel, toe, settings.inertia)
+        bodies = leg_inertia(person, side, lengths, np.median(places[1][seen], axis=0))
         found[side] = Leg({short: moving[name] for short, name in own.items()}, bodies)
     return found
 
@@ -207,8 +200,6 @@ def joint_moments(
     plantarflexors' moment of push-off is negative. Powers are moment times relative angular velocity, positive when
     generated. NaN where the load of the foot or a pose is unknown.
 
-    time (frame,) [s]: of the poses
-    up (3,): unit vector against gravity
     returns: `hip_flexion_r_moment` [N m/kg], `hip_power_r` [W/kg] and so on, on the frames of the poses
     """
     columns: list[Values] = []

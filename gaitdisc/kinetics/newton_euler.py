@@ -149,8 +149,7 @@ def moment_per_foot_kg(joint: Values, heel: Values, toe: Values, up: Values, rat
 
     It is positive towards dorsiflexion and hip flexion; at the knee that is extension.
 
-    joint, heel, toe (sample, 3): Low-passed places [m]
-    up (3,): unit vector against gravity
+    joint, heel, toe (sample, 3): low-passed places [m]
 
     >>> still = np.zeros((9, 3))
     >>> found = moment_per_foot_kg(still, still - [0.04, 0, 0], still + [0.16, 0, 0], np.array([0.0, 0, 1]), 100.0)

@@ -38,7 +38,6 @@ class FootPath:
     toe: Values  # (frame, 3) [m], of the markers; NaN where one is missing
 
     def __post_init__(self) -> None:
-        """Check shapes once."""
         freeze(self, "heel", "toe", "time")
         heel, toe, time = self.heel, self.toe, self.time
         if heel.shape != (len(time), 3) or toe.shape != heel.shape:

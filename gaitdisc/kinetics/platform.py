@@ -31,7 +31,6 @@ class Wrench:
     moment: Values  # (sample, 3) [N m], about the origin of the laboratory
 
     def __post_init__(self) -> None:
-        """Check shapes once."""
         freeze(self, "force", "moment")
         force, moment = self.force, self.moment
         if force.ndim != 2 or force.shape[1] != 3 or moment.shape != force.shape:
@@ -118,8 +117,6 @@ class Platform:
 
         What an empty plate shows is no force on a foot and is taken as zero before the filter. Force and moment about
         the surface are filtered; the centre of pressure is not, as it is a quotient.
-
-        spans: loadings by the foot that is meant
         """
         on = np.any([span.holds(self.time) for span in spans], axis=0)
         values = np.hstack([self.wrench.force, self.wrench.about(self.point)]) * on[:, None]

@@ -122,10 +122,8 @@ def trial_kinetics(
 ) -> TrialKinetics:
     """Joint moments and powers of a trial, with the steps they rest on and the balance of forces.
 
-    trial: with markers and forces on one clock, in one frame
     poses: on the frames of the markers; unfiltered, as they are filtered here. Origins of `thigh_r`, `shank_r`,
         `foot_r` are the centres of hip, knee and ankle
-    feet: `r`, `l`: heel and toes, as `foot_paths` takes them from markers
     trunk: markers whose mean moves as head, arms and trunk do (C7, CLAV), for the balance of forces only
     """
     settings = settings or KineticsSettings()

@@ -113,7 +113,7 @@ def moments(
     trial = make_trial(walk)
     standing, measures = _standing(static)
     weighed_n = standing_weight_n(standing)  # whoever stands on plates is weighed there
-    person = Person(measures.mass_kg if mass_kg is None else mass_kg, sex, measures.height_m, weighed_n)
+    person = Person(measures.mass_kg if mass_kg is None else mass_kg, sex, weighed_n)
     check_weight(weighed_n, person.kg, standing.name)
     moved = move_body(trial.stream("markers"), standing.stream("markers"), marker_set, measures)
     settings = KineticsSettings(force_cutoff_hz=force_cutoff_hz)

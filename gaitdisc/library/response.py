@@ -9,9 +9,8 @@ from gaitdisc.errors import ChannelError, SamplingError
 from gaitdisc.ingest.study import Conditions, Participant, Study
 from gaitdisc.ingest.study_settings import ANGLES, OUTPUTS, HeldOut, Models
 from gaitdisc.library.walks import Walk, make_trial
-from gaitdisc.processing.filter_null import make_filter_null
 from gaitdisc.processing.pooled_cycles import WALK
-from gaitdisc.processing.process import processed
+from gaitdisc.processing.process import make_filter_null, processed
 from gaitdisc.recording import Trial
 from gaitdisc.recording.recording import several
 from gaitdisc.response.fit_response import fit_response as fitted

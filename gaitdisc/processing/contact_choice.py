@@ -150,8 +150,6 @@ def find_contacts(
 ) -> tuple[dict[str, dict[str, Contacts]], dict[str, GaitdiscError | None]]:
     """Contacts as each detector places them, and why a detector finds no stride of both feet.
 
-    direction: direction of walking in the laboratory's axes, `+x` to `-z`; inferred from the markers where it is empty
-    body_weight_n: mass x 9.81, by which a plate counts as loaded
     returns refused: detector -> its error; None where it sees contacts, but no stride of both feet
     """
     attempts: dict[str, Callable[[], dict[str, Contacts]]] = {}
@@ -168,13 +166,10 @@ def find_contacts(
     refused: dict[str, GaitdiscError | None] = {}
     for name, attempt in attempts.items():
         try:
-            contacts = attempt()
+            found[name] = attempt()
+            refused |= {} if _stride_count(found[name]) else {name: None}
         except (StrideError, ChannelError) as error:
             refused[name] = error
-            continue
-        found[name] = contacts
-        if not _stride_count(contacts):
-            refused[name] = None
     return found, refused
 
 
@@ -206,10 +201,9 @@ def offset_finding(file: str, detector: str, offset_s: float | None, by: str, sp
 
 def _force(trial: Trial, direction: str, body_weight_n: float | None) -> dict[str, Contacts]:
     forces = trial.stream("forces")
-    if any(c.quantity == "vertical_force" and c.side for c in forces.channels):
-        return force_contacts(forces, None, body_weight_n)
-    if "markers" not in trial.streams:
-        return force_contacts(forces)  # refuses, and says what is needed
+    of_feet = any(c.quantity == "vertical_force" and c.side for c in forces.channels)
+    if of_feet or "markers" not in trial.streams:  # without either it refuses, and says what is needed
+        return force_contacts(forces, body_weight_n)
     markers = trial.stream("markers")
     heels, pelvis, way = walking_markers(markers, direction)
     return plate_contacts(forces, markers, heels, way, body_weight_n, pelvis)

@@ -23,11 +23,8 @@ from gaitdisc.signals.derivatives import derivative
 from gaitdisc.signals.emg import emg_findings
 from gaitdisc.signals.strides import cut_strides
 
-JOINT_AT = {
-    "ankle_angle": "ankle_lateral",
-    "knee_angle": "knee_lateral",
-    "hip_flexion": "asis",
-}  # landmark of a joint; the hip after Harrington where the pelvis shows
+# landmark of a joint; the hip after Harrington where the pelvis shows
+JOINT_AT = {"ankle_angle": "ankle_lateral", "knee_angle": "knee_lateral", "hip_flexion": "asis"}
 LEAST_DEG, PERCENTILES = 2.0, (5, 95)
 MOMENT_HZ = 20.0  # the moment keeps what the forces' own filter left of it
 ANGLE_HZ = 12.0  # a muscle's force needs the speed of push-off, which the usual low-pass of angles blunts
@@ -151,4 +148,4 @@ def _envelopes(trial: Trial, study: Study, side: str, time: Values) -> tuple[Val
     smooth = [make_envelope(own.selected([name]), study.filters) for name in own.names]
     values = np.hstack([interpolate(one.time, one.values, time) for one in smooth])
     left_out = [replace(one, severity="warning", spoils="this muscle, which is excluded") for one in dead]
-    return np.maximum(values, 0.0), tuple(own.names), left_out
+    return np.maximum(values, 0.0), own.names, left_out

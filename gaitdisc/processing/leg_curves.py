@@ -37,14 +37,10 @@ NORMAL: dict[str, tuple[tuple[int, int], ...]] = {
     "bf": ((0, 8), (82, 100)),
     "st": ((0, 4), (75, 100)),
     "sol": ((7, 52),),
-    "gas": ((9, 50),),
-    "gasmed": ((9, 50),),
-    "gaslat": ((9, 50),),
+    **dict.fromkeys(("gas", "gasmed", "gaslat"), ((9, 50),)),
     "ta": ((0, 12), (56, 100)),
     "tp": ((0, 55),),
-    "per": ((15, 51),),
-    "perl": ((15, 51),),
-    "perb": ((15, 51),),
+    **dict.fromkeys(("per", "perl", "perb"), ((15, 51),)),
 }
 
 

@@ -45,8 +45,6 @@ def compute_trial(
 
     What a model in the file itself held under these streams gives way. A trial without forces, or without a step of
     one foot alone on a platform, has angles only and says why in its findings.
-
-    returns: streams `kinematics` [deg, m] and `moments` [N m/kg, W/kg] on the frames of the markers
     """
     moved = motion(trial.stream("markers"), calibration)
     own = [key for key in ("kinematics", "moments") if key in trial.streams]

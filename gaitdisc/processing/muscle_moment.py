@@ -19,7 +19,6 @@ Neural Syst Rehabil Eng 22(4), 870-878.
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import NamedTuple
 
@@ -40,27 +39,11 @@ EDGES = (0.01, 0.99)  # quantiles of the angle between which a gain varies
 FASTEST = 25.0
 CURVATURE, ECCENTRIC = 0.25, 0.4  # of Hill's hyperbola; force in fast lengthening on top of the isometric one
 FIRMNESS = 5  # parts of the stride, between which the stiffness about the usual stride goes straight
-# towards the positive angle (dorsiflexion, knee flexion, hip flexion), or against it
-SPANS: Mapping[str, Mapping[str, int]] = {
-    "ankle_angle": {
-        "sol": -1,
-        "gas": -1,
-        "gasmed": -1,
-        "gaslat": -1,
-        "tp": -1,
-        "per": -1,
-        "perl": -1,
-        "perb": -1,
-        "ta": 1,
-    },
-    "knee_angle": {
-        **{"ham": 1, "hammed": 1, "hamlat": 1, "bf": 1, "st": 1, "sm": 1, "gas": 1, "gasmed": 1, "gaslat": 1},
-        **{"rf": -1, "vas": -1, "vasmed": -1, "vaslat": -1, "vasint": -1},
-    },
-    "hip_flexion": {
-        **{"ham": -1, "hammed": -1, "hamlat": -1, "bf": -1, "st": -1, "sm": -1, "gmax": -1},
-        **{"rf": 1, "sart": 1, "tfl": 1, "ilio": 1, "psoas": 1, "addl": 1},
-    },
+# against the positive angle (dorsiflexion, knee flexion, hip flexion), and towards it
+_MUSCLES = {
+    "ankle_angle": ("sol gas gasmed gaslat tp per perl perb", "ta"),
+    "knee_angle": ("rf vas vasmed vaslat vasint", "ham hammed hamlat bf st sm gas gasmed gaslat"),
+    "hip_flexion": ("ham hammed hamlat bf st sm gmax", "rf sart tfl ilio psoas addl"),
 }
 JOINTS = {"ankle_angle": "ankle", "knee_angle": "knee", "hip_flexion": "hip"}
 
@@ -71,7 +54,9 @@ def sign_at(joint: str, muscle: str) -> int:
     >>> sign_at("ankle_angle", "emg_sol_r"), sign_at("ankle_angle", "emg_vas_r")
     (-1, 0)
     """
-    return SPANS[joint].get(muscle.split("_")[1] if "_" in muscle else muscle, 0)
+    word = muscle.split("_")[1] if "_" in muscle else muscle
+    against, towards = (word in words.split() for words in _MUSCLES[joint])
+    return towards - against
 
 
 @dataclass(frozen=True, eq=False)

@@ -90,9 +90,7 @@ def pool_cycles(study: Study, participant: Participant, read: Read) -> tuple[Poo
 
     A trial that cannot be read or used is left out with its reason, the others go on. Where a plate or an event of the
     file sees a step that markers or angles see too, these are moved by the median difference of all such steps of the
-    participant's session.
-
-    returns: one for each session and condition; those without a kept cycle say why in `refusals`
+    participant's session. Those without a kept cycle say why in `refusals`.
     """
     sets = trial_sets(study, participant)
     pooled: list[PooledCycles] = []

@@ -19,31 +19,11 @@ from gaitdisc.saved.provenance import Refusal
 from gaitdisc.saved.unit_folder import lies_on_disk, may_lie_on_disk, unit_name
 
 CYCLE_COLUMNS = (
-    "trial",
-    "side",
-    "start_s",
-    "foot_off_s",
-    "opposite_off_s",
-    "opposite_contact_s",
-    "end_s",
-    "start_by",
-    "end_by",
-    "foot_off_by",
-    "kinetic",
-    "kept",
-    "reason",
-    "stride_s",
-    "step_s",
-    "cadence_per_min",
-    "stance_percent",
-    "swing_percent",
-    "single_support_percent",
-    "double_support_percent",
-    "stride_m",
-    "step_m",
-    "width_m",
+    "trial", "side", "start_s", "foot_off_s", "opposite_off_s", "opposite_contact_s", "end_s", "start_by", "end_by",
+    "foot_off_by", "kinetic", "kept", "reason", "stride_s", "step_s", "cadence_per_min", "stance_percent",
+    "swing_percent", "single_support_percent", "double_support_percent", "stride_m", "step_m", "width_m",
     "speed_m_per_s",
-)
+)  # fmt: skip
 SPATIOTEMPORAL = CYCLE_COLUMNS[CYCLE_COLUMNS.index("stride_s") :]
 RAW = "raw_emg_"  # arrays, by side
 STRIDE_COLUMNS = ("side", "start_s", "end_s", "kept", "reason")
@@ -117,7 +97,6 @@ class PooledCycles(Saved, file="cycles.json"):
     raw_emg: Mapping[str, Values] = field(default_factory=dict)
 
     def __post_init__(self) -> None:
-        """Check shapes once, before they are saved."""
         if lies_on_disk(self, "curves"):
             return
         wanted = (int(self.cycles["kept"].sum()), len(PERCENT), len(self.channels))
@@ -269,7 +248,6 @@ class WalkSummary:
     files: Mapping[str, str]
 
     def __post_init__(self) -> None:
-        """Check shapes once, before they are saved."""
         if lies_on_disk(self, "curves"):
             return
         wanted = (len(PERCENT), len(self.channels))

@@ -9,7 +9,7 @@ from operator import itemgetter
 import numpy as np
 import pandas as pd
 
-from gaitdisc.channel import nearest_word
+from gaitdisc.channel import Channel, nearest_word
 from gaitdisc.errors import ChannelError, SamplingError, StrideError
 from gaitdisc.ingest.study import Filters, Participant, PlannedTrial, Study
 from gaitdisc.processing.contact_choice import choose_contacts
@@ -23,13 +23,14 @@ from gaitdisc.recording.strides import interpolate
 from gaitdisc.signals.butterworth import low_pass, short_run_findings
 from gaitdisc.signals.channel_quality import channel_findings, drift_findings, plateau_findings, plateau_marked
 from gaitdisc.signals.contacts import order_findings
-from gaitdisc.signals.derivatives import trajectory
+from gaitdisc.signals.derivatives import derivative, trajectory
 from gaitdisc.signals.emg import emg_findings, envelopes
 from gaitdisc.signals.gaps import fill_gaps, spike_findings, without_spikes
 from gaitdisc.signals.sides import verify_sides
 from gaitdisc.signals.stride_quality import late_change_findings
 from gaitdisc.signals.stride_quality import stride_findings as outlier_findings
 from gaitdisc.signals.strides import cut_strides, verify_walking
+from gaitdisc.statistics.r2 import simulate_null
 
 
 @dataclass(frozen=True, eq=False)
@@ -88,6 +89,7 @@ def stride_curves(states: Sequence[Recording], strides: Mapping[str, Strides], f
 
 TEMPLATE_TIMES = 2.0  # the mean stride bridges gaps twice as long as the spline does (docs/derivatives.md)
 SHARE_OF_RATE = 0.4  # cut-off of the low-pass before resampling; half the rate is the limit
+NOISE_S, NOISE_WALKS = 30.0, 20  # of noise without any gait
 
 
 def processed(trial: Trial, study: Study, body_weight_n: float | None = None) -> Walk:
@@ -95,8 +97,6 @@ def processed(trial: Trial, study: Study, body_weight_n: float | None = None) ->
 
     Gaps up to the study's `gap_s` are bridged by a cubic spline, up to twice that by the person's mean stride, beyond
     that left open and their strides dropped; plateaus, bridged gaps and filter edges are marked suspect.
-
-    body_weight_n: mass x 9.81, by which a plate counts as loaded; 50 N without it
     """
     raw = without_spikes(plateau_marked(_require(trial, "kinematics", study.models.angles)))
     choice = choose_contacts(trial, study.strides.detector, study.walking_direction, body_weight_n)
@@ -228,6 +228,57 @@ def is_raw(emg: Recording) -> bool:
     """Distinguish raw EMG, which swings about zero, from an envelope, which does not fall below it."""
     known = emg.values[np.isfinite(emg.values)]
     return len(known) > 0 and bool(np.min(known) < 0)
+
+
+def filter_null(
+    channels: Sequence[Channel], filters: Filters, kinematics_hz: float, emg_hz: float | None = None
+) -> dict[str, float]:
+    """R2 of x'' regressed on x and x' in noise that passed through the same filters as each channel.
+
+    kinematics_hz: rate at which angles were measured and everything is differentiated
+    emg_hz: rate of the raw EMG; None where the recording holds envelopes, which are low-passed only
+    returns: channel name to R2, about 0.5 for every low-pass
+    Source: A flat band has m2^2 / (m0 m4) = 5/9; see `gaitdisc.statistics.r2`.
+
+    >>> knee = Channel("knee_angle_r", "angle", "deg", "r")
+    >>> round(filter_null([knee], Filters(), 100.0)["knee_angle_r"], 1)
+    0.5
+    """
+    rate_hz = emg_hz or kinematics_hz
+
+    def angles(noise: Values) -> tuple[Values, Values, Values]:
+        smooth = low_pass(_recording(noise, kinematics_hz, "deg"), filters.kinematics_hz, filters.order)
+        return _differentiate(smooth.values, kinematics_hz)
+
+    def emg(noise: Values) -> tuple[Values, Values, Values]:
+        smooth = make_envelope(_recording(noise, rate_hz, "V"), filters, emg_hz is not None)
+        time = np.arange(round(len(noise) / rate_hz * kinematics_hz)) / kinematics_hz
+        return _differentiate(interpolate(smooth.time, smooth.values, time[:-1]), kinematics_hz)
+
+    reached = {"angle": simulate_null(angles, round(NOISE_S * kinematics_hz), NOISE_WALKS).r2}
+    if any(channel.quantity == "emg" for channel in channels):
+        reached["emg"] = simulate_null(emg, round(NOISE_S * rate_hz), NOISE_WALKS).r2
+    return {channel.name: reached["emg" if channel.quantity == "emg" else "angle"] for channel in channels}
+
+
+def make_filter_null(walk: Walk, filters: Filters) -> dict[str, float]:
+    """R2 that noise reaches through the filters of one walk at its own rates; whether EMG is raw is seen from it."""
+    emg = walk.trial.streams.get("emg")
+    emg_hz = emg.rate_hz if emg is not None and is_raw(emg) else None
+    return filter_null(walk.state.channels, filters, walk.state.rate_hz, emg_hz)
+
+
+def _differentiate(values: Values, rate_hz: float) -> tuple[Values, Values, Values]:
+    parts = (values, derivative(values, rate_hz, 1), derivative(values, rate_hz, 2))
+    whole = np.isfinite(np.hstack(parts)).all(axis=1)
+    x, xdot, xddot = (part[whole] for part in parts)
+    return x, xdot, xddot
+
+
+def _recording(noise: Values, rate_hz: float, unit: str) -> Recording:
+    quantity = "emg" if unit == "V" else "angle"
+    channels = tuple(Channel(f"noise_{k}", quantity, unit) for k in range(noise.shape[1]))
+    return Recording(np.arange(len(noise)) / rate_hz, noise, channels)
 
 
 def find_raw_emg(trial: Trial, states: Sequence[Recording]) -> Recording | None:

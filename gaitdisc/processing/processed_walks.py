@@ -63,8 +63,7 @@ def unit_key(study: Study, trial: PlannedTrial) -> str:
 
 def process_walks(study: Study, participant: Participant) -> tuple[dict[str, Walk], tuple[Refusal, ...]]:
     """Both walks of a participant by condition, and why one could not be had, in public words; it needs one of each."""
-    lacking = not_compared(study, participant)
-    if lacking:
+    if lacking := not_compared(study, participant):
         return {}, (Refusal(participant.id, "", lacking),)
     walks, errors = walks_and_errors(study, participant)
     return walks, tuple(Refusal(participant.id, word, str(error)) for word, error in errors.items())
@@ -84,7 +83,7 @@ def walks_and_errors(study: Study, participant: Participant) -> tuple[dict[str, 
             public = of_trial(words, participant, planned)
             try:
                 walk = own.read_walk(planned).processed(study)
-                left_away = gait_samples(walk.trajectory, study.models.outputs)[1].finding()
+                left_away = gait_samples(walk.trajectory, study.models.outputs)[1]
             except GaitdiscError as error:
                 errors[word] = public.error(error)
             else:

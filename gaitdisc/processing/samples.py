@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from collections.abc import Sequence
 
 import numpy as np
 
@@ -14,35 +13,7 @@ from gaitdisc.recording import Finding, Samples, Trajectory
 PHASE = "phi"
 
 
-@dataclass(frozen=True)
-class DroppedSamples:
-    """Samples of a trajectory that no model sees, and why.
-
-    >>> DroppedSamples(100, 80, 15, {"knee_angle_r": 5}, "P01 exo").finding().what
-    '20 of 100 samples are excluded: 15 outside strides, 5 of knee_angle_r not usable'
-    """
-
-    total: int  # samples there are
-    kept: int  # samples that are used
-    outside_strides: int
-    # channel -> samples within strides that are missing or not to be trusted; one sample may count for many channels
-    unusable: Mapping[str, int]
-    walk: str = ""
-
-    def finding(self) -> Finding:
-        """Say it: a note, or a warning where a fifth of the walk is lost."""
-        lost = self.total - self.kept
-        reasons = [f"{self.outside_strides} outside strides"] if self.outside_strides else []
-        worst = sorted(self.unusable.items(), key=lambda item: -item[1])
-        reasons += [f"{count} of {channel} not usable" for channel, count in worst[:3]]
-        if len(worst) > 3:
-            reasons.append(f"and {len(worst) - 3} more channels")
-        what = f"{lost} of {self.total} samples are excluded" + (": " + ", ".join(reasons) if reasons else "")
-        spoils = "a fifth or more of the walk; check the channels that are named" if lost >= 0.2 * self.total else ""
-        return Finding("warning" if spoils else "note", "samples left away", self.walk, what, spoils)
-
-
-def gait_samples(trajectory: Trajectory, outputs: Sequence[str]) -> tuple[Samples, DroppedSamples]:
+def gait_samples(trajectory: Trajectory, outputs: Sequence[str]) -> tuple[Samples, Finding]:
     """Samples of a trajectory: x, xdot and percent stride in, second derivatives of chosen channels out (Eq. 4.2).
 
     A sample is left away unless every channel is usable and it lies within a stride. Percent stride goes in as it is,
@@ -50,6 +21,7 @@ def gait_samples(trajectory: Trajectory, outputs: Sequence[str]) -> tuple[Sample
     most, up and down, on 60 s of running (ten angles), and are not offered.
 
     returns samples: inputs `knee_angle_r`, ..., `d(knee_angle_r)/dt`, ..., `phi`; outputs `d2(knee_angle_r)/dt2`, ..
+    returns excluded: how many are left away and why; a warning where a fifth of the walk is lost
     """
     walk = " ".join(part for part in (trajectory.subject, trajectory.condition) if part)
     named = walk or "the trajectory"
@@ -57,8 +29,7 @@ def gait_samples(trajectory: Trajectory, outputs: Sequence[str]) -> tuple[Sample
         raise ChannelError(
             "a response must predict at least one channel", f"none is named for {named}", "Name them in outputs."
         )
-    absent = [name for name in outputs if name not in trajectory.names]
-    if absent:
+    if absent := [name for name in outputs if name not in trajectory.names]:
         raise ChannelError(
             f"{absent[0]!r}, whose acceleration is predicted, must be among the channels",
             f"{named} has {len(trajectory.names)} channels{hint_nearest(absent[0], trajectory.names)}",
@@ -76,6 +47,12 @@ def gait_samples(trajectory: Trajectory, outputs: Sequence[str]) -> tuple[Sample
         phi=trajectory.phi[rows],
         subject=trajectory.subject,
     )
-    bad = (~trajectory.usable & within[:, None]).sum(axis=0)
-    unusable = {name: int(count) for name, count in zip(trajectory.names, bad, strict=True) if count}
-    return samples, DroppedSamples(len(rows), int(rows.sum()), int((~within).sum()), unusable, walk)
+    lost, outside = int((~rows).sum()), int((~within).sum())
+    reasons = [f"{outside} outside strides"] if outside else []
+    bad = (~trajectory.usable & within[:, None]).sum(axis=0)  # one sample may count for many channels
+    worst = sorted((-int(count), place) for place, count in enumerate(bad) if count)
+    reasons += [f"{-count} of {trajectory.names[place]} not usable" for count, place in worst[:3]]
+    reasons += [f"and {len(worst) - 3} more channels"] if len(worst) > 3 else []
+    what = f"{lost} of {len(rows)} samples are excluded" + (": " + ", ".join(reasons) if reasons else "")
+    spoils = "a fifth or more of the walk; check the channels that are named" if lost >= 0.2 * len(rows) else ""
+    return samples, Finding("warning" if spoils else "note", "samples left away", walk, what, spoils)

@@ -47,11 +47,7 @@ FEWEST_DISTANCES = 4  # fewer show nothing
 
 
 def segment_distances(markers: Recording) -> dict[tuple[str, str], float]:
-    """Median distance between markers that lie on one segment [m].
-
-    markers: channels `<marker>.x`, `<marker>.y`, `<marker>.z` [m]
-    returns dict of (str, str) to float: two markers -> distance; those that are never seen together are not there
-    """
+    """Median distance between markers that lie on one segment and are ever seen together: two markers -> [m]."""
     there = {name.rsplit(".", 1)[0] for name in markers.names}
     found = {}
     for segment in SEGMENTS:
@@ -63,10 +59,7 @@ def segment_distances(markers: Recording) -> dict[tuple[str, str], float]:
 
 
 def person_findings(static: Recording, walk: Recording, file: str) -> list[Finding]:
-    """Say that a static trial is another person's, or that its markers were moved.
-
-    returns: one warning, or none where the distances agree or fewer than four are there
-    """
+    """Say that a static trial is another person's, or that its markers were moved; nothing with few distances."""
     standing, walking = segment_distances(static), segment_distances(walk)
     both = [pair for pair in standing if pair in walking and min(standing[pair], walking[pair]) > 0]
     if len(both) < FEWEST_DISTANCES:
@@ -243,8 +236,7 @@ class Standing:
             found = self._measures(self.planned)
             mass = self.participant.mass_kg or found.mass_kg or self._measures(planned).mass_kg
             said = check_weight(self.weighed_n, mass, trial.name)
-            height_m = self.participant.height_m or found.height_m
-            return Person(mass, self.participant.sex, height_m, self.weighed_n), tuple(said)
+            return Person(mass, self.participant.sex, self.weighed_n), tuple(said)
         except GaitdiscError as error:
             what = str(error).rstrip(".")
             return None, (Finding("warning", "no moments", self.participant.id, what, "moments and powers"),)

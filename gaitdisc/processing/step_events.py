@@ -92,10 +92,7 @@ def step_events(
 
     The file's events go before force before markers before angles, but none that sees fewer than 80 % of the strides
     that another sees, unless the other contradicts the events; angles only where nothing else sees a stride. What the
-    ground or the file saw stands beside.
-
-    direction: direction of walking in the laboratory's axes, `+x` to `-z`; inferred where it is empty
-    body_weight_n: mass x 9.81, by which a plate counts as loaded; 50 N without it
+    ground or the file saw stands beside. Direction and weight are as in `choose_contacts`.
     """
     seen, refused = find_contacts(trial, direction, body_weight_n)
     seen, findings = events_on_plates(seen, trial.name)

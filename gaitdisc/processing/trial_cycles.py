@@ -62,8 +62,6 @@ def cut_cycles(contacts: Timed, offs: Timed) -> list[Cycle]:
     Left out is a cycle that has no contact of the other foot inside, or more than one, where the contacts of the other
     foot were seen before and after.
 
-    contacts, offs mapping of str to tuple of (float, str): side -> time [s] and what placed it
-
     >>> contacts = {"r": ((0.0, "force"), (1.0, "force")), "l": ((0.5, "force"),)}
     >>> one = cut_cycles(contacts, {"r": ((0.6, "force"),), "l": ((0.1, "force"),)})[0]
     >>> one.foot_off, one.opposite_off, one.opposite_contact, one.reason
@@ -234,14 +232,12 @@ def with_gaps(cycles: list[Cycle], legs: Recording | None) -> list[Cycle]:
     """Same cycles, left out where an angle of the own leg is missing after bridging, or nothing was recorded."""
     if legs is None:
         return cycles
-    found = []
-    for one in cycles:
-        own = [channel.name for channel in legs.channels if channel.side == one.side]
-        if one.reason or not own:
-            found.append(one)
-            continue
-        (reason,) = gap_reasons(np.array([one.start]), np.array([one.end]), legs.selected(own))
-        found.append(replace(one, reason=reason))
+    own = {side: legs.selected([channel.name for channel in legs.channels if channel.side == side]) for side in "lr"}
+    found = list(cycles)
+    for place, one in enumerate(cycles):
+        if not one.reason and own[one.side].names:
+            (reason,) = gap_reasons(np.array([one.start]), np.array([one.end]), own[one.side])
+            found[place] = replace(one, reason=reason)
     return found
 
 
@@ -261,10 +257,8 @@ def cycle_channels(
     Filtered is what was measured, and angles computed here. Moments and powers computed here are of filtered markers
     and forces; angles, moments, powers and weighed forces of the file are as the file has them.
 
-    from_markers: streams that were computed here
     returns legs: angles of the legs, gaps bridged where they may be, not filtered
     returns states: what cycles are cut of, each at its own rate
-    returns findings: what could not be used, and which filter the others had
     """
     legs, states, findings, words = None, [], [], []
     for key, quantities in (

@@ -181,9 +181,8 @@ def _state(trial: Trial, key: str, cutoff_hz: float) -> Recording | None:
 def repeat_stride(trial: Trial) -> Trial:
     """Walk that repeats the one stride of a trial, so that contacts are found as in any other walk.
 
-    Only streams on the time base of the kinematics are kept. A last sample that repeats the first is left out.
-
-    trial: with the kinematics of one stride, wherever in the stride it begins
+    The stride may begin anywhere. Only streams on the time base of the kinematics are kept. A last sample that repeats
+    the first is left out.
 
     >>> from gaitdisc.channel import Channel
     >>> t = np.linspace(0.0, 1.0, 101)

@@ -12,8 +12,7 @@ from numpy.typing import NDArray
 from gaitdisc.channel import Channel
 from gaitdisc.errors import SamplingError
 from gaitdisc.recording import Samples
-from gaitdisc.recording.arrays import Values
-from gaitdisc.signals.series import autocorrelation_time
+from gaitdisc.recording.arrays import Values, autocorrelation_time
 from gaitdisc.statistics.r2 import r2
 
 DRAWS = 1000

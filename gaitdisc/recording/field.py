@@ -44,7 +44,6 @@ class Axis:
     unit: str = "1"
 
     def __post_init__(self) -> None:
-        """Refuse an axis that turns back."""
         freeze(self, "coordinates")
         steps = np.diff(self.coordinates)
         if self.coordinates.ndim != 1 or not len(self.coordinates) or not (np.all(steps > 0) or np.all(steps < 0)):
@@ -107,7 +106,6 @@ class Field:
     source: Source = field(default_factory=Source)
 
     def __post_init__(self) -> None:
-        """Check shapes, time and values once; nothing below checks them again."""
         time, values, mask = (read_only(self.time), read_only(self.values, np.float32), read_only(self.mask, bool))
         grid = tuple(len(axis.coordinates) for axis in self.axes)
         if mask.shape != grid or not mask.any():
@@ -137,9 +135,6 @@ class Field:
             )
         for name, value in (("time", time), ("values", values), ("mask", mask)):
             object.__setattr__(self, name, value)
-        self._refuse_missing()
-
-    def _refuse_missing(self) -> None:
         missing = np.count_nonzero(~np.isfinite(self.values))
         if missing:
             snapshot, point, quantity = (int(k) for k in np.argwhere(~np.isfinite(self.values))[0])

@@ -60,7 +60,6 @@ class Finding:
     spans: tuple[Span, ...] = ()
 
     def __post_init__(self) -> None:
-        """Refuse a severity that the traffic light does not know."""
         if self.severity not in SEVERITIES:
             raise ValueError(f"severity must be one of {SEVERITIES}, not {self.severity!r}")
 
@@ -130,7 +129,6 @@ class Recording:
     suspect: NDArray[np.bool_] = None  # pyright: ignore[reportAssignmentType]  # never none once it is made
 
     def __post_init__(self) -> None:
-        """Check shapes and the time base once; nothing below checks them again."""
         time, values = read_only(self.time), read_only(self.values)
         channels = tuple(self.channels)
         strange = next((one for one in channels if not isinstance(one, Channel)), None)
@@ -172,9 +170,9 @@ class Recording:
                     f"mean step is {mean:.6g} s",
                     "Export it at one rate, or resample it before reading.",
                 )
-        for name, value in (("time", time), ("values", values), ("channels", channels)):
+        checked = {"time": time, "values": values, "channels": channels, "suspect": read_only(suspect, bool)}
+        for name, value in checked.items():
             object.__setattr__(self, name, value)
-        object.__setattr__(self, "suspect", read_only(suspect, bool))
 
     @property
     def names(self) -> tuple[str, ...]:

@@ -26,7 +26,6 @@ class Scale:
     sd: Values
 
     def __post_init__(self) -> None:
-        """Freeze the numbers."""
         freeze(self, "mean", "sd")
 
     @property
@@ -101,7 +100,6 @@ class Samples:
     subject: str = ""
 
     def __post_init__(self) -> None:
-        """Check shapes once."""
         count = len(self.time)
         wanted = {"x": (count, len(self.inputs)), "y": (count, len(self.outputs)), "phi": (count,)}
         for name, shape in wanted.items():
@@ -220,7 +218,6 @@ class Trajectory:
     condition: str = ""
 
     def __post_init__(self) -> None:
-        """Check shapes once."""
         shape = (len(self.time), len(self.channels))
         for name in ("x", "xdot", "xddot", "usable"):
             found = np.shape(getattr(self, name))

@@ -67,7 +67,6 @@ class Strides:
     dropped: tuple[DroppedStride, ...] = field(default_factory=tuple)
 
     def __post_init__(self) -> None:
-        """Check order once."""
         freeze(self, "start", "end")
         start, end = self.start, self.end
         if start.ndim != 1 or start.shape != end.shape:
@@ -182,10 +181,8 @@ class Strides:
 def interpolate(time: Values, values: Values, points: Values) -> Values:
     """Linear interpolation on an even time base that lets NaN through and does not extrapolate.
 
-    time (time,) [s]: even
     values (time, channel): NaN allowed
-    points , any shape [s]: where to read the values
-    returns (*points.shape, channel)
+    points , any shape [s]: where to read the values, (*points.shape, channel)
 
     >>> interpolate(np.arange(3.0), np.arange(3.0)[:, None] ** 2, np.array([0.5, 2.0, 3.0])).ravel()
     array([0.5, 4. , nan])

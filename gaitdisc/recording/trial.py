@@ -81,7 +81,6 @@ class BodyMeasures:
         return None if self.height_m is None else LEG_OF_STATURE * self.height_m
 
     def __post_init__(self) -> None:
-        """Refuse what no person measures, once."""
         for name, limits in {"mass_kg": MASS_KG, **LENGTHS_M}.items():
             value = getattr(self, name)
             if isinstance(value, Mapping):
@@ -109,7 +108,6 @@ class Surface:
     corners: Values  # (4, 3) [m], in order around it
 
     def __post_init__(self) -> None:
-        """Check the corners once."""
         freeze(self, "corners")
         corners = self.corners
         sound = corners.shape == (4, 3) and np.isfinite(corners).all()
@@ -203,7 +201,6 @@ class Trial:
     surfaces: tuple[Surface, ...] = ()
 
     def __post_init__(self) -> None:
-        """Freeze the mapping and refuse unknown streams."""
         unknown = set(self.streams) - set(STREAMS)
         if unknown:
             raise ChannelError(

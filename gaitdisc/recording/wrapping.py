@@ -83,9 +83,7 @@ def wrap_recording(recording: Recording, as_in: Recording) -> Recording:
 
 
 def in_one_turn(curves: Values, turn: float) -> Values:
-    """Curves of a heading moved by whole turns, so that their mean is the mean of their directions.
-
-    curves (curve, point): each without a leap; NaN allowed
+    """Curves (curve, point) of a heading moved by whole turns, so that their mean is the mean of their directions.
 
     >>> in_one_turn(np.array([[170.0, 175.0], [-190.0, -185.0]]), 360.0)
     array([[170., 175.],

@@ -138,11 +138,11 @@ def split_held_out(walk: Trajectory, settings: ResponseSettings) -> tuple[Trajec
 
 def pick_held_out(held_out: Trajectory, settings: ResponseSettings) -> Samples:
     """Samples of a held-out part that models are scored on."""
-    samples, dropped = gait_samples(held_out, settings.outputs)
+    samples, excluded = gait_samples(held_out, settings.outputs)
     if len(samples) < LEAST_HELD_OUT:
         raise TrainingError(
             f"a model must be tested on at least {LEAST_HELD_OUT} held-out samples",
-            f"the last {len(held_out.time) / held_out.rate_hz:.2f} s: {dropped.finding().line()}",
+            f"the last {len(held_out.time) / held_out.rate_hz:.2f} s: {excluded.line()}",
             "Hold out a longer part, or correct or remove the channels named.",
         )
     return samples

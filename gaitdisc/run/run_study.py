@@ -124,7 +124,7 @@ def response_settings(study: Study) -> ResponseSettings:
 def _fitted(
     study: Study, participant: Participant, walks: Mapping[str, Walk], progress: Progress
 ) -> ParticipantResponse:
-    from gaitdisc.processing.filter_null import make_filter_null
+    from gaitdisc.processing.process import make_filter_null
     from gaitdisc.response.fit_response import fit_response
 
     nominal, exo = (walks[word] for word in study.conditions.both)

@@ -17,8 +17,7 @@ from gaitdisc.ingest.c3d import C3DReader
 from gaitdisc.ingest.public_words import list_words
 from gaitdisc.ingest.reading import read_planned_trial
 from gaitdisc.ingest.study import Participant, Study
-from gaitdisc.processing.filter_null import make_filter_null
-from gaitdisc.processing.process import ReadWalk, StudyWalks
+from gaitdisc.processing.process import ReadWalk, StudyWalks, make_filter_null
 from gaitdisc.processing.processed_walks import process_walks, response_key, unit_keys
 from gaitdisc.recording import Trajectory
 from gaitdisc.response.fit_response import fit_response, report_share

@@ -71,10 +71,7 @@ def count_needed(cutoff_hz: float, rate_hz: float, order: int = 4) -> int:
 def short_run_findings(
     recording: Recording, cutoff_hz: float = KINEMATICS_HZ, order: int = 4, max_gap_s: float = MAX_SPLINE_S
 ) -> list[Finding]:
-    """Say which stretches between gaps are too short to filter.
-
-    max_gap_s: longest gap that is bridged [s]
-    """
+    """Say which stretches between gaps are too short to filter."""
     bridged = fill_gaps(recording, None, max_gap_s)
     need, file = count_needed(cutoff_hz, recording.rate_hz, order), recording.source.file
     findings = []

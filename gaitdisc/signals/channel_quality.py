@@ -13,11 +13,10 @@ from numpy.typing import NDArray
 from scipy.stats import theilslopes
 
 from gaitdisc.recording import Finding, Recording
-from gaitdisc.recording.arrays import Span, Values, finite_values, runs, spans_s
+from gaitdisc.recording.arrays import Span, Values, finite_values, robust_sd, runs, spans_s
 from gaitdisc.recording.wrapping import unwrap
 from gaitdisc.signals.contacts import RISE_N, loaded
 from gaitdisc.signals.gaps import gap_findings
-from gaitdisc.signals.series import robust_sd
 from gaitdisc.words import counted
 
 CLIPPED_SHARE = 1e-3
@@ -77,9 +76,7 @@ def channel_findings(recording: Recording) -> list[Finding]:
 
 
 def mark_clips(x: Values, rests_at_zero: bool = False) -> NDArray[np.bool_]:
-    """Mark where the largest or the smallest value is met, if it is met too often to be chance.
-
-    x (time,): one channel
+    """Mark the samples (time,) at which the largest or the smallest value is met, if too often to be chance.
 
     >>> t = np.arange(1000) / 100
     >>> bool(mark_clips(np.sin(6 * t)).any()), bool(mark_clips(np.minimum(np.sin(6 * t), 0.9)).any())
@@ -97,9 +94,7 @@ def mark_clips(x: Values, rests_at_zero: bool = False) -> NDArray[np.bool_]:
 
 
 def jumping(x: Values) -> NDArray[np.bool_]:
-    """Mark the samples beside an implausible second difference.
-
-    x (time,): one channel, not filtered
+    """Mark the samples (time,) of a channel that is not filtered beside an implausible second difference.
 
     >>> x = np.sin(np.arange(1000) / 15)
     >>> x[500] += 1
@@ -117,10 +112,7 @@ def jumping(x: Values) -> NDArray[np.bool_]:
 
 
 def swing_baseline(force_n: Values, rate_hz: float) -> Values:
-    """Force in the middle half of every unloaded phase: its sample and its median.
-
-    force_n (time,) [N]: vertical force of one plate, of either sign
-    returns (swing, 2) [sample, N]
+    """Sample and median force [N] of the middle half of every unloaded phase of a plate, (swing, 2).
 
     >>> step = np.r_[np.full(60, 700.0), np.full(40, 3.0)]
     >>> swing_baseline(np.tile(step, 3), 100.0).tolist()
@@ -195,9 +187,6 @@ def plateaus(kinematics: Recording) -> list[Plateau]:
     peaks of C3D files that pass (1) to (3) 11 to 28 %. Angles of a C3D file come from no model with limits: none is
     looked for.
 
-    kinematics: joint angles [deg], not filtered or filtered
-    returns: one a channel and limit; constant channels have none
-
     >>> from gaitdisc.channel import Channel
     >>> t, rng = np.arange(2000) / 100, np.random.default_rng(0)
     >>> hip = 30 * np.cos(2 * np.pi * t) * (1 + 0.03 * np.repeat(rng.normal(size=20), 100))
@@ -224,10 +213,7 @@ def plateaus(kinematics: Recording) -> list[Plateau]:
 
 
 def plateau_findings(kinematics: Recording) -> list[Finding]:
-    """Say which angles stop at a limit of the model, where, and for how much of the time.
-
-    kinematics: joint angles [deg]
-    """
+    """Say which angles stop at a limit of the model, where, and for how much of the time."""
     findings, file = [], kinematics.source.file
     spoils = "velocity and acceleration there; widen the coordinate's range in the model and repeat inverse kinematics"
     for plateau in plateaus(kinematics):
@@ -239,10 +225,7 @@ def plateau_findings(kinematics: Recording) -> list[Finding]:
 
 
 def plateau_marked(kinematics: Recording) -> Recording:
-    """Mark what lies on a plateau, or within 0.05 s of one, as suspect.
-
-    kinematics: joint angles [deg]; mark before filtering, so that the limits are still sharp
-    """
+    """Mark what lies on a plateau, or within 0.05 s of one, as suspect; before filtering, while limits are sharp."""
     marks = np.zeros(kinematics.values.shape, bool)
     beside = round(BESIDE_S * kinematics.rate_hz)
     for plateau in plateaus(kinematics):
@@ -272,8 +255,5 @@ def _dwells(x: Values, rate_hz: float) -> NDArray[np.bool_] | None:
     for dwell, (start, end) in enumerate(spans):
         peak = start + int(np.argmax(x[start:end]))
         for column, share in enumerate((BAND_SHARE, 4 * BAND_SHARE)):
-            below = np.flatnonzero(~(x >= x[peak] - share * reach))
-            at = int(np.searchsorted(below, peak))
-            first = below[at - 1] if at else -1
-            wide[dwell, column] = (below[at] if at < len(below) else len(x)) - first - 1
+            wide[dwell, column] = next(b - a for a, b in runs(x >= x[peak] - share * reach) if a <= peak < b)
     return marks if np.median(wide[:, 0] / wide[:, 1]) >= CORNER else None

@@ -2,12 +2,9 @@
 
 From markers: Zeni 2008. No joint angle touches the ground, so times from angles alone are stand-ins, one for each
 stride and at nearly the same percent of it. Measured on 19 contacts of six young people with foot strikes of their own
-(young_straight_and_turn, straight walking): the knee is straightest at the end of swing at 97 % of the stride (94 to 99
-%), the hip is most flexed at 86 % (81 to 104 %). So percent stride counted from these contacts runs about 3 % ahead of
-that from the ground where the knee is used, with a standard deviation of 1.4 %, and about 14 % where only the hip is
-there, with one of 6 %. In running the order of the marks is the same; the offset was not measured. Nothing is corrected
-here: the offset is constant for a person and drops out of stride durations, but not out of a comparison with percent
-strides counted from a plate; `processing.contact_choice` takes it off where a plate sees one step.
+(young_straight_and_turn, straight walking): the knee is straightest at the end of swing at 97 % of the stride (94 to
+99, sd 1.4 %), the hip is most flexed at 86 % (81 to 104, sd 6 %). In running the order is the same; the offset was not
+measured. Nothing is corrected here; `processing.contact_choice` takes it off where a plate sees one step.
 """
 
 from __future__ import annotations
@@ -39,7 +36,6 @@ def marker_contacts(
 ) -> dict[str, Contacts]:
     """Contacts of both feet: where the heel is farthest in front of the pelvis.
 
-    markers: channels `<marker>.x`, `<marker>.y`, `<marker>.z` [m]
     heels: side (`r`, `l`) to the name of its heel marker
     direction: direction of walking; inferred (`walking_direction`) and said in the note where it is not given
     returns: for each side in `heels`; foot off (heel farthest behind the pelvis) is not given, since the toe leaves
@@ -190,7 +186,6 @@ def _hip_peaks(kinematics: Recording, hip: str, peaks: Values, period: float) ->
 def stance_windows(contacts: Values, stride_s: float) -> list[Span]:
     """Spans in which a foot leaves the ground, one for each contact and one for the stance before the first.
 
-    contacts (contact,) [s]: of one foot
     stride_s: usual stride, for the contact that is the last [s]
 
     >>> stance_windows(np.array([1.0]), 1.0)
@@ -208,11 +203,9 @@ def marker_foot_off(
 ) -> Values:
     """Times at which a toe is farthest behind the pelvis, one for each window that has such a time [s].
 
-    markers: channels `<marker>.x`, `<marker>.y`, `<marker>.z` [m]
     toe: marker at the toes; one at the heel leaves earlier
     windows: from `stance_windows`
-    Source: Zeni, Richards, Higginson (2008), Gait & Posture 27, 710-714. Differs: in a turn each step has its own
-        direction.
+    Source: Zeni (2008), as in `marker_contacts`. Differs: in a turn each step has its own direction.
     """
     needed = {f"{name}.{axis}" for name in (toe, *pelvis) for axis in "xyz"}
     bridged = fill_gaps(markers.selected([name for name in markers.names if name in needed]))
@@ -221,11 +214,7 @@ def marker_foot_off(
 
 
 def angle_foot_off(kinematics: Recording, ankle: str, windows: Sequence[Span]) -> Values:
-    """Times at which an ankle is most plantarflexed, one for each window that has such a time [s].
-
-    kinematics: with the ankle, dorsiflexion positive [deg]
-    windows: from `stance_windows`
-    """
+    """Times at which an ankle is most plantarflexed, one for each of `stance_windows` that has such a time [s]."""
     time, x = _smooth(kinematics, ankle)
     return _lowest_in(windows, time, lambda _: x)
 

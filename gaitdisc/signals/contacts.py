@@ -60,7 +60,6 @@ class Contacts:
     note: str = ""
 
     def __post_init__(self) -> None:
-        """Check order and words once."""
         freeze(self, "time", "foot_off")
         time = self.time
         if self.side not in ("r", "l") or self.detector not in DETECTORS:
@@ -234,7 +233,6 @@ def loaded(force_n: Values, rate_hz: float, rise_n: float = RISE_N) -> NDArray[n
     counts as unloaded; what is then unloaded for less than 0.1 s counts as loaded.
 
     force_n (time,) [N]: positive upwards on the foot; NaN counts as unloaded
-    rise_n: force above which a foot is on the ground [N]
     returns (loading, 2) [sample]: first sample above `rise_n`, and the one after the last above 20 N
 
     >>> f = np.r_[np.zeros(30), 40, 0, np.full(60, 700.0), np.zeros(30)]
@@ -255,20 +253,16 @@ def loaded(force_n: Values, rate_hz: float, rise_n: float = RISE_N) -> NDArray[n
     return np.array(joined, dtype=np.intp).reshape(-1, 2)
 
 
-def force_contacts(
-    forces: Recording, sides: Mapping[str, str] | None = None, body_weight_n: float | None = None
-) -> dict[str, Contacts]:
+def force_contacts(forces: Recording, body_weight_n: float | None = None) -> dict[str, Contacts]:
     """Contacts of both feet from one vertical force a foot: a split belt, or force assigned to a foot.
 
     Contact is where the force rises above 50 N, or less under a light body (`find_rise`), to a fraction
     of a sample, after the foot has been off (`loaded`). A loading that the recording begins with gives no contact.
 
-    forces: channels of quantity `vertical_force` [N]
-    sides: channel to `r` or `l`; by default the channels' own sides
+    forces: channels of quantity `vertical_force` [N] that name their foot
     returns: for each side with a channel, with foot off
     """
-    if sides is None:
-        sides = {c.name: c.side for c in forces.channels if c.quantity == "vertical_force" and c.side}
+    sides = {c.name: c.side for c in forces.channels if c.quantity == "vertical_force" and c.side}
     if not sides:
         raise ChannelError(
             "contacts from force need a vertical force for each foot",
@@ -277,14 +271,10 @@ def force_contacts(
         )
     found = {}
     for side in sorted(set(sides.values())):
-        parts = [_contacts(forces, name, body_weight_n) for name, owner in sides.items() if owner == side]
-        found[side] = Contacts(
-            np.sort(np.concatenate([p[0] for p in parts])),
-            side,
-            "force",
-            np.sort(np.concatenate([p[1] for p in parts])),
-            "; ".join(p[2] for p in parts),
-        )
+        own = [_contacts(forces, name, body_weight_n) for name, owner in sides.items() if owner == side]
+        on, off, notes = zip(*own, strict=True)
+        times, offs = np.sort(np.concatenate(on)), np.sort(np.concatenate(off))
+        found[side] = Contacts(times, side, "force", offs, "; ".join(notes))
     return found
 
 
@@ -299,7 +289,6 @@ def plate_contacts(
     """Contacts from plates that either foot may hit: the foot that lands is the one whose heel is in front.
 
     forces: channels of quantity `vertical_force` [N], one a plate
-    heels: side (`r`, `l`) to the name of its heel marker
     pelvis: markers that one heel alone is clearly in front of, or behind, where the other is missing
     returns: both sides; empty where no plate was hit by that foot
     """

@@ -1,9 +1,7 @@
 """First and second derivatives of filtered signals, and the trajectory made of them (Eqs. 4.1-4.4).
 
-The operator is the smallest part of the error: with the same 6 Hz filter every central difference and the spectral
-derivative agree to 1-2 %, while the cut-off decides what is lost (docs/derivatives.md, made by
-benchmarks/derivatives.py). So the operator is the narrowest that is accurate to fourth order, five points wide, and the
-cut-off is a setting of the filter.
+The operator is the smallest part of the error, the cut-off decides what is lost (docs/derivatives.md). So the operator
+is the narrowest that is accurate to fourth order, five points wide, and the cut-off is a setting of the filter.
 """
 
 from __future__ import annotations
@@ -62,7 +60,6 @@ def differentiate_recording(recording: Recording, order: int = 1) -> Recording:
 def trajectory(filtered: Recording, strides: Strides) -> Trajectory:
     """State, velocity, acceleration and percent stride of a filtered recording.
 
-    strides: strides of the leg that percent stride is counted by
     returns: `usable` where x, xdot and xddot are there and none of the five samples they rest on is suspect: not in
         filled gaps, not at the filter's edges, not on plateaus. phi is NaN outside of the strides
     Source: Ebers (2023), Eqs. 4.1-4.4. Differs: the operator, which the text does not state, and the marks.

@@ -40,15 +40,12 @@ class Direction:
 
 
 def marker_position(markers: Recording, name: str) -> Values:
-    """Position of one marker, (time, 3) [m]."""
+    """Position of one marker, channels `<name>.x`, `.y` and `.z`, (time, 3) [m]."""
     return np.stack([markers[f"{name}.{axis}"] for axis in "xyz"], axis=1)
 
 
 def pelvis_position(markers: Recording, pelvis: Sequence[str]) -> Values:
-    """Mean position of the pelvis markers, (time, 3) [m]; NaN where one of them is missing.
-
-    pelvis: names of the pelvis markers; the two or four at the iliac spines, or one at the sacrum
-    """
+    """Mean position of the markers at the iliac spines or the sacrum, (time, 3) [m]; NaN where one is missing."""
     if not pelvis:
         raise ChannelError(
             "at least one pelvis marker is required", "none is named", "Name the pelvis markers, such as RASI and LASI."
@@ -71,8 +68,6 @@ def walking_direction(markers: Recording, heels: Mapping[str, str], pelvis: Sequ
     forward at each sample is where it moves over a second around it, so that a turn has the direction of each step.
     On a treadmill, the line along which the heels swing most is the walking line; on it the foot swings forwards faster
     than it goes backwards in stance, so velocity relative to the pelvis is skewed towards forward.
-
-    heels: side (`r`, `l`) to the name of its heel marker
     """
     centre = pelvis_position(markers, pelvis)
     swings = [marker_position(markers, name) - centre for name in heels.values()]

@@ -2,10 +2,8 @@
 
 The calf works while its foot stands, the tibialis anterior while it swings: in eleven walks of six young people
 (young_straight_and_turn) the natural logarithm of stance over swing is 1.0 to 3.4 in the calf and -1.5 to -0.66 in the
-tibialis anterior; -0.1 and 0.15 in one leg of which both are clipped.
-
-V and mV are a factor of 1000 apart, in every channel. A muscle that rests in one trial, or an electrode that comes off,
-changes single channels by as much (young_straight_and_turn has both), so that four of five have to agree.
+tibialis anterior. A muscle that rests or an electrode that comes off changes single channels by as much as another unit
+does, so that four of five have to agree on one.
 """
 
 from __future__ import annotations
@@ -20,10 +18,9 @@ import numpy as np
 from gaitdisc.channel import Channel, other_side
 from gaitdisc.errors import ChannelError, SamplingError
 from gaitdisc.recording import Finding, Recording, Strides
-from gaitdisc.recording.arrays import Values, finite_rows, finite_values, spans_s
+from gaitdisc.recording.arrays import Values, finite_rows, finite_values, robust_sd, spans_s
 from gaitdisc.recording.trial import Limits
 from gaitdisc.signals.butterworth import high_pass, low_pass
-from gaitdisc.signals.series import robust_sd
 
 HIGHPASS_HZ = 40.0
 ENVELOPE_HZ = 10.0
@@ -97,9 +94,6 @@ def amplifier_range(emg: Recording, given_v: float | None = None) -> AmplifierRa
     one channel, exactly); 32768 times the quantisation step, which quiet channels show; the smallest usual range
     (1.25, 2.5, 5, 10 V) that holds the largest value.
 
-    emg: raw EMG, as digitised [V]
-    given_v: range that the laboratory states [V]
-
     >>> from gaitdisc.channel import Channel
     >>> clipped = np.clip(np.random.default_rng(0).normal(size=(999, 1)), -1.25, 1.25)
     >>> amplifier_range(Recording(np.arange(999) / 1000, clipped, (Channel("emg_sol_r", "emg", "V", "r"),))).how
@@ -124,7 +118,7 @@ def amplifier_range(emg: Recording, given_v: float | None = None) -> AmplifierRa
 
 
 def emg_findings(emg: Recording, range_v: float | None = None) -> list[Finding]:
-    """Say which EMG channels are dead, unplugged or clipped.
+    """Say which channels of raw EMG [V] are dead, unplugged or clipped.
 
     - dead: the standard deviation is below 0.1 % of the range, or below 0.4 % in a channel whose envelope has no bursts
       (its 99th percentile stays below 3.4 times its median): nothing but the amplifier's noise, or a muscle that rests.
@@ -138,8 +132,7 @@ def emg_findings(emg: Recording, range_v: float | None = None) -> list[Finding]:
     The limits were set on the 14 files of young_straight_and_turn, whose manifest lists the live channels; dead ones
     have bursts of at most 3.3, live ones of that size at least 3.5.
 
-    emg: raw EMG, as digitised [V]
-    range_v: range of the amplifier; inferred (`amplifier_range`) and said where it is not given
+    range_v: range of the amplifier [V]; inferred (`amplifier_range`) and said where it is not given
     returns: `refused` for dead and unplugged channels: leave them out. `warning` for clipped ones
     """
     limit = amplifier_range(emg, range_v)
@@ -211,10 +204,7 @@ def burst_ratio(x: Values, rate_hz: float) -> float:
 
 
 def live_channels(emg: Recording) -> tuple[str, ...]:
-    """Names of the channels that carry a muscle's signal, in order.
-
-    emg: raw EMG, as digitised [V]
-    """
+    """Names of the channels of raw EMG that carry a muscle's signal, in order."""
     lost = {finding.channel for finding in emg_findings(emg) if finding.severity == "refused"}
     empty = {name for name in emg.names if not np.isfinite(emg[name]).any()}
     return tuple(name for name in emg.names if name not in lost | empty)

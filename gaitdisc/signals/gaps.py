@@ -8,9 +8,8 @@ from numpy.typing import NDArray
 from scipy.interpolate import CubicSpline
 
 from gaitdisc.recording import PERCENT, Finding, Recording, Strides
-from gaitdisc.recording.arrays import Values, finite_rows, finite_values, runs, spans_s
+from gaitdisc.recording.arrays import Values, finite_rows, finite_values, robust_sd, runs, spans_s
 from gaitdisc.recording.wrapping import unwrap, wrap_recording
-from gaitdisc.signals.series import robust_sd
 from gaitdisc.words import counted
 
 MAX_SPLINE_S = 0.1
@@ -150,9 +149,8 @@ def spikes(recording: Recording) -> NDArray[np.bool_]:
             half = max(2, round(HALF_S * recording.rate_hz))
             steps = np.diff(x)
             size = np.abs(finite_values(steps))
-            least = max(
-                LEAST_SHARE * float(np.subtract(*np.percentile(x[known], [99, 1]))), LEAST.get(channel.unit, 0.0)
-            )
+            reach = float(np.subtract(*np.percentile(x[known], [99, 1])))
+            least = max(LEAST_SHARE * reach, LEAST.get(channel.unit, 0.0))
             spread = robust_sd(size) if len(size) else 0.0
             middle = np.full(len(x), np.nan)  # the running median, where its window is whole
             if len(x) > 2 * half:

@@ -36,10 +36,7 @@ SUPPORT = slice(15, 41), slice(65, 91)  # % stride in which the foot, and the ot
 
 
 def knee_peak_percent(kinematics: Recording, strides: Strides, knee: str) -> float:
-    """Percent stride at which the mean curve of a knee is most flexed.
-
-    kinematics: with the knee's flexion [deg]
-    """
+    """Percent stride at which the mean curve of a knee is most flexed; NaN where it hardly bends."""
     curves = finite_rows(strides.normalised(kinematics.selected([knee]))[:, :, 0])
     if not len(curves):
         return float("nan")
@@ -54,7 +51,6 @@ def verify_sides(kinematics: Recording, strides: Strides) -> float:
     earlier, at about 20 %. Both being wrong means that the sides are swapped in the contacts or in the angles, one that
     it is stiff. A swap of everything cannot be seen. Verify that the trial is walking first (`verify_walking`).
 
-    kinematics: with both knees, flexion positive [deg]
     returns: percent stride of the knee's peak; NaN where no stride has the knee
     """
     own, other = (f"knee_angle_{side}" for side in (strides.side, other_side(strides.side)))
@@ -81,7 +77,6 @@ def marker_side_findings(markers: Recording) -> list[Finding]:
     Up, back and front make left and right: where the spines at the back are behind those in front and the pelvis is
     above the feet, the right spine is to the right. The median over the trial is looked at, whichever way one walks.
 
-    markers: channels `<marker>.x`, `<marker>.y`, `<marker>.z` [m]
     returns: one warning, or none where the sides are right or the markers of the pelvis are not there
     """
     there = {name.rsplit(".", 1)[0] for name in markers.names}
@@ -146,8 +141,6 @@ def sway_findings(kinematics: Recording, strides: Sequence[Strides]) -> list[Fin
 def load_findings(kinematics: Recording, forces: Recording) -> list[Finding]:
     """Say that the force of one foot goes with the knee of the other: a knee is bent least while its foot stands.
 
-    kinematics: with both knees, flexion positive [deg]
-    forces: vertical forces that name their foot [N]
     returns: one warning where both knees bend more under load than in the air, by 5 deg or more
     """
     found: dict[str, float] = {}

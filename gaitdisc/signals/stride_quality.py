@@ -1,9 +1,8 @@
 """Strides unlike the person's other strides, and a change of gait late in a trial.
 
-What a model trained on the first part of a trial cannot know: the dissertation left one of twelve people out "due to
-changes in gait [...] late in the Exo condition walking trial" (section 4.2.4) without a rule. This is one: a change
-point in the last half of the trial, tested against stride series that are as dependent as this person's own, but
-stationary.
+The dissertation left one of twelve people out "due to changes in gait [...] late in the Exo condition walking trial"
+(section 4.2.4) without a rule. This is one: a change point in the last half of the trial, tested against stride series
+that are as dependent as this person's own, but stationary.
 """
 
 from __future__ import annotations
@@ -16,8 +15,7 @@ from scipy.signal import lfilter
 
 from gaitdisc.errors import StrideError
 from gaitdisc.recording import DroppedStride, Finding, Recording, Strides
-from gaitdisc.recording.arrays import Span, Values, runs
-from gaitdisc.signals.series import robust_sd
+from gaitdisc.recording.arrays import Span, Values, robust_sd, runs
 
 OUTLYING = 3.5  # robust standard deviations of the logarithm of a stride's distance
 FEWEST_STRIDES = 8
@@ -136,7 +134,6 @@ class LateChange:
     # each shift over its standard deviation within the parts
     size_sd: float
     shifts: dict[str, float]  # root mean square shift of the mean curve of each channel [channel's unit]
-    dependence: float  # largest lag-one correlation from stride to stride that was found
 
 
 def late_change(recording: Recording, strides: Strides, seed: int = 0) -> LateChange:
@@ -186,7 +183,6 @@ def late_change(recording: Recording, strides: Strides, seed: int = 0) -> LateCh
         float(p),
         float(np.sqrt(np.sum((moved / residual.std(axis=0)) ** 2))),
         dict(zip(names, np.sqrt(np.mean(shift**2, axis=0)).tolist(), strict=True)),
-        float(dependence.max()),
     )
 
 

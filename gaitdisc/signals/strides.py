@@ -8,10 +8,9 @@ import numpy as np
 
 from gaitdisc.errors import StrideError
 from gaitdisc.recording import DroppedStride, Recording, Strides
-from gaitdisc.recording.arrays import Values, finite_values, runs
+from gaitdisc.recording.arrays import Values, finite_values, robust_sd, runs
 from gaitdisc.signals.contacts import Contacts
 from gaitdisc.signals.gaps import fill_gaps
-from gaitdisc.signals.series import robust_sd
 from gaitdisc.words import counted
 
 MIN_S, MAX_S = 0.4, 2.5  # of a stride in walking and running
@@ -62,7 +61,6 @@ def duration_reasons(duration: np.ndarray, min_s: float, max_s: float) -> list[s
     """Why strides of such durations are left out: a sentence for each, empty where it is kept.
 
     duration (stride,) [s]: of one foot, or of several trials of one person
-    min_s, max_s: limits of a stride's duration [s]
 
     >>> duration_reasons(np.array([1.0, 0.2]), 0.4, 2.5)
     ['', '0.20 s is shorter than 0.4 s: one contact is probably false']
@@ -91,7 +89,6 @@ def duration_reasons(duration: np.ndarray, min_s: float, max_s: float) -> list[s
 def gap_reasons(start: np.ndarray, end: np.ndarray, recording: Recording) -> list[str]:
     """Why strides are left out for what a recording lacks in them: a sentence for each, empty where it lacks nothing.
 
-    start, end (stride,) [s]: initial contacts
     recording: channels without any value do not count; gaps of up to 0.1 s are bridged
     """
     missing = ~np.isfinite(fill_gaps(recording).values)
@@ -136,30 +133,6 @@ class Walking:
     knee_deg: float  # excursion of the knee that bends more, 5th to 95th percentile; NaN without a knee
 
 
-def measure_walking(kinematics: Recording, strides: Strides) -> Walking:
-    """Measure how steadily somebody walks.
-
-    kinematics: with hip and knee flexion [deg]
-    """
-    hips_and_knees = [
-        n for n in kinematics.names if n in {f"{j}_{s}" for j in ("hip_flexion", "knee_angle") for s in "rl"}
-    ]
-    median = float(np.median(strides.duration_s)) if len(strides) else float("nan")
-    known = {name: finite_values(kinematics[name]) for name in hips_and_knees}
-    known = {name: x for name, x in known.items() if len(x)}
-    regularity = float("nan")
-    if known and kinematics.duration_s > 4 * median:
-        regularity = float(np.median([stride_period(kinematics[name], kinematics.rate_hz)[1] for name in known]))
-    knees = [float(np.subtract(*np.percentile(x, [95, 5]))) for name, x in known.items() if name.startswith("knee")]
-    return Walking(
-        len(strides),
-        median,
-        float(np.sum(strides.duration_s) / kinematics.duration_s),
-        regularity,
-        max(knees) if knees else float("nan"),  # of the better leg: a stiff knee walks too
-    )
-
-
 def verify_walking(
     kinematics: Recording, strides: Strides, fewest: int = FEWEST_STRIDES, least_coverage: float = LEAST_COVERAGE
 ) -> Walking:
@@ -169,11 +142,22 @@ def verify_walking(
     and bend a knee by 25 deg or more. On treadmill_walk_ik the twelve walks, each with a stumble, have 0.82 to 0.98
     and cover 84 to 96 %; the two range-of-motion trials 0.58 and 0.64 and cover below 20 %.
 
-    kinematics: with hip and knee flexion [deg]
-    least_coverage: share of the trial that strides must cover; 0 for walks over ground that begin and end within the
-        trial
+    least_coverage: share of the trial; 0 for walks over ground that begin and end within the trial
     """
-    found = measure_walking(kinematics, strides)
+    hips_and_knees = {f"{joint}_{side}" for joint in ("hip_flexion", "knee_angle") for side in "rl"}
+    known = {n: x for n in kinematics.names if n in hips_and_knees and len(x := finite_values(kinematics[n]))}
+    median = float(np.median(strides.duration_s)) if len(strides) else float("nan")
+    regularity = float("nan")
+    if known and kinematics.duration_s > 4 * median:
+        regularity = float(np.median([stride_period(kinematics[name], kinematics.rate_hz)[1] for name in known]))
+    knees = [float(np.subtract(*np.percentile(x, [95, 5]))) for name, x in known.items() if name.startswith("knee")]
+    found = Walking(
+        len(strides),
+        median,
+        float(np.sum(strides.duration_s) / kinematics.duration_s),
+        regularity,
+        max(knees) if knees else float("nan"),  # of the better leg: a stiff knee walks too
+    )
     fails = []
     if found.strides < fewest:
         fails.append(f"{counted(found.strides, 'stride')}, but {fewest} are needed")

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from gaitdisc.errors import TrainingError
 from gaitdisc.recording import Samples, Scale, fit_scale
-from gaitdisc.signals.series import autocorrelation_time
+from gaitdisc.recording.arrays import autocorrelation_time
 
 KernelKind = Literal["squared_exponential", "matern_3_2", "matern_5_2"]
 KERNELS: tuple[KernelKind, ...] = ("squared_exponential", "matern_3_2", "matern_5_2")

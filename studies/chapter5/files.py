@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from gaitdisc.errors import ReadError, ShapeError, UnitError
-from gaitdisc.ingest.hdf5 import attributes, data_set, hdf5_file, is_hdf5, member_names
+from gaitdisc.ingest.hdf5 import SIGNATURE, attributes, data_set, hdf5_file
 from gaitdisc.recording import Source
 from gaitdisc.recording.field import Axis, Field
 from gaitdisc.regular_file import check_regular, file_sha256
@@ -52,11 +52,21 @@ class Variable:
         return values * scale + offset
 
 
+def read_head(path: Path) -> bytes:
+    """First bytes of a file, which show what it is."""
+    try:
+        check_regular(path)
+        with path.open("rb") as file:
+            return file.read(20)
+    except OSError as error:
+        raise ReadError(f"{path.name} cannot be read", str(error.strerror), "Correct the path.") from error
+
+
 def read_variables(path: Path, names: tuple[str, ...]) -> dict[str, Variable]:
     """Read variables of a netCDF file."""
-    if is_hdf5(path):
+    if read_head(path).startswith(SIGNATURE):
         with hdf5_file(path) as file:
-            _refuse_absent(path, names, member_names(file, path))
+            _refuse_absent(path, names, tuple(map(str, file)))
             held = ((name, data_set(file, name, path)) for name in names)
             return {name: Variable(values, attributes(file, name, path, ATTRIBUTES)) for name, values in held}
     from scipy.io import netcdf_file
@@ -124,10 +134,9 @@ def read_sst_mat(path: Path) -> Field:
     from scipy.io import loadmat
 
     needed = f"{path.name} is to be read as SHRED's SST_data.mat"
-    if is_hdf5(path):
+    head = read_head(path)
+    if head.startswith(SIGNATURE):
         raise ReadError(needed, "it is a MATLAB file of version 7.3", "Save it anew with `save -v7`.")
-    with path.open("rb") as file:
-        head = file.read(20)
     if head.startswith(b"version https://git"):
         raise ReadError(needed, "it is a pointer of Git LFS, not the file", "Fetch it with `git lfs pull`.")
     try:
@@ -159,11 +168,9 @@ def read_sst_pacific(path: Path) -> Field:
     sea = held["landmask"] == 0
     rows, columns = np.searchsorted(lat, held["lat"]), np.searchsorted(lon, held["lon"])
     if len(sea) != len(lat) * len(lon) or (np.diff(rows * len(lon) + columns) != 1).any():
-        raise ReadError(
-            "Pacific temperatures are needed on a whole grid, longitude fastest",
-            f"{path.name} has {len(sea)} cells, {len(lat)} latitudes and {len(lon)} longitudes",
-            "Name the file as it was published.",
-        )
+        needed = "Pacific temperatures are needed on a whole grid, longitude fastest"
+        found = f"{path.name} has {len(sea)} cells, {len(lat)} latitudes and {len(lon)} longitudes"
+        raise ReadError(needed, found, "Name the file as it was published.")
     months, mask = np.arange(len(held["sst"]), dtype=float), sea.reshape(len(lat), len(lon))
     values, source = held["sst"][:, sea, None], Source(path.name, file_sha256(path), "npz")
     return Field(months, values, _globe(lat, lon), mask, ("sst",), ("degC",), "month", source)
@@ -174,11 +181,10 @@ def read_navy_winds(path: Path) -> Field:
     held = _arrays(path, ("u", "v", "lon", "lat"))
     lat, lon = (np.asarray(held[name], float) for name in ("lat", "lon"))
     if held["u"].shape[1:] != (len(lat), len(lon)) or held["v"].shape != held["u"].shape:
-        raise ReadError(
-            "winds are needed as u and v of shape (month, lat, lon)",
-            f"{path.name} has {held['u'].shape} and {held['v'].shape} for {len(lat)} latitudes, {len(lon)} longitudes",
-            "Name the file as it was published.",
-        )
+        needed = "winds are needed as u and v of shape (month, lat, lon)"
+        shapes = f"{path.name} has {held['u'].shape} and {held['v'].shape}"
+        found = f"{shapes} for {len(lat)} latitudes, {len(lon)} longitudes"
+        raise ReadError(needed, found, "Name the file as it was published.")
     months = 144.0 + np.arange(len(held["u"]), dtype=float)  # the file begins in January 1982
     values = np.stack([held[name].reshape(len(months), -1) for name in ("u", "v")], axis=-1)
     everywhere, source = np.ones((len(lat), len(lon)), bool), Source(path.name, file_sha256(path), "npz")
@@ -235,14 +241,12 @@ def read_cutout(paths: Sequence[Path], step_s: float, quantity: str = "velocity"
 
 def _cutout_of(file: Any, path: Path, quantity: str) -> tuple[dict[int, str], list[NDArray[Any]]]:
     """Names of the snapshots by their number, and coordinates along each axis."""
-    pattern, there = re.compile(rf"{quantity}_(\d+)", re.IGNORECASE), member_names(file, path)
+    pattern, there = re.compile(rf"{quantity}_(\d+)", re.IGNORECASE), tuple(map(str, file))
     found = {int(match.group(1)): name for name in there if (match := pattern.fullmatch(name))}
     if not found:
-        raise ReadError(
-            f"a cut-out needs data sets {quantity.capitalize()}_0001, ...",
-            f"{path.name} has {', '.join(there) or 'none'}",
-            f"Request from the service {quantity}, or name the quantity that the file has.",
-        )
+        needed, has = f"a cut-out needs data sets {quantity.capitalize()}_0001, ...", ", ".join(there) or "none"
+        remedy = f"Request from the service {quantity}, or name the quantity that the file has."
+        raise ReadError(needed, f"{path.name} has {has}", remedy)
     absent = [name for name in COORDINATES if name not in there]
     if absent:
         needed = f"a cut-out needs its coordinates {', '.join(COORDINATES)}"

@@ -46,11 +46,9 @@ def fixed(field: Field, points: Sequence[int], name: str = "fixed") -> Route:
     chosen = np.asarray(points, int)
     outside = (chosen < 0) | (chosen >= field.points)
     if not len(chosen) or outside.any():
-        raise ChannelError(
-            f"sensors need points of the field, 0 to {field.points - 1}",
-            f"requested: {', '.join(str(k) for k in chosen[outside]) or 'none'}",
-            "Name points of the field.",
-        )
+        found = f"requested: {', '.join(str(k) for k in chosen[outside]) or 'none'}"
+        needed = f"sensors need points of the field, 0 to {field.points - 1}"
+        raise ChannelError(needed, found, "Name points of the field.")
     return Route(name, np.tile(chosen, (len(field), 1)))
 
 
@@ -64,11 +62,8 @@ def along(field: Field, places: ArrayLike, name: str) -> Route:
     """One sensor carried along a given path; at each snapshot it reads the node whose cell it is in."""
     path = np.asarray(places, float)
     if path.shape != (len(field), len(field.axes)):
-        raise ChannelError(
-            f"the path {name!r} needs a place for each of {len(field)} snapshots along {len(field.axes)} axes",
-            f"found an array of shape {path.shape}",
-            "Give one row a snapshot.",
-        )
+        needed = f"the path {name!r} needs a place for each of {len(field)} snapshots along {len(field.axes)} axes"
+        raise ChannelError(needed, f"found an array of shape {path.shape}", "Give one row a snapshot.")
     nodes, inside = np.empty(path.shape, int), np.ones(len(path), bool)
     for k, axis in enumerate(field.axes):
         away = np.abs(path[:, k, None] - axis.coordinates)

@@ -9,7 +9,7 @@ from sklearn.gaussian_process.kernels import RBF, Matern
 
 from gaitdisc.errors import TrainingError
 from gaitdisc.recording import Samples
-from gaitdisc.signals.series import autocorrelation_time
+from gaitdisc.recording.arrays import autocorrelation_time
 
 RNG = np.random.default_rng(0)
 X = RNG.uniform(-2, 2, (700, 2))

@@ -71,7 +71,7 @@ def test_skin_moves_a_thighs_markers_by_5_to_15_mm(walk, monkeypatch):
 def test_moments_by_newton_and_euler_are_those_that_walked(files, walk):
     read, static = files
     moved = move_body(read.stream("markers"), static.stream("markers"))
-    person = Person(walk.person.mass_kg, "", walk.person.height_m)
+    person = Person(walk.person.mass_kg)
     found = trial_kinetics(read, moved.poses, find_foot_paths(moved), person, KineticsSettings())
     assert sum(step.clean for step in found.steps) >= 8
     for joint, (column, alike) in {"ankle_angle": (2, 0.97), "knee_angle": (1, 0.8), "hip_flexion": (0, 0.8)}.items():
@@ -137,7 +137,7 @@ def test_moments_of_the_step_are_those_of_the_belts(floor, still, person):
 
     def ankle(trial):
         moved = move_body(trial.stream("markers"), static)
-        who = Person(person.mass_kg, person.sex, person.height_m)
+        who = Person(person.mass_kg, person.sex)
         found = trial_kinetics(trial, moved.poses, find_foot_paths(moved), who, KineticsSettings()).moments
         return found.time, found["ankle_angle_r_moment"]
 

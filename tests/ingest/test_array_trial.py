@@ -5,12 +5,12 @@ import sys
 
 import numpy as np
 import pytest
-from chapter5.files import read_cutout, read_oisst
+from chapter5.files import read_cutout, read_head, read_oisst
 from scipy.io import savemat
 
 from gaitdisc.errors import GaitdiscError, ReadError
 from gaitdisc.ingest.array_file import read_arrays
-from gaitdisc.ingest.hdf5 import SIGNATURE, attributes, data_set, hdf5_file, is_hdf5
+from gaitdisc.ingest.hdf5 import SIGNATURE, attributes, data_set, hdf5_file
 from gaitdisc.ingest.reading import read_planned_trial, read_trial
 from gaitdisc.ingest.study_file import load_study
 
@@ -109,10 +109,10 @@ def test_a_real_published_file_by_a_study(gait_data, tmp_path):
 def test_the_signature_tells(tmp_path):
     (tmp_path / "a.h5").write_bytes(SIGNATURE + b"rest")
     (tmp_path / "b.nc").write_bytes(b"CDF\x01")
-    assert is_hdf5(tmp_path / "a.h5")
-    assert not is_hdf5(tmp_path / "b.nc")
+    assert read_head(tmp_path / "a.h5").startswith(SIGNATURE)
+    assert not read_head(tmp_path / "b.nc").startswith(SIGNATURE)
     with pytest.raises(ReadError, match=r"absent.nc"):
-        is_hdf5(tmp_path / "absent.nc")
+        read_head(tmp_path / "absent.nc")
 
 
 def test_a_damaged_file_is_refused(tmp_path):
@@ -173,15 +173,14 @@ def test_what_is_no_data_set_of_numbers_is_refused(tmp_path):
         file.create_group("group")
         file["words"] = ["one", "two"]
         file.create_dataset("huge", (2**20, 2**20), np.float32, chunks=(1, 1024))
-    with hdf5_file(tmp_path / "a.h5") as file:
-        for name, said in (
-            ("group", r"a\.h5: 'group' "),
-            ("words", r"a\.h5: 'words' .*another type"),
-            ("huge", r"a\.h5: .*4294967296 bytes.*'huge' claims 4398046511104"),
-            ("absent", r"a\.h5 .*HDF5.*absent"),
-        ):
-            with pytest.raises(ReadError, match=said):
-                data_set(file, name, tmp_path / "a.h5")
+    for name, said in (
+        ("group", r"a\.h5: 'group' "),
+        ("words", r"a\.h5: 'words' .*another type"),
+        ("huge", r"a\.h5: .*4294967296 bytes.*'huge' claims 4398046511104"),
+        ("absent", r"a\.h5 .*HDF5.*absent"),
+    ):
+        with pytest.raises(ReadError, match=said), hdf5_file(tmp_path / "a.h5") as file:
+            data_set(file, name, tmp_path / "a.h5")
 
 
 def test_a_text_of_variable_length_is_read_beside_and_within_a_time(tmp_path, monkeypatch):

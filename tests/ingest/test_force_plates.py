@@ -198,7 +198,7 @@ def _plate(kind, origin=ORIGIN, calibration=None):
 def test_axes_of_the_corners():
     plate = _plate(2)
     np.testing.assert_allclose(plate.axes, np.diag([1, -1, -1]))
-    np.testing.assert_allclose(plate.centre, [0.3, 0.2, 0])
+    np.testing.assert_allclose(plate.surface.centre, [0.3, 0.2, 0])
     assert plate.vertical == 2
 
 

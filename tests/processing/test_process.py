@@ -9,8 +9,7 @@ from changed_trials import with_column, with_stream
 from gaitdisc.channel import Channel
 from gaitdisc.errors import ChannelError, StrideError
 from gaitdisc.ingest.study import Filters, HeldOut, Models, Quality
-from gaitdisc.processing.filter_null import filter_null, make_filter_null
-from gaitdisc.processing.process import is_raw, on_one_base, processed, quality_findings
+from gaitdisc.processing.process import filter_null, is_raw, make_filter_null, on_one_base, processed, quality_findings
 from gaitdisc.recording import Recording, Trial
 
 
@@ -121,7 +120,7 @@ def test_clean_walking_has_no_warning(trial, study):
 
 
 def test_held_out_default_is_the_dissertation(study):
-    assert HeldOut().length_s(240.0) == 30.0
+    assert 240.0 * HeldOut().share == 30.0
     assert isinstance(study.held_out, HeldOut)
 
 

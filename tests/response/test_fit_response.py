@@ -272,7 +272,7 @@ def test_a_short_walk_has_no_band():
 
 
 def test_eq_4_2_state_rate_and_percent_stride_in_acceleration_out(nominal):
-    samples, dropped = gait_samples(nominal, (ANKLE,))
+    samples, excluded = gait_samples(nominal, (ANKLE,))
     assert samples.inputs == (
         "knee_angle_r", "ankle_angle_r", "d(knee_angle_r)/dt", "d(ankle_angle_r)/dt", "phi",
     )  # fmt: skip
@@ -281,8 +281,7 @@ def test_eq_4_2_state_rate_and_percent_stride_in_acceleration_out(nominal):
     np.testing.assert_array_equal(samples.x[:, 2], nominal.xdot[:, 0])
     np.testing.assert_array_equal(samples.x[:, 4], nominal.phi)
     np.testing.assert_array_equal(samples.y[:, 0], nominal.xddot[:, 1])
-    assert (dropped.total, dropped.kept, dict(dropped.unusable)) == (6000, 6000, {})
-    assert dropped.finding().severity == "note"
+    assert (excluded.severity, excluded.what) == ("note", "0 of 6000 samples are excluded")
 
 
 def test_the_dissertations_49_inputs(nominal):
@@ -299,12 +298,12 @@ def test_what_is_left_away_is_counted_with_its_reason(nominal):
     usable, phi = nominal.usable.copy(), nominal.phi.copy()
     usable[100:200, 0] = False
     phi[150:350] = np.nan
-    samples, dropped = gait_samples(replace(nominal, usable=usable, phi=phi), (ANKLE,))
-    assert len(samples) == dropped.kept == 5750
+    samples, excluded = gait_samples(replace(nominal, usable=usable, phi=phi), (ANKLE,))
+    assert len(samples) == 5750
     assert np.isfinite(samples.phi).all()
-    assert says(dropped.finding().line(), "P01", "left", "250 of 6000 samples", "200 outside", "50", "knee_angle_r not")
+    assert says(excluded.line(), "P01", "left", "250 of 6000 samples", "200 outside", "50", "knee_angle_r not")
     usable[:3000] = False
-    assert gait_samples(replace(nominal, usable=usable), (ANKLE,))[1].finding().severity == "warning"
+    assert gait_samples(replace(nominal, usable=usable), (ANKLE,))[1].severity == "warning"
 
 
 def test_an_output_that_is_not_there(nominal):

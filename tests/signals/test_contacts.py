@@ -1,5 +1,7 @@
 """Initial contacts: events of force and of angles, and who detects what."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from changed_trials import markers_at
@@ -293,7 +295,9 @@ def test_real_belts_that_chatter(gait_data, real):
     markers, plates = real.markers(c3d, (*heels.values(), *pelvis)), real.plates(c3d)
     direction = walking_direction(markers, heels, pelvis)
     by_foot = plate_contacts(plates, markers, heels, direction)
-    by_belt = force_contacts(plates, {"plate1": "l", "plate2": "r"})
+    feet = {"plate1": "l", "plate2": "r"}
+    of_feet = tuple(replace(channel, side=feet.get(channel.name, "")) for channel in plates.channels)
+    by_belt = force_contacts(replace(plates, channels=of_feet))
     zeni = marker_contacts(markers, heels, pelvis, direction)
     assert order_findings(by_belt["r"], by_belt["l"]) == []
     for side, count, apart in (("r", 6, -51), ("l", 7, -61)):

@@ -15,7 +15,7 @@ from gaitdisc.recording import Strides
 from gaitdisc.signals.contact_movement import angle_contacts
 from gaitdisc.signals.contacts import Contacts
 from gaitdisc.signals.stride_quality import outlying, stride_distances, stride_findings, without_outlying
-from gaitdisc.signals.strides import cut_strides, measure_walking, stride_period, verify_walking
+from gaitdisc.signals.strides import cut_strides, stride_period, verify_walking
 
 
 def contacts(durations, start=1.0):
@@ -179,9 +179,9 @@ def test_what_is_not_walking_is_refused_with_its_numbers(made):
 
 def test_a_short_walk_over_ground_is_judged_without_regularity(made):
     walk, contacts = made.walk(2)
-    found = measure_walking(walk, strides_of(contacts))
+    found = verify_walking(walk, strides_of(contacts), fewest=1)
     assert np.isnan(found.regularity)
-    assert verify_walking(walk, strides_of(contacts), fewest=1).strides == 2
+    assert found.strides == 2
 
 
 def test_real_walks_pass_and_range_of_motion_trials_do_not(gait_data, real):
