@@ -25,6 +25,7 @@ FORM = f"a published reference must be a CSV with a line '# source, people, lice
 FILE, FORMAT = "reference.json", 1
 PUBLISHED = "published.csv"
 DIGITS = 4
+SPEED = "speed_m_per_s"
 FEW = 3  # cycles of a leg below which a mean is that of single steps: no sentence is made of it
 SCORE_LEAST = 1.6  # [deg] of the gait profile score, the smallest difference that matters (Baker et al. 2012)
 
@@ -257,6 +258,7 @@ class Band:
     mean: NDArray[np.float64]
     sd: NDArray[np.float64]
     people: int
+    at_speed: bool = False  # whether both are those at the person's speed, as the limits of single values are
 
 
 @dataclass(frozen=True, eq=False)
@@ -280,6 +282,7 @@ class ClinicalReading:
     spatiotemporal: Mapping[str, Limits]  # spatiotemporal value -> mean and spread of the reference
     # which controls of the reference the person is read beside, and what could not be allowed for
     beside: tuple[str, ...] = ()
+    nearest: str = ""  # in what the controls for curves are the nearest; empty where they are the entire reference
 
     @property
     def noted(self) -> tuple[Noted, ...]:

@@ -24,6 +24,11 @@ TIERS = {
     2: "Outside the prediction limits for a healthy person (95 % over all values on this page)",
     1: "Outside 2 standard deviations of the controls, but within the prediction limits",
 }
+NEAREST = {
+    "age": "those nearest in age",
+    "speed": "those nearest in walking speed",
+    "age and speed": "those nearest in age and walking speed",
+}
 TEMPLATES = Path(__file__).parents[1] / "report" / "templates"
 WITH_WORDS = ("person.html.j2", "people.html.j2", "person.typ")
 TABLES = (  # headings and cells of tables, and the words between numbers in a sentence of what stands out
@@ -35,7 +40,7 @@ TABLES = (  # headings and cells of tables, and the words between numbers in a s
     "None of {} values lies outside 2 standard deviations of the reference.", "No comparison with controls: {}.",
     "A leg must have {} cycles to be reported; there are {}.",
     "With few controls ({}) the 95 % limits are wide: differences may be missed.",
-    *TIERS.values(),
+    *TIERS.values(), *NEAREST.values(),
 )  # fmt: skip
 HEADER = ("English", "other")
 LARGEST_BYTES = 2**20

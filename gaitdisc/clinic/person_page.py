@@ -127,7 +127,11 @@ def list_sheets(reading: ClinicalReading) -> list[Sheet]:
     bands = "No band: there is no reference for this condition."
     if people:
         count = str(people[0]) if people[0] == people[-1] else f"{people[0]} to {people[-1]}"
-        bands = f"Bands: mean ± 1 (dark) and ± 2 (light) standard deviations over the legs (controls: {count})."
+        at_speed = " at this person's speed" if any(band.at_speed for band in reading.bands.values()) else ""
+        bands = (
+            f"Bands: mean ± 1 (dark) and ± 2 (light) standard deviations over the legs{at_speed} (controls: {count}). "
+            "A curve may leave them without a sentence: rules take single values of it and omit small differences."
+        )
     kinetics, muscles = sheet(reading, MOMENTS, POWERS, FORCES), emg_sheet(reading.pooled)
     return [
         Sheet("kinematics", "Kinematics", sheet(reading, KINEMATICS), f"{bands} {CYCLES}"),
@@ -213,8 +217,8 @@ def _method(person: PersonSession) -> list[str]:
     found.append(
         "What stands out: each rule takes one value of a leg's mean cycle. □: outside mean ± 2 standard deviations of "
         "the reference. ■: outside the prediction limits, which contain all values of a healthy person with "
-        "probability 0.95 (t · sd · √(1 + 1/n), n people). With at least 10 controls, mean and limits are those at "
-        "this person's speed."
+        "probability 0.95 (t · sd · √(1 + 1/n), n people). With at least 10 controls, mean, limits "
+        "and bands are those at this person's speed."
     )
     return found
 

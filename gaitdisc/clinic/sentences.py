@@ -16,7 +16,7 @@ from gaitdisc.clinic.clinical_reference import (
     PersonSession,
     Score,
 )
-from gaitdisc.clinic.page_words import ENGLISH, TIERS, PageWords
+from gaitdisc.clinic.page_words import ENGLISH, NEAREST, TIERS, PageWords
 from gaitdisc.clinic.values import MARKS
 from gaitdisc.processing.leg_curves import BY_NAME, FEET
 from gaitdisc.words import SIDE_WORDS, counted, number, p_words, unit_text
@@ -84,7 +84,8 @@ def outstanding_sentences(reading: ClinicalReading, say: Callable[[str], str] = 
         rest.append(say("A leg must have {} cycles to be reported; there are {}.").format(FEW, ", ".join(few)))
     people = max((band.people for band in reading.bands.values()), default=0)
     if people < MANY:
-        rest.append(say("With few controls ({}) the 95 % limits are wide: differences may be missed.").format(people))
+        which = f"{people}, {say(NEAREST[reading.nearest])}" if reading.nearest else people
+        rest.append(say("With few controls ({}) the 95 % limits are wide: differences may be missed.").format(which))
     return {**found, **({"": rest} if rest else {})}
 
 
