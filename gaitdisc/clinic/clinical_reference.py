@@ -313,6 +313,14 @@ class Contrast:
     untested: Mapping[str, str]  # side -> why no test was done
     tested: Mapping[str, int]
 
+    @property
+    def names(self) -> tuple[str, str]:
+        """Names of the two: their sessions, or within a session their conditions."""
+        first, second = self.first.pooled, self.second.pooled
+        if first.session == second.session:
+            return first.condition, second.condition
+        return first.session or first.condition, second.session or second.condition
+
 
 @dataclass(frozen=True, eq=False)
 class PersonSession:

@@ -35,7 +35,7 @@ TABLES = (  # headings and cells of tables, and the words between numbers in a s
     "value", "left", "right", "reference", "asymmetry", "value of", "side", "limits", "people", "cycles", "stands out",
     "curve", "file", "what", "version", "cycle", "to", "more than", "less than", "apart from",
     "neither leg stands out by itself",
-    "state", "person", "condition", "cycles L, R", "Side affected", "both", "profile score [deg]", "why",
+    "state", "person", "condition", "session", "cycles L, R", "Side affected", "both", "profile score [deg]", "why",
     "green", "amber", "red", "gait profile score", "Time and distance",
     "None of {} values lies outside 2 standard deviations of the reference.", "No comparison with controls: {}.",
     "A leg must have {} cycles to be reported; there are {}.",

@@ -25,8 +25,10 @@ from gaitdisc.clinic.panels import (
 )
 from gaitdisc.clinic.person_pdf import write_person_pdf
 from gaitdisc.clinic.sentences import (
+    contrast_heading,
     contrast_sentences,
     laboratory_sentences,
+    name_walk,
     outstanding_sentences,
     quality_sentence,
     score_sentences,
@@ -143,7 +145,7 @@ def list_sheets(reading: ClinicalReading) -> list[Sheet]:
 def _condition(reading: ClinicalReading, beside: Path, prefix: str, say: PageWords) -> dict[str, Any]:
     stem = next(iter(file_names([prefix]).values())) if prefix else ""
     words = {
-        "where": reading.pooled.where,
+        "where": name_walk(reading.pooled, say),
         "light": reading.light,
         "mark": LIGHT_MARKS[reading.light],
         "red": not reading.legs,
@@ -186,9 +188,9 @@ def _save(table: Table, beside: Path, stem: str, say: PageWords) -> Table:
 def _contrast(contrast: Contrast, beside: Path, say: PageWords) -> dict[str, Any]:
     first, second = contrast.first.pooled.where, contrast.second.pooled.where
     stem = next(iter(file_names([f"{first}-{second}"]).values()))
-    curves = _sheet(contrast_sheet(contrast), CONTRAST.format(first, second), beside, f"{stem}-curves", say)
+    curves = _sheet(contrast_sheet(contrast), CONTRAST.format(*contrast.names), beside, f"{stem}-curves", say)
     changes = _save(change_table(contrast), beside, f"{stem}-", say)
-    words = {"heading": f"{first} and {second}", "sentences": contrast_sentences(contrast)}
+    words = {"heading": contrast_heading(contrast, say), "sentences": contrast_sentences(contrast)}
     return {**words, "curves": curves, "changes": changes}
 
 
@@ -205,13 +207,13 @@ def _reference(reference: ClinicalReference | None, condition: str) -> str:
 def _method(person: PersonSession) -> list[str]:
     found = []
     for reading in person.readings:
-        pooled = reading.pooled
+        pooled, where = reading.pooled, name_walk(reading.pooled)
         by = ", ".join(f"{name} ({counted(count, 'trial')})" for name, count in pooled.detectors.items())
         moved = pooled.contact_offset_s
         words = f", shifted by {1000 * moved:+.0f} ms to match {pooled.offset_steps} steps on a plate" if moved else ""
-        found.append(f"{pooled.where}: contacts by {by or 'nothing'}{words}.")
+        found.append(f"{where}: contacts by {by or 'nothing'}{words}.")
         filters = dict.fromkeys(finding.what for finding in pooled.findings if finding.kind == "filter")
-        found += [f"{pooled.where}: {words}; Butterworth filters, run forwards and backwards." for words in filters]
+        found += [f"{where}: {words}; Butterworth filters, run forwards and backwards." for words in filters]
         found += dict.fromkeys(f"Angles by {one.what}." for one in pooled.findings if one.kind == "marker set")
     found.append("Pelvic obliquity is positive if the side of the leg is up, and pelvic rotation if it is forwards.")
     found.append(

@@ -109,7 +109,7 @@ def profile_table(reading: ClinicalReading) -> Table | None:
 def change_table(contrast: Contrast) -> Table:
     """Values of both legs in the first and the second of two, and the profile scores."""
     pair = (contrast.first, contrast.second)
-    columns = ("value", *(f"{SIDE_WORDS[side]}, {one.pooled.where}" for side in FEET for one in pair))
+    columns = ("value", *(f"{SIDE_WORDS[side]}, {name}" for side in FEET for name in contrast.names))
     rows = []
     for value, (words, unit, digits) in VALUES.items():
         each = [one.legs[side].values.get(value) if side in one.legs else None for side in FEET for one in pair]
@@ -119,7 +119,8 @@ def change_table(contrast: Contrast) -> Table:
     if any(scores):
         rows.append(("gait profile score [deg]", *(number(one.value, 1) if one else NONE for one in scores)))
     caption = f"Mean ± standard deviation (cycles). A change of a profile score by {SCORE_LEAST:g} deg or more matters."
-    numbers = pd.DataFrame(rows, columns=pd.Index(columns))
+    whole = ("value", *(f"{SIDE_WORDS[side]}, {one.pooled.where}" for side in FEET for one in pair))
+    numbers = pd.DataFrame(rows, columns=pd.Index(whole))
     return Table("changes", caption, columns, tuple(rows), numbers)
 
 

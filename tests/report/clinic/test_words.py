@@ -1,6 +1,7 @@
 """Words of the pages in another language, from a table that somebody filled in."""
 
 import csv
+from dataclasses import replace
 
 import pytest
 from made_clinic import PROVENANCE, made_controls, made_person, made_run
@@ -133,6 +134,17 @@ def test_nothing_that_stands_out_and_why_nothing_can_be_said():
     assert "there is no reference" in outstanding_sentences(read_beside(made_person(), None))[""][0]
 
 
+@pytest.mark.parametrize(
+    ("nearest", "which"),
+    [("", "(6)"), ("age", "(6, those nearest in age)"), ("speed", "(6, those nearest in walking speed)"),
+     ("age and speed", "(6, those nearest in age and walking speed)")],
+)  # fmt: skip
+def test_few_controls_are_said_with_which_of_them_they_are(nearest, which):
+    reading = read_beside(made_person(), made_controls(6))
+    said = outstanding_sentences(replace(reading, nearest=nearest))[""][-1]
+    assert said == f"With few controls {which} the 95 % limits are wide: differences may be missed."
+
+
 def test_quality_and_scores_are_said_with_counts():
     reading = read_beside(made_person(each=2), made_controls(6))
     assert says(quality_sentence(reading), "2 left", "2 right cycles", "2 trials", "2")
@@ -147,7 +159,7 @@ def test_a_difference_is_said_with_place_p_and_counts():
     after = read_beside(made_person(session="after", each=8, spread=0.0, seed=1, changed={"knee_angle_l": bump}), None)
     said, *_ = contrast_sentences(contrast(before, after))
     assert says(said, "left: 15 deg more", "after", "before", "65", "80 %")
-    assert said.endswith("8 and 8 cycles.")
+    assert "in ‘after’ than in ‘before’" in said and said.endswith("8 and 8 cycles.")
     both = {"knee_angle_l": bump / 5, "hip_flexion_l": bump / 5}  # less than matters
     slightly = read_beside(made_person(session="after", each=8, spread=0.0, seed=1, changed=both), None)
     assert says(contrast_sentences(contrast(before, slightly))[-1], "2 parts", "less than 5 deg")
