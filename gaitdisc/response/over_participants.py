@@ -28,7 +28,7 @@ from gaitdisc.response.participants_result import (
 )
 from gaitdisc.statistics.groups import FEWEST as FEWEST_GROUPED
 from gaitdisc.statistics.groups import find_groups
-from gaitdisc.statistics.holm_sidak import holm_sidak, holm_sidak_by
+from gaitdisc.statistics.holm_sidak import holm_sidak
 from gaitdisc.statistics.signed_rank import signed_rank, smallest_p
 from gaitdisc.statistics.stride_residuals import LEAST_STRIDES, mean_over_strides
 
@@ -110,13 +110,6 @@ def compare_reductions(reductions: pd.DataFrame) -> pd.DataFrame:
         reduced = by_participant(reductions[reductions["model"] == model], f"{measure}_reduction")
         parts.append(compare_columns(reduced * 0.0, reduced).assign(measure=measure, first="nominal", second=model))
     return pd.concat(parts, ignore_index=True)[list(REDUCTION_TEST_COLUMNS)]
-
-
-def representative(reductions: pd.DataFrame) -> str:
-    """Pseudonym whose reduction of the root mean square by Augmented is nearest the median; the first, or empty."""
-    augmented = reductions[reductions["model"] == "augmented"]
-    middle = augmented.groupby("participant", sort=False)["rms_reduction"].median().dropna()
-    return str((middle - middle.median()).abs().idxmin()) if len(middle) else ""
 
 
 def _of_one(response: ParticipantResponse) -> pd.DataFrame:
@@ -236,17 +229,13 @@ def compare_columns(first: pd.DataFrame, second: pd.DataFrame, alpha: float = AL
 def by_family(tests: pd.DataFrame) -> pd.DataFrame:
     """Tests (first, second, variable, p) of three pairs corrected under every family meant: `FAMILY_COLUMNS`."""
     chosen = tests[tests["p"].notna() & (tests["second"] != "perfect")]
-    families = {
-        "pair": (chosen["first"] + " " + chosen["second"]).tolist(),
-        "all": ["all"] * len(chosen),
-        "variable": chosen["variable"].tolist(),
-    }
+    families = {"pair": ["first", "second"], "all": np.zeros(len(chosen)), "variable": "variable"}
     parts = []
     for name in FAMILIES:
-        for family, corrected in holm_sidak_by(chosen["p"].to_numpy(), families[name], ALPHA).items():
-            rows = chosen.loc[np.array(families[name]) == family, ["first", "second", "variable"]]
+        for _, rows in chosen.groupby(families[name], sort=False):
+            corrected = holm_sidak(rows["p"], ALPHA)
             parts.append(
-                rows.assign(
+                rows[["first", "second", "variable"]].assign(
                     family=name,
                     tests=len(rows),
                     critical=corrected.critical,
