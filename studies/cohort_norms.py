@@ -75,7 +75,7 @@ def run(quick: bool = False) -> dict[str, NDArray[np.float64]]:
         tables["nominal"].append(numbers(nominal))
         tables["exo"].append(numbers(walked(person.adapt_to(Spring()), Spring(), duration_s, SEED + number)))
         emg = gd.envelope(measure(nominal, "walk", "nominal").stream("emg"))
-        curves = nominal.mean_stride(emg.values[:, : len(MUSCLES)])
+        curves = nominal.strides(emg.values[:, : len(MUSCLES)]).mean(axis=0)
         envelopes.append(curves / curves.max(axis=0))
     print(f"n = {len(people)} people, {duration_s:.0f} s, right side; mean +- sd over people\n")
     found, exo = ({name: np.array([row[name] for row in rows]) for name in SOURCES} for rows in tables.values())

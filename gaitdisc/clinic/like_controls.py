@@ -5,6 +5,7 @@ from __future__ import annotations
 from bisect import bisect_right
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
+from operator import attrgetter
 
 import numpy as np
 
@@ -26,6 +27,7 @@ CURVES = {MOMENTS: 1.0, POWERS: 0.5}  # of what is per kg of body mass
 ADULT = 18  # years
 Legs = tuple[ReferenceLeg, ...]
 Number = Callable[[ReferenceLeg], float | None]
+AGE: Number = attrgetter("age_years")
 
 
 @dataclass(frozen=True, eq=False)
@@ -42,7 +44,7 @@ class LikeControls:
 def like_controls(legs: Legs, own: Sequence[LegCurves], leg_m: float | None, age_years: int | None) -> LikeControls:
     """Controls of a condition for one person of a leg length [m] and age."""
     speed = mean_speed(own)
-    of_age = _nearest(legs, AGES, age_years, _age)
+    of_age = _nearest(legs, AGES, age_years, AGE)
     of_both = _nearest(of_age, SPEEDS, _dimensionless(speed, leg_m), dimensionless_speed)
     by = [*(["age"] if of_age != legs else []), *(["speed"] if of_both != of_age else [])]
     why = "age and speed are unknown" if list_groups(legs) else f"fewer than {FEWEST} controls of similar age or speed"
@@ -98,7 +100,7 @@ def like_published(
 
 def list_groups(legs: Legs) -> list[Legs]:
     """Groups of ten people or more, by age, and within it by speed; none where there is but one."""
-    ages = list(_classes(legs, AGES, _age).values()) or [legs]
+    ages = list(_classes(legs, AGES, AGE).values()) or [legs]
     found = dict.fromkeys(one for age in ages for one in (*_classes(age, SPEEDS, dimensionless_speed).values(), age))
     return [one for one in found if one != legs]
 
@@ -140,10 +142,6 @@ def mean_speed(own: Sequence[LegCurves]) -> float | None:
 
 def _dimensionless(speed: float | None, leg_m: float | None) -> float | None:
     return speed / float(np.sqrt(GRAVITY * leg_m)) if speed is not None and leg_m else None
-
-
-def _age(leg: ReferenceLeg) -> float | None:
-    return leg.age_years
 
 
 def _classes(legs: Legs, bounds: Sequence[float], number: Number) -> dict[int, Legs]:

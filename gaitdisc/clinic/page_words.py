@@ -5,12 +5,14 @@ from __future__ import annotations
 import csv
 import io
 import re
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
+from functools import cache
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 from gaitdisc.clinic.laboratory import Laboratory
+from gaitdisc.clinic.rules import rule_words
 from gaitdisc.errors import SchemaError
 from gaitdisc.processing.leg_curves import VARIABLES
 from gaitdisc.processing.tables import VALUES
@@ -77,23 +79,24 @@ class PageWords:
 ENGLISH = PageWords()
 
 
-def english_words(of_rules: Sequence[str]) -> list[str]:
+@cache
+def english_words() -> list[str]:
     """Every word that a table may translate, each once: of the pages, and what rules call a value."""
     texts = [(TEMPLATES / name).read_text(encoding="utf-8") for name in WITH_WORDS]
     found = [word for text in texts for word in re.findall(r'say\("([^"]+)"\)', text)]
     found += [word for one in VARIABLES for word in (one.words, one.up, one.down)]
     found += [words for words, _, _ in VALUES.values()]
-    return [word for word in dict.fromkeys((*found, *of_rules, *TABLES)) if word]
+    return [word for word in dict.fromkeys((*found, *rule_words(), *TABLES)) if word]
 
 
-def write_words(path: Path, english: Sequence[str], words: PageWords = ENGLISH) -> Path:
+def write_words(path: Path, words: PageWords = ENGLISH) -> Path:
     """Write the table that is to be filled in: English, and an empty column beside."""
-    text = io.StringIO()
-    csv.writer(text, lineterminator="\n").writerows([HEADER, *((word, words.other.get(word, "")) for word in english)])
+    text, rows = io.StringIO(), ((word, words.other.get(word, "")) for word in english_words())
+    csv.writer(text, lineterminator="\n").writerows([HEADER, *rows])
     return write_whole(path, text.getvalue())
 
 
-def read_words(path: Path, english: Sequence[str]) -> PageWords:
+def read_words(path: Path) -> PageWords:
     """Read a table of words; what is no word of the pages is refused with its line."""
     form = "a table of translated words must be a CSV file with the columns English and other"
     try:
@@ -108,7 +111,7 @@ def read_words(path: Path, english: Sequence[str]) -> PageWords:
             f"{path.name} begins with {first}",
             "Write a new table: gaitdisc report CLINIC --language NEW.csv.",
         )
-    known, other = set(english), {}
+    known, other = set(english_words()), {}
     for line, row in enumerate(rows[1:], 2):
         word, said = (*(cell.strip() for cell in row[:2]), "", "")[:2]
         if word and word not in known:

@@ -6,7 +6,7 @@ import base64
 import hashlib
 from dataclasses import replace
 from pathlib import Path
-from typing import Any, NamedTuple
+from typing import Any
 
 from markupsafe import Markup
 
@@ -114,17 +114,8 @@ def write_person_page(
     return [page, write_person_pdf(shown, page.with_suffix(".pdf"))] if pdf else [page]
 
 
-class Sheet(NamedTuple):
-    """Panels under one heading."""
-
-    name: str
-    heading: str
-    panels: list[Panel]
-    caption: str
-
-
-def list_sheets(reading: ClinicalReading) -> list[Sheet]:
-    """Kinematics, kinetics and EMG of a reading, as page and PDF show them; what was not recorded has no panel."""
+def list_sheets(reading: ClinicalReading) -> dict[str, tuple[list[Panel], str]]:
+    """Kinematics, kinetics and EMG of a reading with their captions; what was not recorded has no panel."""
     people = sorted({band.people for band in reading.bands.values()})
     bands = "No band: there is no reference for this condition."
     if people:
@@ -134,12 +125,12 @@ def list_sheets(reading: ClinicalReading) -> list[Sheet]:
             f"Bands: mean ± 1 (dark) and ± 2 (light) standard deviations over the legs{at_speed} (controls: {count}). "
             "A curve may leave them without a sentence: rules take single values of it and omit small differences."
         )
-    kinetics, muscles = sheet(reading, MOMENTS, POWERS, FORCES), emg_sheet(reading.pooled)
-    return [
-        Sheet("kinematics", "Kinematics", sheet(reading, KINEMATICS), f"{bands} {CYCLES}"),
-        Sheet("kinetics", "Moments, powers and forces", kinetics, MOMENT_SIGNS),
-        Sheet("emg", "EMG", muscles, EMG + (RAW if any(one.raw for one in muscles) else "")),
-    ]
+    muscles = emg_sheet(reading.pooled)
+    return {
+        "kinematics": (sheet(reading, KINEMATICS), f"{bands} {CYCLES}"),
+        "kinetics": (sheet(reading, MOMENTS, POWERS, FORCES), MOMENT_SIGNS),
+        "emg": (muscles, EMG + (RAW if any(one.raw for one in muscles) else "")),
+    }
 
 
 def _condition(reading: ClinicalReading, beside: Path, prefix: str, say: PageWords) -> dict[str, Any]:
@@ -158,13 +149,13 @@ def _condition(reading: ClinicalReading, beside: Path, prefix: str, say: PageWor
     if not reading.legs:
         return words
     profile, sheets = profile_table(reading), list_sheets(reading)
-    save_table(panel_numbers(sheets[0].panels), beside / f"{stem}cycles.csv")
-    raw = raw_numbers(sheets[-1].panels)
+    save_table(panel_numbers(sheets["kinematics"][0]), beside / f"{stem}cycles.csv")
+    raw = raw_numbers(sheets["emg"][0])
     if len(raw):
         save_table(raw, beside / f"{stem}emg_raw.csv")
     return {
         **words,
-        **{one.name: _sheet(one.panels, one.caption, beside, f"{stem}{one.name}", say) for one in sheets},
+        **{name: _sheet(*shown, beside, f"{stem}{name}", say) for name, shown in sheets.items()},
         "bars": Markup(profile_svg(reading.profile, say)) if reading.profile else "",
         "distances": _save(values_table(reading), beside, stem, say),
         "numbers": _save(numbers_table(reading), beside, stem, say),

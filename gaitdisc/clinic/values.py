@@ -124,17 +124,11 @@ def change_table(contrast: Contrast) -> Table:
     return Table("changes", caption, columns, tuple(rows), numbers)
 
 
-def profile_rows(profile: Profile) -> list[tuple[str, dict[str, Score]]]:
-    """Scores of both legs, curve by curve, the profile scores last."""
-    rows = [
-        (BY_NAME[n].words, {s: profile.variables[n, s] for s in FEET if (n, s) in profile.variables}) for n in PROFILE
-    ]
-    return [*rows, ("gait profile score", dict(profile.legs))]
-
-
 def profile_svg(profile: Profile, say: Callable[[str], str] = str) -> str:
-    """Bars of a profile; left above right, the reference's mean and spread behind."""
-    rows = profile_rows(profile)
+    """Bars of a profile, curve by curve, its score last; left above right, the reference's mean and spread behind."""
+    known = profile.variables
+    rows = [(BY_NAME[n].words, {s: known[n, s] for s in FEET if (n, s) in known}) for n in PROFILE]
+    rows.append(("gait profile score", dict(profile.legs)))
     shown = [score for _, scores in rows for score in scores.values()]
     ends = [(score.value, score.reference_mean + score.reference_sd) for score in shown]
     top = 1.08 * max(1e-6, *(end for both in ends for end in both if np.isfinite(end)))

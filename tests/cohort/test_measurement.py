@@ -80,8 +80,8 @@ def test_quality_checks_find_nothing_in_a_clean_walk(trials):
 def test_emg_can_be_late(nominal):
     late = measure(nominal, "C", "exo", emg_late_s=0.05).stream("emg")
     timely = measure(nominal, "C", "exo").stream("emg")
-    first = nominal.mean_stride(envelopes(timely)["emg_ta_r"])
-    second = nominal.mean_stride(envelopes(late)["emg_ta_r"])
+    first = nominal.strides(envelopes(timely)["emg_ta_r"]).mean(axis=0)
+    second = nominal.strides(envelopes(late)["emg_ta_r"]).mean(axis=0)
     lags = [np.dot(np.roll(first - first.mean(), k), second - second.mean()) for k in range(12)]
     assert int(np.argmax(lags)) == pytest.approx(0.05 / nominal.person.stride_s * 100, abs=1.5)
 

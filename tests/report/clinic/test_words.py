@@ -11,7 +11,6 @@ from gaitdisc.clinic.clinical_reference import Limits, Noted, PersonSession
 from gaitdisc.clinic.page_words import PageWords, english_words, read_words, write_words
 from gaitdisc.clinic.person_page import index_rows, write_index, write_person_page
 from gaitdisc.clinic.reading import contrast, read_beside
-from gaitdisc.clinic.rules import rule_words
 from gaitdisc.clinic.sentences import (
     MOST,
     contrast_sentences,
@@ -23,7 +22,7 @@ from gaitdisc.clinic.sentences import (
 from gaitdisc.errors import SchemaError
 from gaitdisc.recording import PERCENT
 
-ENGLISH = english_words(rule_words())
+ENGLISH = english_words()
 
 
 def doubled(word):
@@ -67,14 +66,14 @@ def test_the_index_has_them_too_and_the_numbers_beside_stay(pages):
 
 
 def test_every_word_of_rules_is_in_the_table_and_a_filled_one_comes_back(tmp_path):
-    path = write_words(tmp_path / "de.csv", ENGLISH)
+    path = write_words(tmp_path / "de.csv")
     with path.open(encoding="utf-8", newline="") as file:
         rows = list(csv.reader(file))
     assert rows[0] == ["English", "other"] and [word for word, _ in rows[1:]] == ENGLISH and "short steps" in ENGLISH
     path.write_text("English;other\nknee flexion;Kniebeugung, <b>\nstep length;\n", encoding="utf-8-sig")
-    words = read_words(path, ENGLISH)
+    words = read_words(path)
     assert words("knee flexion [deg]") == "Kniebeugung, <b> [deg]" and words("step length") == "step length"
-    assert read_words(write_words(path, ENGLISH, words), ENGLISH) == words
+    assert read_words(write_words(path, words)) == words
 
 
 @pytest.mark.parametrize(
@@ -91,13 +90,13 @@ def test_every_word_of_rules_is_in_the_table_and_a_filled_one_comes_back(tmp_pat
 def test_another_table_is_refused_with_its_line(tmp_path, text, said):
     (tmp_path / "de.csv").write_text(text, encoding="utf-8")
     with pytest.raises(SchemaError, match=said):
-        read_words(tmp_path / "de.csv", ENGLISH)
+        read_words(tmp_path / "de.csv")
 
 
 def test_a_table_that_is_no_text_is_refused(tmp_path):
     (tmp_path / "de.csv").write_bytes(b"\xff\xfe\x00E")
     with pytest.raises(SchemaError, match=r"CSV.*UTF-8"):
-        read_words(tmp_path / "de.csv", ENGLISH)
+        read_words(tmp_path / "de.csv")
 
 
 LIMITS = Limits(46.0, 72.0, 59.0, 3.6, 18)
