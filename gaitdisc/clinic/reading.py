@@ -52,8 +52,9 @@ def read_beside(pooled: PooledCycles, reference: ClinicalReference | None) -> Cl
     if reference is not None and reference.published and legs:  # means and spreads alone: bands and scores, no limits
         group, words = like_published(reference.published, tuple(legs.values()), pooled.leg_m)
         profile, no_profile = find_profile(legs, (), group.bands)
-        said = {"silent": NO_LEGS, "no_index": NO_LEGS, "no_profile": no_profile}
-        return reading(**said, profile=profile, bands=group.bands, beside=(f"Published: {reference.title}.", words))
+        beside = (f"Published: {reference.title}.", words)
+        found = partial(reading, silent=NO_LEGS, no_index=NO_LEGS)
+        return found(profile=profile, no_profile=no_profile, bands=group.bands, beside=beside)
     controls = reference.of(pooled.condition) if reference else ()
     why = "" if controls else NO_REFERENCE
     if reference is not None and not controls:

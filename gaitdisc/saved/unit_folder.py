@@ -112,6 +112,12 @@ def damage(path: Path, what: str, do: str = AGAIN) -> DamagedError:
     return error
 
 
+def of_another_format(path: Path, found: object, ours: int) -> DamagedError:
+    """Return the refusal of a file that another version of gaitdisc wrote."""
+    do = f"Another version wrote this file. Install that version, or compute the result again with {__version__}."
+    return damage(path, f"has format {str(found)[:20]}, not {ours}", do)
+
+
 class _Field:
     """Descriptor that reads `OnDisk` when it is looked at; a dataclass sets it as any other field."""
 
@@ -287,8 +293,7 @@ def read_json(path: Path) -> dict[str, Any]:
     """Read a JSON file of a run, compare its own hash, and hold it against the schema that names it."""
     data = read_sealed(path)
     if data.get("format") != FORMAT:
-        do = f"Another version wrote this file. Install that version, or compute the result again with {__version__}."
-        raise damage(path, f"has format {str(data.get('format'))[:20]}, not {FORMAT}", do)
+        raise of_another_format(path, data.get("format"), FORMAT)
     wrong = next(iter(_validator(path.stem).iter_errors(data)), None)
     if wrong is not None:
         raise damage(path, f"does not have the expected form at {wrong.json_path}: {wrong.message[:200]}")
