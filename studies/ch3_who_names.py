@@ -29,10 +29,11 @@ from chapter3.naming import HiddenEffect, discover_answer, method_answer, naming
 from chapter3.pages import naming_figure, naming_table, written
 from chapter3.record import Conditions, KnownRates, StochasticRates, recorded, system_of
 from further import Result, result_text
+from markdown_table import as_markdown
 
 import gaitdisc as gd
 from gaitdisc.report.page import Block
-from gaitdisc.report.table import as_markdown, save_table
+from gaitdisc.report.table import save_table
 
 CELLS = Path(__file__).with_suffix(".csv")
 NAMING: tuple[Method, ...] = ("sindy",)

@@ -24,12 +24,11 @@ from dataclasses import dataclass
 
 import pandas as pd
 from ch4_ours import OURS
-from markdown_table import markdown_table
+from markdown_table import as_markdown, markdown_table
 
 import gaitdisc as gd
 from gaitdisc.cohort.demonstration import write_demonstration
 from gaitdisc.ingest.study_file import load_study
-from gaitdisc.report.table import as_markdown
 from gaitdisc.response.data_quantity_page import length_table
 from gaitdisc.response.over_participants_page import baseline_table, reduction_table
 from gaitdisc.response.page import write_report

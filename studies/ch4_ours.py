@@ -8,7 +8,7 @@ import pandas as pd
 
 import gaitdisc as gd
 from gaitdisc.cohort.demonstration import OUTPUTS
-from gaitdisc.response.over_participants import r2_by_participant, representative
+from gaitdisc.response.over_participants import r2_by_participant
 from gaitdisc.words import sideless
 
 ANGLES, EMG = OUTPUTS[:3], OUTPUTS[3:]
@@ -42,6 +42,13 @@ def _named(rows: pd.DataFrame) -> str:
 def _over_nominal(run: gd.ResponseRun) -> str:
     rows = _differ(run, "nominal", "augmented", 1)
     return f"{len(rows)} of {len(OUTPUTS)}, p <= {rows['p'].max():.3f}" if len(rows) else "not tested"
+
+
+def representative(reductions: pd.DataFrame) -> str:
+    """Pseudonym whose reduction of the root mean square by Augmented is nearest the median; the first, or empty."""
+    augmented = reductions[reductions["model"] == "augmented"]
+    middle = augmented.groupby("participant", sort=False)["rms_reduction"].median().dropna()
+    return str((middle - middle.median()).abs().idxmin()) if len(middle) else ""
 
 
 def _hip(run: gd.ResponseRun) -> str:

@@ -68,7 +68,7 @@ def run(quick: bool = False) -> dict[str, NDArray[np.float64]]:
     for number, person in enumerate(people, SEED):
         nominal = walked(person, None, duration_s, number)
         free, worn = envelopes(nominal), envelopes(walked(person.adapt_to(Spring()), Spring(), duration_s, number))
-        curves.append(nominal.mean_stride(free)[:100])
+        curves.append(nominal.strides(free).mean(axis=0)[:100])
         change.append(worn.mean(axis=0) / free.mean(axis=0) - 1)
         r2.append(list(explained(nominal, free).values()))
     found = {"curves": np.array(curves), "change": np.array(change), "explained": np.array(r2)}

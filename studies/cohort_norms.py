@@ -36,10 +36,13 @@ SOURCES, BURSTS = PUBLISHED["sources"], PUBLISHED["bursts"]
 def numbers(walk: TrueWalk) -> dict[str, float]:
     """What is read off one walk, right side."""
     person = walk.person
-    angles, moments = walk.mean_stride(walk.angles)[:, 0], walk.mean_stride(walk.moments)[:, 0] / person.mass_kg
+    angles, moments = (
+        walk.strides(walk.angles).mean(axis=0)[:, 0],
+        walk.strides(walk.moments).mean(axis=0)[:, 0] / person.mass_kg,
+    )
     hip = angles[:, 0] + habitual("pelvis_tilt", person.dimensionless_speed).mean
     knee, ankle = angles[:, 3], angles[:, 4]
-    force = walk.mean_stride(walk.force)[:, 0] / person.mass_kg / 9.81
+    force = walk.strides(walk.force).mean(axis=0)[:, 0] / person.mass_kg / 9.81
     spread = walk.strides(walk.angles).std(axis=0).mean(axis=0)[0]
     durations = np.diff(walk.contacts())
     seen = np.diff(force_contacts(measure(walk, "walk", "nominal").stream("forces"))["r"].time)
@@ -50,7 +53,7 @@ def numbers(walk: TrueWalk) -> dict[str, float]:
     values += [-moments[:, 0].min(), moments[:55, 0].max(), -moments[:, 1].min(), -moments[:, 2].min()]
     values += [100 * np.mean(walk.force[:, 0, 1] > 20.0), 120 / durations.mean()]
     values += [force[5:25, 1].max(), force[20:40, 1].min(), force[38:60, 1].max(), force[:, 0].max(), slip]
-    values += [cv[0], *spread[[0, 3, 4]], cv[1] - cv[0], -walk.mean_stride(walk.spring).min()]
+    values += [cv[0], *spread[[0, 3, 4]], cv[1] - cv[0], -walk.strides(walk.spring).mean(axis=0).min()]
     return dict(zip(SOURCES, map(float, values), strict=True))
 
 
@@ -72,7 +75,7 @@ def run(quick: bool = False) -> dict[str, NDArray[np.float64]]:
         tables["nominal"].append(numbers(nominal))
         tables["exo"].append(numbers(walked(person.adapt_to(Spring()), Spring(), duration_s, SEED + number)))
         emg = gd.envelope(measure(nominal, "walk", "nominal").stream("emg"))
-        curves = nominal.mean_stride(emg.values[:, : len(MUSCLES)])
+        curves = nominal.strides(emg.values[:, : len(MUSCLES)]).mean(axis=0)
         envelopes.append(curves / curves.max(axis=0))
     print(f"n = {len(people)} people, {duration_s:.0f} s, right side; mean +- sd over people\n")
     found, exo = ({name: np.array([row[name] for row in rows]) for name in SOURCES} for rows in tables.values())

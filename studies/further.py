@@ -12,10 +12,11 @@ from typing import Any, NamedTuple
 
 import numpy as np
 import pandas as pd
-from markdown_table import markdown_table
+from markdown_table import as_markdown, markdown_table
 
-from gaitdisc.report.page import Block, write_blocks, write_markdown
-from gaitdisc.report.table import Table, as_markdown, save_table
+from gaitdisc.report.page import Block, save_block
+from gaitdisc.report.page import write_page as write_report
+from gaitdisc.report.table import Table, save_table
 
 
 class Number(NamedTuple):
@@ -96,8 +97,10 @@ class Result(NamedTuple):
 def write_page(cells: Any, blocks: Sequence[Block], title: str, about: str, folder: Path) -> Result:
     """Write page, figures, tables, and all tables once more as Markdown."""
     folder.mkdir(parents=True, exist_ok=True)
-    page = write_blocks(title, f"Ebers 2023, {about}", blocks, folder)
-    write_markdown(blocks, folder)
+    saved = [save_block(block, folder) for block in blocks]
+    page = write_report("blocks", {"title": title, "about": f"Ebers 2023, {about}", "blocks": saved}, folder)
+    text = "\n\n".join(f"{block.heading}\n\n{as_markdown(table)}" for block in blocks for table in block.tables)
+    (folder / "tables.md").write_text(text + "\n", encoding="utf-8")
     return Result(cells, tuple(table for block in blocks for table in block.tables), page)
 
 

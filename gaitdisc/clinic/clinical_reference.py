@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
@@ -25,6 +25,7 @@ FORM = f"a published reference must be a CSV with a line '# source, people, lice
 FILE, FORMAT = "reference.json", 1
 PUBLISHED = "published.csv"
 DIGITS = 4
+SPEED = "speed_m_per_s"
 FEW = 3  # cycles of a leg below which a mean is that of single steps: no sentence is made of it
 SCORE_LEAST = 1.6  # [deg] of the gait profile score, the smallest difference that matters (Baker et al. 2012)
 
@@ -181,16 +182,8 @@ def _leg(data: Mapping[str, Any]) -> ReferenceLeg:
     leg_m, age = data.get("leg_m"), data.get("age_years")  # absent in older references
     if not (leg_m is None or isinstance(leg_m, float)) or not (age is None or isinstance(age, int)):
         raise ValueError(f"leg length {leg_m!r} and age {age!r} are not numbers")
-    return ReferenceLeg(
-        person=int(data["person"]),
-        side=str(data["side"]),
-        cycles=int(data["cycles"]),
-        stance_percent=stance,
-        curves=curves,
-        values=values,
-        leg_m=leg_m,
-        age_years=age,
-    )
+    own = int(data["person"]), str(data["side"]), int(data["cycles"])
+    return ReferenceLeg(*own, stance, curves, values, leg_m=leg_m, age_years=age)
 
 
 @dataclass(frozen=True)
@@ -257,9 +250,10 @@ class Band:
     mean: NDArray[np.float64]
     sd: NDArray[np.float64]
     people: int
+    at_speed: bool = False  # whether both are those at the person's speed, as the limits of single values are
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, kw_only=True)
 class ClinicalReading:
     """One person, session and condition, read beside a reference."""
 
@@ -267,19 +261,20 @@ class ClinicalReading:
     legs: Mapping[str, LegCurves]
     light: str  # `green`, `amber` or `red`
     reasons: tuple[str, ...]  # why it is amber or red
-    numbers: tuple[Noted, ...]  # every value that a rule looks at, those that stand out first
+    numbers: tuple[Noted, ...] = ()  # every value that a rule looks at, those that stand out first
     silent: str  # why nothing can be said to stand out; empty where the rules were applied
     profile: Profile | None
     no_profile: str
-    deviation_index: Mapping[str, float]  # side -> GDI; empty with the reason in `no_index`
+    deviation_index: Mapping[str, float] = field(default_factory=dict)  # side -> GDI; empty: why is in `no_index`
     no_index: str
     # mapping of (str, str) to float, variable and side -> coefficient of multiple correlation of its cycles, NaN where
     # it is not defined
     consistency: Mapping[tuple[str, str], float]
     bands: Mapping[str, Band]
-    spatiotemporal: Mapping[str, Limits]  # spatiotemporal value -> mean and spread of the reference
+    spatiotemporal: Mapping[str, Limits] = field(default_factory=dict)  # value -> mean and spread of the reference
     # which controls of the reference the person is read beside, and what could not be allowed for
     beside: tuple[str, ...] = ()
+    nearest: str = ""  # in what the controls for curves are the nearest; empty where they are the entire reference
 
     @property
     def noted(self) -> tuple[Noted, ...]:
@@ -309,6 +304,14 @@ class Contrast:
     spans: tuple[DifferingSpan, ...]
     untested: Mapping[str, str]  # side -> why no test was done
     tested: Mapping[str, int]
+
+    @property
+    def names(self) -> tuple[str, str]:
+        """Names of the two: their sessions, or within a session their conditions."""
+        first, second = self.first.pooled, self.second.pooled
+        if first.session == second.session:
+            return first.condition, second.condition
+        return first.session or first.condition, second.session or second.condition
 
 
 @dataclass(frozen=True, eq=False)

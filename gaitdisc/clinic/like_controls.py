@@ -5,10 +5,12 @@ from __future__ import annotations
 from bisect import bisect_right
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
+from operator import attrgetter
 
 import numpy as np
 
-from gaitdisc.clinic.clinical_reference import PublishedGroup, ReferenceLeg
+from gaitdisc.clinic.clinical_reference import SPEED, PublishedGroup, ReferenceLeg
+from gaitdisc.clinic.reference import FARTHEST, Sample
 from gaitdisc.processing.leg_curves import BY_NAME, MOMENTS, POWERS, LegCurves
 from gaitdisc.words import counted
 
@@ -23,51 +25,69 @@ EXPONENTS = {
 }  # fmt: skip
 CURVES = {MOMENTS: 1.0, POWERS: 0.5}  # of what is per kg of body mass
 ADULT = 18  # years
-SPEED = "speed_m_per_s"
 Legs = tuple[ReferenceLeg, ...]
 Number = Callable[[ReferenceLeg], float | None]
+AGE: Number = attrgetter("age_years")
 
 
 @dataclass(frozen=True, eq=False)
 class LikeControls:
     """Controls that a person is read beside, at the person's leg length where it is known."""
 
-    curves: Legs  # of the like age and speed
+    group: Legs  # of the like age and speed
+    curves: Legs  # the group, or where the person's speed is none of theirs, those for times and distances
     values: Legs  # of the like age at any speed, for times and distances
-    words: tuple[str, ...] = ()  # who they are, and what could not be allowed for
+    words: tuple[str, ...]  # who they are, and what could not be allowed for
+    nearest: str  # in what those for curves are the nearest; empty where they are the entire reference
 
 
 def like_controls(legs: Legs, own: Sequence[LegCurves], leg_m: float | None, age_years: int | None) -> LikeControls:
     """Controls of a condition for one person of a leg length [m] and age."""
-    speed = _speed([one.values[SPEED].mean() for one in own if SPEED in one.values], leg_m)
-    of_age = _nearest(legs, AGES, age_years, _age)
-    of_both = _nearest(of_age, SPEEDS, speed, dimensionless_speed)
+    speed = mean_speed(own)
+    of_age = _nearest(legs, AGES, age_years, AGE)
+    of_both = _nearest(of_age, SPEEDS, _dimensionless(speed, leg_m), dimensionless_speed)
     by = [*(["age"] if of_age != legs else []), *(["speed"] if of_both != of_age else [])]
     why = "age and speed are unknown" if list_groups(legs) else f"fewer than {FEWEST} controls of similar age or speed"
     which = f", the group nearest in {' and '.join(by)}" if by else f", the entire reference ({why})"
     said = [f"Compared with {described(of_both)}{which}."]
+    unknown = "the person" if leg_m is None else "some controls" if any(leg.leg_m is None for leg in legs) else ""
+    group, values = of_both, of_age
+    if leg_m is not None and not unknown:
+        group, values = (tuple(at_leg_length(leg, leg_m) for leg in some) for some in (group, values))
+    far = bool(speed_words(speed, group))
     if of_both != of_age:
-        said.append("Times and distances are compared with controls of any speed.")
+        what = "Times, distances and curves" if far else "Times and distances"
+        because = ", because this person's speed is outside the range of this group" if far else ""
+        said.append(f"{what} are compared with controls of any speed{because}.")
     ages = [leg.age_years for leg in of_age if leg.age_years is not None]
     if age_years is not None and ages and not min(ages) <= age_years <= max(ages):
         whose = "adults" if min(ages) >= ADULT > age_years else "of another age"
         said.append(f"These controls are {whose}; at {age_years} years, deviations may be due to age.")
-    unknown = "the person" if leg_m is None else "some controls" if any(leg.leg_m is None for leg in legs) else ""
-    if leg_m is None or unknown:
-        said.append(f"No value is scaled to body size, because the leg length of {unknown} is unknown.")
-        return LikeControls(of_both, of_age, tuple(said))
     said.append(
-        "Times, distances, moments and powers of the controls are scaled to this person's leg length (Hof 1996)."
+        f"No value is scaled to body size, because the leg length of {unknown} is unknown."
+        if unknown
+        else "Times, distances, moments and powers of the controls are scaled to this person's leg length (Hof 1996)."
     )
-    curves, values = (tuple(at_leg_length(leg, leg_m) for leg in one) for one in (of_both, of_age))
-    return LikeControls(curves, values, tuple(said))
+    nearest = " and ".join(by[:-1] if of_both != of_age and far else by)
+    return LikeControls(group, values if far else group, values, (*said, *speed_words(speed, values)), nearest)
+
+
+def speed_words(speed: float | None, legs: Legs) -> tuple[str, ...]:
+    """What of a speed [m/s] that no control walks at is allowed for."""
+    speeds = np.array([leg.values[SPEED] for leg in legs if SPEED in leg.values])
+    if speed is None or not len(speeds) or speeds.min() <= speed <= speeds.max():
+        return ()
+    range_words = f"{speed:.2f} m/s is outside the controls' range, {speeds.min():.2f} to {speeds.max():.2f} m/s"
+    if Sample(speeds, len({leg.person for leg in legs}), speeds).leverage(speed) <= FARTHEST:
+        return (f"{range_words}. The limits are extrapolated to this speed by a line through the controls.",)
+    return (f"{range_words}. This is too far for a correction: deviations may be due to the speed.",)
 
 
 def like_published(
     groups: Sequence[PublishedGroup], own: Sequence[LegCurves], leg_m: float | None
 ) -> tuple[PublishedGroup, str]:
     """Group of a published reference nearest in speed, the largest where the speed is not known; and which it is."""
-    speed = _speed([one.values[SPEED].mean() for one in own if SPEED in one.values], leg_m)
+    speed = _dimensionless(mean_speed(own), leg_m)
     known = [one for one in groups if np.isfinite(one.speeds).all()] if speed is not None else []
     if speed is None or not known:
         found = max(groups, key=lambda one: one.people)
@@ -80,14 +100,14 @@ def like_published(
 
 def list_groups(legs: Legs) -> list[Legs]:
     """Groups of ten people or more, by age, and within it by speed; none where there is but one."""
-    ages = list(_classes(legs, AGES, _age).values()) or [legs]
+    ages = list(_classes(legs, AGES, AGE).values()) or [legs]
     found = dict.fromkeys(one for age in ages for one in (*_classes(age, SPEEDS, dimensionless_speed).values(), age))
     return [one for one in found if one != legs]
 
 
 def dimensionless_speed(leg: ReferenceLeg) -> float | None:
     """Speed over the square root of gravity times leg length (Hof 1996); None where one of both is not known."""
-    return _speed([leg.values[SPEED]] if SPEED in leg.values else [], leg.leg_m)
+    return _dimensionless(leg.values.get(SPEED), leg.leg_m)
 
 
 def at_leg_length(leg: ReferenceLeg, leg_m: float) -> ReferenceLeg:
@@ -114,12 +134,14 @@ def described(legs: Legs) -> str:
     return ", ".join(parts)
 
 
-def _speed(speeds: Sequence[float], leg_m: float | None) -> float | None:
-    return float(np.mean(speeds)) / float(np.sqrt(GRAVITY * leg_m)) if len(speeds) and leg_m else None
+def mean_speed(own: Sequence[LegCurves]) -> float | None:
+    """Speed [m/s] over the legs of a person; None where it is not known."""
+    speeds = [float(leg.values[SPEED].mean()) for leg in own if SPEED in leg.values]
+    return float(np.mean(speeds)) if speeds else None
 
 
-def _age(leg: ReferenceLeg) -> float | None:
-    return leg.age_years
+def _dimensionless(speed: float | None, leg_m: float | None) -> float | None:
+    return speed / float(np.sqrt(GRAVITY * leg_m)) if speed is not None and leg_m else None
 
 
 def _classes(legs: Legs, bounds: Sequence[float], number: Number) -> dict[int, Legs]:

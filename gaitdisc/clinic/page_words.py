@@ -5,12 +5,14 @@ from __future__ import annotations
 import csv
 import io
 import re
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
+from functools import cache
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 from gaitdisc.clinic.laboratory import Laboratory
+from gaitdisc.clinic.rules import rule_words
 from gaitdisc.errors import SchemaError
 from gaitdisc.processing.leg_curves import VARIABLES
 from gaitdisc.processing.tables import VALUES
@@ -24,18 +26,23 @@ TIERS = {
     2: "Outside the prediction limits for a healthy person (95 % over all values on this page)",
     1: "Outside 2 standard deviations of the controls, but within the prediction limits",
 }
+NEAREST = {
+    "age": "those nearest in age",
+    "speed": "those nearest in walking speed",
+    "age and speed": "those nearest in age and walking speed",
+}
 TEMPLATES = Path(__file__).parents[1] / "report" / "templates"
 WITH_WORDS = ("person.html.j2", "people.html.j2", "person.typ")
 TABLES = (  # headings and cells of tables, and the words between numbers in a sentence of what stands out
     "value", "left", "right", "reference", "asymmetry", "value of", "side", "limits", "people", "cycles", "stands out",
     "curve", "file", "what", "version", "cycle", "to", "more than", "less than", "apart from",
     "neither leg stands out by itself",
-    "state", "person", "condition", "cycles L, R", "Side affected", "both", "profile score [deg]", "why",
+    "state", "person", "condition", "session", "cycles L, R", "Side affected", "both", "profile score [deg]", "why",
     "green", "amber", "red", "gait profile score", "Time and distance",
     "None of {} values lies outside 2 standard deviations of the reference.", "No comparison with controls: {}.",
     "A leg must have {} cycles to be reported; there are {}.",
     "With few controls ({}) the 95 % limits are wide: differences may be missed.",
-    *TIERS.values(),
+    *TIERS.values(), *NEAREST.values(),
 )  # fmt: skip
 HEADER = ("English", "other")
 LARGEST_BYTES = 2**20
@@ -72,23 +79,24 @@ class PageWords:
 ENGLISH = PageWords()
 
 
-def english_words(of_rules: Sequence[str]) -> list[str]:
+@cache
+def english_words() -> list[str]:
     """Every word that a table may translate, each once: of the pages, and what rules call a value."""
     texts = [(TEMPLATES / name).read_text(encoding="utf-8") for name in WITH_WORDS]
     found = [word for text in texts for word in re.findall(r'say\("([^"]+)"\)', text)]
     found += [word for one in VARIABLES for word in (one.words, one.up, one.down)]
     found += [words for words, _, _ in VALUES.values()]
-    return [word for word in dict.fromkeys((*found, *of_rules, *TABLES)) if word]
+    return [word for word in dict.fromkeys((*found, *rule_words(), *TABLES)) if word]
 
 
-def write_words(path: Path, english: Sequence[str], words: PageWords = ENGLISH) -> Path:
+def write_words(path: Path, words: PageWords = ENGLISH) -> Path:
     """Write the table that is to be filled in: English, and an empty column beside."""
-    text = io.StringIO()
-    csv.writer(text, lineterminator="\n").writerows([HEADER, *((word, words.other.get(word, "")) for word in english)])
+    text, rows = io.StringIO(), ((word, words.other.get(word, "")) for word in english_words())
+    csv.writer(text, lineterminator="\n").writerows([HEADER, *rows])
     return write_whole(path, text.getvalue())
 
 
-def read_words(path: Path, english: Sequence[str]) -> PageWords:
+def read_words(path: Path) -> PageWords:
     """Read a table of words; what is no word of the pages is refused with its line."""
     form = "a table of translated words must be a CSV file with the columns English and other"
     try:
@@ -103,7 +111,7 @@ def read_words(path: Path, english: Sequence[str]) -> PageWords:
             f"{path.name} begins with {first}",
             "Write a new table: gaitdisc report CLINIC --language NEW.csv.",
         )
-    known, other = set(english), {}
+    known, other = set(english_words()), {}
     for line, row in enumerate(rows[1:], 2):
         word, said = (*(cell.strip() for cell in row[:2]), "", "")[:2]
         if word and word not in known:

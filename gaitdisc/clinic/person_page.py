@@ -6,7 +6,7 @@ import base64
 import hashlib
 from dataclasses import replace
 from pathlib import Path
-from typing import Any, NamedTuple
+from typing import Any
 
 from markupsafe import Markup
 
@@ -25,8 +25,10 @@ from gaitdisc.clinic.panels import (
 )
 from gaitdisc.clinic.person_pdf import write_person_pdf
 from gaitdisc.clinic.sentences import (
+    contrast_heading,
     contrast_sentences,
     laboratory_sentences,
+    name_walk,
     outstanding_sentences,
     quality_sentence,
     score_sentences,
@@ -112,34 +114,29 @@ def write_person_page(
     return [page, write_person_pdf(shown, page.with_suffix(".pdf"))] if pdf else [page]
 
 
-class Sheet(NamedTuple):
-    """Panels under one heading."""
-
-    name: str
-    heading: str
-    panels: list[Panel]
-    caption: str
-
-
-def list_sheets(reading: ClinicalReading) -> list[Sheet]:
-    """Kinematics, kinetics and EMG of a reading, as page and PDF show them; what was not recorded has no panel."""
+def list_sheets(reading: ClinicalReading) -> dict[str, tuple[list[Panel], str]]:
+    """Kinematics, kinetics and EMG of a reading with their captions; what was not recorded has no panel."""
     people = sorted({band.people for band in reading.bands.values()})
     bands = "No band: there is no reference for this condition."
     if people:
         count = str(people[0]) if people[0] == people[-1] else f"{people[0]} to {people[-1]}"
-        bands = f"Bands: mean ± 1 (dark) and ± 2 (light) standard deviations over the legs (controls: {count})."
-    kinetics, muscles = sheet(reading, MOMENTS, POWERS, FORCES), emg_sheet(reading.pooled)
-    return [
-        Sheet("kinematics", "Kinematics", sheet(reading, KINEMATICS), f"{bands} {CYCLES}"),
-        Sheet("kinetics", "Moments, powers and forces", kinetics, MOMENT_SIGNS),
-        Sheet("emg", "EMG", muscles, EMG + (RAW if any(one.raw for one in muscles) else "")),
-    ]
+        at_speed = " at this person's speed" if any(band.at_speed for band in reading.bands.values()) else ""
+        bands = (
+            f"Bands: mean ± 1 (dark) and ± 2 (light) standard deviations over the legs{at_speed} (controls: {count}). "
+            "A curve may leave them without a sentence: rules take single values of it and omit small differences."
+        )
+    muscles = emg_sheet(reading.pooled)
+    return {
+        "kinematics": (sheet(reading, KINEMATICS), f"{bands} {CYCLES}"),
+        "kinetics": (sheet(reading, MOMENTS, POWERS, FORCES), MOMENT_SIGNS),
+        "emg": (muscles, EMG + (RAW if any(one.raw for one in muscles) else "")),
+    }
 
 
 def _condition(reading: ClinicalReading, beside: Path, prefix: str, say: PageWords) -> dict[str, Any]:
     stem = next(iter(file_names([prefix]).values())) if prefix else ""
     words = {
-        "where": reading.pooled.where,
+        "where": name_walk(reading.pooled, say),
         "light": reading.light,
         "mark": LIGHT_MARKS[reading.light],
         "red": not reading.legs,
@@ -152,13 +149,13 @@ def _condition(reading: ClinicalReading, beside: Path, prefix: str, say: PageWor
     if not reading.legs:
         return words
     profile, sheets = profile_table(reading), list_sheets(reading)
-    save_table(panel_numbers(sheets[0].panels), beside / f"{stem}cycles.csv")
-    raw = raw_numbers(sheets[-1].panels)
+    save_table(panel_numbers(sheets["kinematics"][0]), beside / f"{stem}cycles.csv")
+    raw = raw_numbers(sheets["emg"][0])
     if len(raw):
         save_table(raw, beside / f"{stem}emg_raw.csv")
     return {
         **words,
-        **{one.name: _sheet(one.panels, one.caption, beside, f"{stem}{one.name}", say) for one in sheets},
+        **{name: _sheet(*shown, beside, f"{stem}{name}", say) for name, shown in sheets.items()},
         "bars": Markup(profile_svg(reading.profile, say)) if reading.profile else "",
         "distances": _save(values_table(reading), beside, stem, say),
         "numbers": _save(numbers_table(reading), beside, stem, say),
@@ -182,9 +179,9 @@ def _save(table: Table, beside: Path, stem: str, say: PageWords) -> Table:
 def _contrast(contrast: Contrast, beside: Path, say: PageWords) -> dict[str, Any]:
     first, second = contrast.first.pooled.where, contrast.second.pooled.where
     stem = next(iter(file_names([f"{first}-{second}"]).values()))
-    curves = _sheet(contrast_sheet(contrast), CONTRAST.format(first, second), beside, f"{stem}-curves", say)
+    curves = _sheet(contrast_sheet(contrast), CONTRAST.format(*contrast.names), beside, f"{stem}-curves", say)
     changes = _save(change_table(contrast), beside, f"{stem}-", say)
-    words = {"heading": f"{first} and {second}", "sentences": contrast_sentences(contrast)}
+    words = {"heading": contrast_heading(contrast, say), "sentences": contrast_sentences(contrast)}
     return {**words, "curves": curves, "changes": changes}
 
 
@@ -201,20 +198,20 @@ def _reference(reference: ClinicalReference | None, condition: str) -> str:
 def _method(person: PersonSession) -> list[str]:
     found = []
     for reading in person.readings:
-        pooled = reading.pooled
+        pooled, where = reading.pooled, name_walk(reading.pooled)
         by = ", ".join(f"{name} ({counted(count, 'trial')})" for name, count in pooled.detectors.items())
         moved = pooled.contact_offset_s
         words = f", shifted by {1000 * moved:+.0f} ms to match {pooled.offset_steps} steps on a plate" if moved else ""
-        found.append(f"{pooled.where}: contacts by {by or 'nothing'}{words}.")
+        found.append(f"{where}: contacts by {by or 'nothing'}{words}.")
         filters = dict.fromkeys(finding.what for finding in pooled.findings if finding.kind == "filter")
-        found += [f"{pooled.where}: {words}; Butterworth filters, run forwards and backwards." for words in filters]
+        found += [f"{where}: {words}; Butterworth filters, run forwards and backwards." for words in filters]
         found += dict.fromkeys(f"Angles by {one.what}." for one in pooled.findings if one.kind == "marker set")
     found.append("Pelvic obliquity is positive if the side of the leg is up, and pelvic rotation if it is forwards.")
     found.append(
         "What stands out: each rule takes one value of a leg's mean cycle. □: outside mean ± 2 standard deviations of "
         "the reference. ■: outside the prediction limits, which contain all values of a healthy person with "
-        "probability 0.95 (t · sd · √(1 + 1/n), n people). With at least 10 controls, mean and limits are those at "
-        "this person's speed."
+        "probability 0.95 (t · sd · √(1 + 1/n), n people). With at least 10 controls, mean, limits "
+        "and bands are those at this person's speed."
     )
     return found
 

@@ -19,9 +19,9 @@ from gaitdisc.clinic.clinical_reference import (
     ReferenceLeg,
     Score,
 )
-from gaitdisc.clinic.like_controls import like_controls, like_published
+from gaitdisc.clinic.like_controls import like_controls, like_published, mean_speed
 from gaitdisc.clinic.reference import bands, spatiotemporal_limits
-from gaitdisc.clinic.rules import outstanding, speed_words
+from gaitdisc.clinic.rules import outstanding
 from gaitdisc.errors import ComparisonError
 from gaitdisc.processing.leg_curves import BY_NAME, FEET, KINEMATICS, PELVIS, PROFILE, TURNED_DEG, LegCurves, make_legs
 from gaitdisc.processing.pooled_cycles import PooledCycles
@@ -52,25 +52,18 @@ def read_beside(pooled: PooledCycles, reference: ClinicalReference | None) -> Cl
     if reference is not None and reference.published and legs:  # means and spreads alone: bands and scores, no limits
         group, words = like_published(reference.published, tuple(legs.values()), pooled.leg_m)
         profile, no_profile = find_profile(legs, (), group.bands)
-        return reading(
-            numbers=(),
-            silent=NO_LEGS,
-            profile=profile,
-            no_profile=no_profile,
-            deviation_index={},
-            no_index=NO_LEGS,
-            bands=group.bands,
-            spatiotemporal={},
-            beside=(f"Published: {reference.title}.", words),
-        )
+        beside = (f"Published: {reference.title}.", words)
+        found = partial(reading, silent=NO_LEGS, no_index=NO_LEGS)
+        return found(profile=profile, no_profile=no_profile, bands=group.bands, beside=beside)
     controls = reference.of(pooled.condition) if reference else ()
     why = "" if controls else NO_REFERENCE
     if reference is not None and not controls:
         there = ", ".join(map(repr, reference.legs))
         why = f"the reference has no controls in the condition {pooled.condition!r}; its conditions are {there}"
     why = why if legs else NO_CYCLE
-    like = like_controls(controls, tuple(legs.values()), pooled.leg_m, pooled.age_years)
-    profile, no_profile = (None, why) if why else find_profile(legs, like.curves)
+    own = tuple(legs.values())
+    like = like_controls(controls, own, pooled.leg_m, pooled.age_years)
+    profile, no_profile = (None, why) if why else find_profile(legs, like.group)
     numbers, silent = ((), why) if why else outstanding(legs, like.curves, None, like.values, profile)
     index, no_index = ({}, why) if why else deviation_index(legs, controls)
     return reading(
@@ -80,9 +73,10 @@ def read_beside(pooled: PooledCycles, reference: ClinicalReference | None) -> Cl
         no_profile=no_profile,
         deviation_index=index,
         no_index=no_index,
-        bands=bands(like.curves),
+        bands=bands(like.curves, mean_speed(own)),
         spatiotemporal=spatiotemporal_limits(like.values),
-        beside=() if why else (*like.words, *speed_words(legs, like.values)),
+        beside=() if why else like.words,
+        nearest=like.nearest,
     )
 
 

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from gaitdisc.clinic.clinical_reference import Band, ClinicalReference, Limits, ReferenceLeg
+from gaitdisc.clinic.clinical_reference import SPEED, Band, ClinicalReference, Limits, ReferenceLeg
 from gaitdisc.errors import SchemaError
 from gaitdisc.processing.leg_curves import make_legs
 from gaitdisc.processing.pooled_cycles import PooledCycles
@@ -49,25 +49,30 @@ def make_reference(cycles: Sequence[PooledCycles], title: str, provenance: Prove
     return ClinicalReference(title, kept, settings, provenance.versions, provenance.created)
 
 
-def bands(legs: Sequence[ReferenceLeg]) -> dict[str, Band]:
-    """Mean and standard deviation over legs of every variable that two people or more have."""
+def bands(legs: Sequence[ReferenceLeg], speed: float | None = None) -> dict[str, Band]:
+    """Mean and standard deviation of every variable that two people or more have, at a speed as limits are."""
     found = {}
     for name in dict.fromkeys(name for leg in legs for name in leg.curves):
         own = [leg for leg in legs if name in leg.curves]
         people = len({leg.person for leg in own})
         if people >= 2:
-            each = np.array([leg.curves[name] for leg in own])
-            mean, counts = mean_where_known(each), np.isfinite(each).sum(axis=0)
-            spread = np.sqrt(mean_where_known((each - mean) ** 2) * counts / np.maximum(counts - 1, 1))
-            found[name] = Band(mean, np.where(counts > 1, spread, np.nan), people)
+            sample = Sample(np.array([leg.curves[name] for leg in own]), people, known_speeds(own))
+            mean, sd, far = sample.spread(speed)
+            found[name] = Band(mean, sd * np.sqrt(1 + (far or 0.0)), people, at_speed=far is not None)
     return found
+
+
+def known_speeds(legs: Sequence[ReferenceLeg]) -> NDArray[np.float64] | None:
+    """Speed of each leg [m/s]; None where one is not known."""
+    speeds = np.array([leg.values.get(SPEED, np.nan) for leg in legs])
+    return speeds if np.isfinite(speeds).all() else None
 
 
 @dataclass(frozen=True, eq=False)
 class Sample:
-    """Numbers of the reference's legs, and the speed that each was taken at where limits follow it."""
+    """Numbers or curves of the reference's legs, and the speed that each was taken at where limits follow it."""
 
-    values: NDArray[np.float64]  # (leg,)
+    values: NDArray[np.float64]  # (leg,) or (leg, phase)
     people: int
     speeds: NDArray[np.float64] | None = None  # (leg,) [m/s]
 
@@ -83,16 +88,24 @@ class Sample:
         >>> Sample(np.array([58.0, 60.0, 62.0, 60.0]), 4).limits().mean
         60.0
         """
-        mean, rest, far = float(self.values.mean()), self.values - self.values.mean(), self.leverage(speed)
-        follows = speed is not None and self.speeds is not None and far <= FARTHEST
+        mean, sd, far = self.spread(speed)
+        return limits_about(float(mean), float(sd), self.people, tests, far)
+
+    def spread(self, speed: float | None) -> tuple[NDArray[np.float64], NDArray[np.float64], float | None]:
+        """Mean and standard deviation over the legs where known; and the leverage, where both follow the speed."""
+        known, far = np.isfinite(self.values), self.leverage(speed)
+        mean, count, follows = mean_where_known(self.values), known.sum(axis=0), far <= FARTHEST
+        rest = self.values - mean
         if speed is not None and self.speeds is not None and follows:
-            own = self.speeds - self.speeds.mean()
-            slope = float(own @ self.values / (own @ own))
-            mean, rest = mean + slope * (speed - float(self.speeds.mean())), rest - slope * own
-        free = self.people - 1 - follows
-        legs = (len(self.values) - 1) * free / max(self.people - 1, 1)  # degrees of freedom of the spread over legs
-        sd = float(np.sqrt(rest @ rest / legs)) if legs > 0 else float("nan")
-        return limits_about(mean, sd, self.people, tests, far if follows else None)
+            speeds = np.where(known.T, self.speeds, np.nan).T
+            middle = mean_where_known(speeds)
+            own = speeds - middle
+            slope = mean_where_known(own * rest) / np.maximum(mean_where_known(own**2), np.finfo(float).tiny)
+            mean, rest = mean + slope * (speed - middle), rest - slope * own
+        # degrees of freedom of the spread over legs
+        legs = (count - 1) * (self.people - 1 - follows) / max(self.people - 1, 1)
+        sd = np.sqrt(mean_where_known(rest**2) * count / np.where(legs > 0, legs, np.nan))
+        return mean, sd, far if follows else None
 
 
 def limits_about(mean: float, sd: float, people: int, tests: int = 1, far: float | None = None) -> Limits:

@@ -11,8 +11,8 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
-from gaitdisc.clinic.clinical_reference import FEW, SCORE_LEAST, Limits, Noted, Profile, ReferenceLeg
-from gaitdisc.clinic.reference import FARTHEST, FEWEST, Sample, limits_about
+from gaitdisc.clinic.clinical_reference import FEW, SCORE_LEAST, SPEED, Limits, Noted, Profile, ReferenceLeg
+from gaitdisc.clinic.reference import FEWEST, Sample, known_speeds, limits_about
 from gaitdisc.errors import SchemaError
 from gaitdisc.processing.leg_curves import BY_NAME, LegCurves
 from gaitdisc.processing.pooled_cycles import SPATIOTEMPORAL
@@ -29,7 +29,6 @@ SPATIOTEMPORAL_UNITS = {
     "m": ("m", 2),
     "deg": ("deg", 1),
 }
-SPEED = "speed_m_per_s"
 SCORE = "gait profile score"
 SCORE_WORDS = "gait profile score above that of the controls"
 
@@ -153,9 +152,8 @@ def outstanding(
     if people < FEWEST:
         count = f"{people} people" if people != 1 else "1 person"
         return (), f"limits need a reference of at least {FEWEST} people; the reference has {count} in this condition"
-    wide = of_values or reference  # a speed that the group for curves lacks is on the line of everybody
-    near = wide if speed_words(legs, reference) else reference
-    known = [(rule, known_numbers(rule, wide if rule.value else near)) for rule in table or rules()]
+    wide = of_values or reference
+    known = [(rule, known_numbers(rule, wide if rule.value else reference)) for rule in table or rules()]
     samples = [(rule, sample) for rule, of_legs in known if (sample := sample_legs(of_legs)) is not None]
     numbers = []
     for rule, sample in samples:
@@ -179,19 +177,6 @@ def outstanding(
         rule = Rule(SCORE, "", value="profile_deg", part="", take="", least=SCORE_LEAST, less="", more=SCORE_WORDS)
         found.append(_note(rule, "", score.value, limits, min(leg.count for leg in legs.values())))
     return tuple(sorted(found, key=lambda one: (-one.tier, -one.excess))), ""
-
-
-def speed_words(legs: Mapping[str, LegCurves], reference: Sequence[ReferenceLeg]) -> tuple[str, ...]:
-    """What of a speed that no control walks at is allowed for."""
-    speeds = np.array([leg.values[SPEED] for leg in reference if SPEED in leg.values])
-    own = [float(leg.values[SPEED].mean()) for leg in legs.values() if SPEED in leg.values]
-    if not own or not len(speeds) or speeds.min() <= np.mean(own) <= speeds.max():
-        return ()
-    speed, sample = float(np.mean(own)), Sample(speeds, len({leg.person for leg in reference}), speeds)
-    range_words = f"{speed:.2f} m/s is outside the controls' range, {speeds.min():.2f} to {speeds.max():.2f} m/s"
-    if sample.leverage(speed) <= FARTHEST:
-        return (f"{range_words}. The limits are extrapolated to this speed by a line through the controls.",)
-    return (f"{range_words}. This is too far for a correction: deviations may be due to the speed.",)
 
 
 def _note(rule: Rule, side: str, number: float, limits: Limits, count: int) -> Noted:
@@ -239,5 +224,4 @@ def sample_legs(known: Sequence[tuple[ReferenceLeg, float]]) -> Sample | None:
     people = len({leg.person for leg, _ in known})
     if people < FEWEST:
         return None
-    speeds = np.array([leg.values.get(SPEED, np.nan) for leg, _ in known])
-    return Sample(np.array([number for _, number in known]), people, speeds if np.isfinite(speeds).all() else None)
+    return Sample(np.array([number for _, number in known]), people, known_speeds([leg for leg, _ in known]))

@@ -20,7 +20,6 @@ from gaitdisc.clinic.page_words import ENGLISH, PageWords, english_words, read_w
 from gaitdisc.clinic.person_page import index_rows, write_index, write_person_page
 from gaitdisc.clinic.person_pdf import NO_PDF, can_write_pdf
 from gaitdisc.clinic.reading import contrast, read_beside
-from gaitdisc.clinic.rules import rule_words
 from gaitdisc.errors import LOG, GaitdiscError, SchemaError, WriteError
 from gaitdisc.own_files import file_sha256
 from gaitdisc.processing.kept_parts import hash_content, keep_part, read_part
@@ -63,24 +62,14 @@ def keep_words(language: str, run_folder: Path) -> list[str]:
     if language == "en":
         remove_file(run_folder / WORDS)
         return []
-    english = _english()
-    words = read_words(Path(language), english)
-    write_words(run_folder / WORDS, english, words)
-    return [word for word in english if not words.other.get(word)]
-
-
-def write_english(path: Path) -> Path:
-    """Write the table of words that is to be filled in."""
-    return write_words(path, _english())
-
-
-def _english() -> list[str]:
-    return english_words(rule_words())
+    words = read_words(Path(language))
+    write_words(run_folder / WORDS, words)
+    return [word for word in english_words() if not words.other.get(word)]
 
 
 def load_kept_words(run_folder: Path) -> PageWords:
     """Words of the pages of a run, English where no others were kept; and what `clinic.toml` says."""
-    words = read_words(run_folder / WORDS, _english()) if (run_folder / WORDS).is_file() else ENGLISH
+    words = read_words(run_folder / WORDS) if (run_folder / WORDS).is_file() else ENGLISH
     return replace(words, laboratory=load_laboratory(run_folder))
 
 

@@ -16,9 +16,10 @@ from gaitdisc.clinic.clinical_reference import (
     PersonSession,
     Score,
 )
-from gaitdisc.clinic.page_words import ENGLISH, TIERS, PageWords
+from gaitdisc.clinic.page_words import ENGLISH, NEAREST, TIERS, PageWords
 from gaitdisc.clinic.values import MARKS
 from gaitdisc.processing.leg_curves import BY_NAME, FEET
+from gaitdisc.processing.pooled_cycles import PooledCycles
 from gaitdisc.words import SIDE_WORDS, counted, number, p_words, unit_text
 
 MOST = 6  # sentences of a tier
@@ -84,7 +85,8 @@ def outstanding_sentences(reading: ClinicalReading, say: Callable[[str], str] = 
         rest.append(say("A leg must have {} cycles to be reported; there are {}.").format(FEW, ", ".join(few)))
     people = max((band.people for band in reading.bands.values()), default=0)
     if people < MANY:
-        rest.append(say("With few controls ({}) the 95 % limits are wide: differences may be missed.").format(people))
+        which = f"{people}, {say(NEAREST[reading.nearest])}" if reading.nearest else people
+        rest.append(say("With few controls ({}) the 95 % limits are wide: differences may be missed.").format(which))
     return {**found, **({"": rest} if rest else {})}
 
 
@@ -158,9 +160,24 @@ def _meaning(score: Score) -> str:
     )
 
 
+def name_walk(pooled: PooledCycles, say: Callable[[str], str] = str) -> str:
+    """Session and condition, named as such where there are sessions."""
+    if not pooled.session:
+        return pooled.condition
+    return f"{say('session')} {pooled.session}, {say('condition')} {pooled.condition}"
+
+
+def contrast_heading(contrast: Contrast, say: Callable[[str], str] = str) -> str:
+    """Both sessions and their condition, or both conditions and their session."""
+    first, second = contrast.first.pooled, contrast.second.pooled
+    shared = f", {say('condition')} {second.condition}" if first.condition == second.condition else ""
+    shared += f", {say('session')} {second.session}" if first.session == second.session and second.session else ""
+    return " and ".join(contrast.names) + shared
+
+
 def contrast_sentences(contrast: Contrast) -> list[str]:
     """Where two sets of cycles differ and by how much; the largest first, and what was not tested."""
-    first, second = contrast.first.pooled.where, contrast.second.pooled.where
+    first, second = contrast.names
     found = []
     for side, why in contrast.untested.items():
         found.append(f"{SIDE_WORDS[side].capitalize()}: not tested; {why}")
@@ -184,6 +201,6 @@ def _span(one: DifferingSpan, contrast: Contrast) -> str:
     amount = f"{number(abs(one.difference), 0)} {variable.unit} {more} ({variable.up})"
     return (
         f"{variable.words.capitalize()}, {SIDE_WORDS[one.side]}: {amount} in"
-        f" ‘{contrast.second.pooled.where}’ than in ‘{contrast.first.pooled.where}’, at {one.first} to "
+        f" ‘{contrast.names[1]}’ than in ‘{contrast.names[0]}’, at {one.first} to "
         f"{one.last} % of the cycle; {p_words(one.p)}, {counts[0]} and {counts[1]} cycles."
     )

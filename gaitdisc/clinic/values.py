@@ -109,7 +109,7 @@ def profile_table(reading: ClinicalReading) -> Table | None:
 def change_table(contrast: Contrast) -> Table:
     """Values of both legs in the first and the second of two, and the profile scores."""
     pair = (contrast.first, contrast.second)
-    columns = ("value", *(f"{SIDE_WORDS[side]}, {one.pooled.where}" for side in FEET for one in pair))
+    columns = ("value", *(f"{SIDE_WORDS[side]}, {name}" for side in FEET for name in contrast.names))
     rows = []
     for value, (words, unit, digits) in VALUES.items():
         each = [one.legs[side].values.get(value) if side in one.legs else None for side in FEET for one in pair]
@@ -119,21 +119,16 @@ def change_table(contrast: Contrast) -> Table:
     if any(scores):
         rows.append(("gait profile score [deg]", *(number(one.value, 1) if one else NONE for one in scores)))
     caption = f"Mean ± standard deviation (cycles). A change of a profile score by {SCORE_LEAST:g} deg or more matters."
-    numbers = pd.DataFrame(rows, columns=pd.Index(columns))
+    whole = ("value", *(f"{SIDE_WORDS[side]}, {one.pooled.where}" for side in FEET for one in pair))
+    numbers = pd.DataFrame(rows, columns=pd.Index(whole))
     return Table("changes", caption, columns, tuple(rows), numbers)
 
 
-def profile_rows(profile: Profile) -> list[tuple[str, dict[str, Score]]]:
-    """Scores of both legs, curve by curve, the profile scores last."""
-    rows = [
-        (BY_NAME[n].words, {s: profile.variables[n, s] for s in FEET if (n, s) in profile.variables}) for n in PROFILE
-    ]
-    return [*rows, ("gait profile score", dict(profile.legs))]
-
-
 def profile_svg(profile: Profile, say: Callable[[str], str] = str) -> str:
-    """Bars of a profile; left above right, the reference's mean and spread behind."""
-    rows = profile_rows(profile)
+    """Bars of a profile, curve by curve, its score last; left above right, the reference's mean and spread behind."""
+    known = profile.variables
+    rows = [(BY_NAME[n].words, {s: known[n, s] for s in FEET if (n, s) in known}) for n in PROFILE]
+    rows.append(("gait profile score", dict(profile.legs)))
     shown = [score for _, scores in rows for score in scores.values()]
     ends = [(score.value, score.reference_mean + score.reference_sd) for score in shown]
     top = 1.08 * max(1e-6, *(end for both in ends for end in both if np.isfinite(end)))

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
 from dataclasses import dataclass, replace
 from typing import Any
 
@@ -93,12 +92,6 @@ def make_walks(person: Person, duration_s: float = WALK_S, hidden: str = "spring
         "contacts_r_s": {word: walk.contacts().tolist() for word, walk in walks.items()},
     }
     return Walks(person, trials, truth)
-
-
-def walk_cohort(duration_s: float = WALK_S, hidden: str = "spring") -> Iterator[Walks]:
-    """Walk the twelve for `duration_s` [s] each; only one person is in memory at a time."""
-    for person in the_twelve():
-        yield make_walks(person, duration_s, hidden)
 
 
 def _with_effect(person: Person, hidden: str) -> tuple[Spring | None, Person, float]:

@@ -107,12 +107,8 @@ def write_marker_trial(trial: Trial, folder: Path, stem: str) -> tuple[str, ...]
 
 def stiff_knee(trial: Trial, side: str) -> Trial:
     """Same walk, the knee of one side bending less in swing."""
-    knee = f"knee_angle_{side}"
-
-    def bent(angle: Values) -> Values:
-        return np.minimum(angle, STIFF_ABOVE_DEG + STIFF_SHARE * (angle - STIFF_ABOVE_DEG))
-
-    return _with_angle(trial, knee, bent)
+    top, share = STIFF_ABOVE_DEG, STIFF_SHARE
+    return _with_angle(trial, f"knee_angle_{side}", lambda angle: np.minimum(angle, top + share * (angle - top)))
 
 
 def drop_foot(trial: Trial, side: str) -> Trial:
@@ -125,7 +121,6 @@ def drop_foot(trial: Trial, side: str) -> Trial:
 
 
 PLANTED: dict[str, Callable[[Trial, str], Trial]] = {"stiff knee": stiff_knee, "drop foot": drop_foot}
-FOUND_AS = {"stiff knee": "knee flexion in swing", "drop foot": "dorsiflexion in swing"}  # rule that must speak
 
 
 def plant(trial: Trial, what: str, side: str) -> Trial:

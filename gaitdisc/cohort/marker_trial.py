@@ -15,6 +15,7 @@ Rajagopal 2016, IEEE Trans Biomed Eng 63:2068. Leardini 2005, Gait Posture 21:21
 from __future__ import annotations
 
 from dataclasses import replace
+from typing import NamedTuple
 
 import numpy as np
 
@@ -269,26 +270,25 @@ def overground(belts: Trial, start_s: float, stride_s: float, speed_m_per_s: flo
     return Trial(name, streams, subject=belts.subject, condition=belts.condition, surfaces=tuple(plates))
 
 
-class _Step:
+class _Step(NamedTuple):
     """One step on one belt: its force and its moment about the belt's middle while the foot stands, else zero."""
 
-    def __init__(self, time: Values, loads: Values, rows: slice) -> None:
-        stands = np.zeros((len(time), 1))
-        stands[rows] = 1.0
-        self.force, self.moment = loads[:, :3] * stands, loads[:, 3:] * stands
-        self.start_s, self.middle_s = float(time[rows.start]), float(0.5 * (time[rows.start] + time[rows.stop - 1]))
-        self.rows = rows
-
-    @property
-    def along_m(self) -> float:
-        """Where the pressure stands in mid-stance, from the belt's middle."""
-        middle = (self.rows.start + self.rows.stop) // 2
-        return float(-self.moment[middle, 1] / self.force[middle, 2])
+    force: Values
+    moment: Values
+    start_s: float
+    middle_s: float
+    along_m: float  # where the pressure stands in mid-stance, from the belt's middle
 
 
 def _step(forces: Recording, belt: str, after_s: float) -> _Step:
     """First step on a belt that begins after a time and ends within the recording."""
     loads = forces.selected([f"{belt}_{kind}{axis}" for kind in "fm" for axis in "xyz"]).values
-    stands = runs(loads[:, 2] > STANDS_N)
-    whole = [(a, b) for a, b in stands if forces.time[a] > after_s and b < len(loads) and b - a > 0.2 * forces.rate_hz]
-    return _Step(forces.time, loads, slice(*whole[0]))
+    time, least = forces.time, 0.2 * forces.rate_hz
+    stood = runs(loads[:, 2] > STANDS_N)
+    first, end = next((a, b) for a, b in stood if time[a] > after_s and b < len(loads) and b - a > least)
+    stands = np.zeros((len(loads), 1))
+    stands[first:end] = 1.0
+    force, moment, middle = loads[:, :3] * stands, loads[:, 3:] * stands, (first + end) // 2
+    middle_s = float(0.5 * (time[first] + time[end - 1]))
+    along_m = float(-moment[middle, 1] / force[middle, 2])
+    return _Step(force, moment, float(time[first]), middle_s, along_m)

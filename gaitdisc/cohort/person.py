@@ -139,13 +139,6 @@ class Person:
         nothing = Adaptation(0.0, 0 * self.adaptation.habit_deg, 0 * self.adaptation.effort)
         return replace(self, adaptation=nothing)
 
-    def relieve(self, relief: float) -> Person:
-        """Return the same person, who learns another share of the spring's moment.
-
-        relief: share of the spring's moment that the commands allow for, 0 to 1
-        """
-        return replace(self, adaptation=replace(self.adaptation, relief=relief))
-
     @property
     def dimensionless_speed(self) -> float:
         """Speed over the square root of gravity times leg length."""

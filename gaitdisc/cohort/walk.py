@@ -77,13 +77,6 @@ class TrueWalk:
         own = self.phase + 0.5 * side
         return np.interp(np.arange(np.ceil(own[0]), np.floor(own[-1]) + 1), own, self.quick_s)
 
-    def mean_stride(self, values: Values, side: int = 0) -> Values:
-        """Mean curve over the true phase, 101 points.
-
-        values (slow or quick, ...): a field of this walk
-        """
-        return self.strides(values, side).mean(axis=0)
-
     def strides(self, values: Values, side: int = 0) -> Values:
         """Each stride on 101 points of its true phase.
 

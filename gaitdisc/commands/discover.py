@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from gaitdisc.commands.options import Quiet
+from gaitdisc.commands.options import REFUSED, SOME_REFUSED, Quiet
 from gaitdisc.commands.run_report import stoppable
 from gaitdisc.errors import LOG, SchemaError
 from gaitdisc.own_files import claim_folder
@@ -199,3 +199,5 @@ def _everyone(people: Sequence[str], out: Path, discovered: Callable[[str, Path]
     write_csv(table, out / "people.csv", "%.6g")
     for line in lines(table):
         typer.echo(line)
+    if len(found) < len(people):
+        raise typer.Exit(SOME_REFUSED if found else REFUSED)

@@ -27,7 +27,8 @@ def report(
     ] = "",
 ) -> None:
     """Draw the page of a saved result again, without fitting; for a run, also those of modalities and sensitivity."""
-    from gaitdisc.clinic.run_pages import keep_words, write_english
+    from gaitdisc.clinic.page_words import write_words
+    from gaitdisc.clinic.run_pages import keep_words
     from gaitdisc.own_files import claim_folder
     from gaitdisc.report.saved_page import draw_saved
 
@@ -35,7 +36,7 @@ def report(
     if place.is_dir():
         claim_folder(place, "report.html", "report/report.html")
     if language and language != "en" and not Path(language).exists():
-        typer.echo(f"words: {write_english(Path(language))}. Fill in the second column and run the command again.")
+        typer.echo(f"words: {write_words(Path(language))}. Fill in the second column and run the command again.")
         return
     if language and (lacking := keep_words(language, place)):
         typer.echo(f"{len(lacking)} words remain in English: {'; '.join(lacking)}")

@@ -15,7 +15,7 @@ from gaitdisc.comparison.sentences import method_sentences, mismatch_sentences, 
 from gaitdisc.processing.curves_figure import sides_together
 from gaitdisc.report.figure import Figure, save_figures
 from gaitdisc.report.page import write_page
-from gaitdisc.report.panels import SIDES, WITHOUT_DEVICE, Room, in_style, legend, panels_for, sheets
+from gaitdisc.report.panels import SIDES, WITHOUT_DEVICE, Room, in_style, legend, legend_lines, panels_for, sheets
 from gaitdisc.report.table import Table, provenance_tables, save_table, save_tables, tabulate_findings
 from gaitdisc.words import NONE, amount, counted, label, p_cell, plain, spoken, unit_text, upwards, with_unit
 
@@ -114,20 +114,12 @@ def _bars(axes: Axes, regions: list[dict[str, Any]]) -> None:
 
 def mismatch_key(mismatch: Mismatch, kind: str) -> list[Artist]:
     """Handles of the legend of a kind of figure."""
-    from matplotlib.lines import Line2D
     from matplotlib.patches import Patch
 
-    shade = Patch(color=SHADE, alpha=0.55, label="significant gap")
+    looks = {f"{mismatch.second}, ± sd": WITHOUT_DEVICE, f"{mismatch.first}, left": SIDES["l"], "right": SIDES["r"]}
     if kind == "gap":
-        band = f"gap, {100 * (1 - mismatch.exchange.alpha):g} % band for all points and channels"
-        return [Line2D([], [], color=SIDES[""].colour, label=band), shade]
-    without = {"color": WITHOUT_DEVICE.colour, "linestyle": WITHOUT_DEVICE.line}
-    return [
-        Line2D([], [], **without, label=f"{mismatch.second}, ± sd"),
-        Line2D([], [], color=SIDES["l"].colour, label=f"{mismatch.first}, left"),
-        Line2D([], [], color=SIDES["r"].colour, label="right"),
-        shade,
-    ]
+        looks = {f"gap, {100 * (1 - mismatch.exchange.alpha):g} % band for all points and channels": SIDES[""]}
+    return [*legend_lines(looks), Patch(color=SHADE, alpha=0.55, label="significant gap")]
 
 
 def _caption(mismatch: Mismatch, kind: str, count: int) -> str:

@@ -235,7 +235,7 @@ class _LastReadings:
 
     def __init__(self, reconstructor: WindowModel) -> None:
         what = reconstructor.sensing
-        lags = what.lags.static() if reconstructor.kind in STATIC else what.lags
+        lags = Lags(1, 1) if reconstructor.kind in STATIC else what.lags
         self._model = reconstructor.model
         self._readings = np.full((lags.reach + 1, len(what.sensors)), np.nan)
         self._rows = np.arange(lags.count) * lags.spacing

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import NamedTuple
 
 import numpy as np
 import pandas as pd
@@ -123,15 +122,7 @@ class Reconstruction(Saved, file="reconstruction.json"):
         return as_html(self.title or "Reconstruction", rows)
 
 
-class OverPeople(NamedTuple):
-    """Mean over people, its standard deviation, and half of its 95 % interval (Student's t), NaN below three people."""
-
-    mean: float
-    sd: float
-    half_width: float
-
-
-def mean_over_people(values: Values) -> OverPeople:
+def mean_over_people(values: Values) -> tuple[float, float, float]:
     """Mean, standard deviation, half of Student's 95 % interval of (participant,); the latter two from three people.
 
     >>> [round(each, 3) for each in mean_over_people(np.array([1.0, 2.0, 3.0]))]
@@ -141,9 +132,9 @@ def mean_over_people(values: Values) -> OverPeople:
 
     n, mean = len(values), float(values.mean())
     if n < 3:
-        return OverPeople(mean, float("nan"), float("nan"))
+        return mean, float("nan"), float("nan")
     sd = float(values.std(ddof=1))
-    return OverPeople(mean, sd, float(t.ppf(0.975, n - 1)) * sd / float(np.sqrt(n)))
+    return mean, sd, float(t.ppf(0.975, n - 1)) * sd / float(np.sqrt(n))
 
 
 def enough_sensors(found: pd.DataFrame) -> int:

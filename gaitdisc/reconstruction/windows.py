@@ -49,10 +49,6 @@ class Lags:
         """Samples from the first reading of a window to its last."""
         return (self.count - 1) * self.spacing
 
-    def static(self) -> Lags:
-        """Return the window that holds the present reading alone."""
-        return Lags(1, 1)
-
 
 def cut_windows(
     recording: Recording,

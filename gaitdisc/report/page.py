@@ -14,8 +14,8 @@ from typing import Any, Generic, TypeVar
 from gaitdisc._version import __version__
 from gaitdisc.own_files import note_outputs, under_this_guard
 from gaitdisc.report.figure import Figure, SavedFigure, save_figures
-from gaitdisc.report.table import Table, as_markdown, save_tables
-from gaitdisc.whole_file import whole_file, write_whole
+from gaitdisc.report.table import Table, save_tables
+from gaitdisc.whole_file import whole_file
 
 Result = TypeVar("Result")
 Shown = TypeVar("Shown", Figure, SavedFigure)
@@ -66,18 +66,6 @@ def save_block(block: Block[Figure], folder: Path) -> Block[SavedFigure]:
     figures = tuple(save_figures(block.figures, folder))
     save_tables(block.tables, folder)
     return Block(block.anchor, block.heading, block.sentences, figures, block.tables)
-
-
-def write_blocks(title: str, about: str, blocks: Sequence[Block[Figure]], folder: Path) -> Path:
-    """Write a page of blocks: `report.html`, `figures/` and `tables/`."""
-    saved = [save_block(block, folder) for block in blocks]
-    return write_page("blocks", {"title": title, "about": about, "blocks": saved}, folder)
-
-
-def write_markdown(blocks: Sequence[Block[Figure]], folder: Path) -> Path:
-    """Write all tables of a page once more as Markdown, each under the heading of its block: `tables.md`."""
-    text = "\n\n".join(f"{block.heading}\n\n{as_markdown(table)}" for block in blocks for table in block.tables)
-    return write_whole(folder / "tables.md", text + "\n")
 
 
 def draw_side_by_side(draw: Callable[..., Result], each: Sequence[tuple[Any, ...]], alone: int) -> list[Result]:

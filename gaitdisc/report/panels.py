@@ -108,16 +108,6 @@ def legend_lines(looks: Mapping[str, Look | Mapping[str, Any]]) -> list[Artist]:
     return [Line2D([], [], label=words, **style) for words, style in plain.items()]
 
 
-def decades(axes: Axes) -> None:
-    """Make the vertical axis logarithmic, with plain numbers at 1, 2 and 5 of every decade."""
-    from matplotlib.ticker import LogLocator, NullFormatter
-
-    axes.set_yscale("log")
-    axes.yaxis.set_major_locator(LogLocator(subs=(1.0, 2.0, 5.0)))
-    axes.yaxis.set_major_formatter(lambda value, _: f"{value:g}")
-    axes.yaxis.set_minor_formatter(NullFormatter())
-
-
 def in_style(draw: Callable[Arguments, Result]) -> Callable[Arguments, Result]:
     """Let a function draw in the report's style, whatever the user's own style is."""
 

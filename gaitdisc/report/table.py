@@ -51,20 +51,6 @@ def save_table(table: pd.DataFrame, path: Path, rest: Iterable[pd.DataFrame] = (
     write_csv(table, path, "%.8g", rest)
 
 
-def as_markdown(table: Table) -> str:
-    """Return a table as documents of the project hold it.
-
-    >>> print(as_markdown(words_table("s", "", ("where", "ours"), [("3.4", "a")])))
-    | where | ours |
-    |---|---|
-    | 3.4 | a |
-    """
-    groups = [group for group, count in table.groups for _ in range(count)] or [""] * len(table.columns)
-    heads = [f"{group}: {name}" if group else name for group, name in zip(groups, table.columns, strict=True)]
-    lines = ["| " + " | ".join(cell.replace("\n", " ") for cell in row) + " |" for row in (heads, *table.rows)]
-    return "\n".join([lines[0], "|" + "---|" * len(heads), *lines[1:]])
-
-
 def tabulate_findings(findings: Sequence[Finding], caption: str, what: str = "what") -> Table:
     """What was seen in the files, in the order given.
 

@@ -167,7 +167,7 @@ def mean_interval(residuals: NDArray[np.float64]) -> StrideMean:
         return mean_over_strides(residuals, CONFIDENCE)
     mean, count = mean_where_known(residuals), np.isfinite(residuals).sum(axis=0)
     none = np.full_like(mean, np.nan)
-    return StrideMean(mean, none, none, count, np.full(mean.shape[1], float(len(residuals))), CONFIDENCE)
+    return StrideMean(mean, none, none, count, CONFIDENCE)
 
 
 def _residual_figure(response: ParticipantResponse, numbers: pd.DataFrame, name: str) -> Figure:

@@ -12,23 +12,17 @@ from numpy.typing import NDArray
 from gaitdisc.errors import ComparisonError
 from gaitdisc.response.participant_response import BASELINES, MODELS, DataQuantity, ParticipantResponse
 from gaitdisc.response.participants_result import (
-    BASELINE_COLUMNS,
     FAMILIES,
-    FAMILY_COLUMNS,
-    LENGTH_COLUMNS,
     PAIRS,
-    REDUCTION_COLUMNS,
-    REDUCTION_TEST_COLUMNS,
     RESPONDER_COLUMNS,
-    TEST_COLUMNS,
     WHOLE,
     OverParticipants,
     PairTests,
-    no_rows,
+    join_rows,
 )
 from gaitdisc.statistics.groups import FEWEST as FEWEST_GROUPED
 from gaitdisc.statistics.groups import find_groups
-from gaitdisc.statistics.holm_sidak import holm_sidak, holm_sidak_by
+from gaitdisc.statistics.holm_sidak import holm_sidak
 from gaitdisc.statistics.signed_rank import signed_rank, smallest_p
 from gaitdisc.statistics.stride_residuals import LEAST_STRIDES, mean_over_strides
 
@@ -45,7 +39,7 @@ def compare_baselines(responses: Sequence[ParticipantResponse]) -> pd.DataFrame:
     Corrected over one model's and baseline's variables; a network shown to be no better there earns nothing.
     """
     if len(responses) < FEWEST:
-        return no_rows("baselines")
+        return join_rows("baselines")
     null = r2_by_participant(responses, "nominal", "null")
     parts = []
     for model in MODELS:
@@ -53,7 +47,7 @@ def compare_baselines(responses: Sequence[ParticipantResponse]) -> pd.DataFrame:
         for kind in BASELINES:
             baseline = null if kind == "null" else r2_by_participant(responses, model, kind)
             parts.append(compare_columns(baseline, network).assign(model=model, first=kind, second="network"))
-    return pd.concat(parts, ignore_index=True)[list(BASELINE_COLUMNS)]
+    return join_rows("baselines", parts)
 
 
 def compare_lengths(quantities: Sequence[DataQuantity]) -> pd.DataFrame:
@@ -64,7 +58,7 @@ def compare_lengths(quantities: Sequence[DataQuantity]) -> pd.DataFrame:
     Source: Ebers 2023, section 4.2.4, comparisons (i) and (ii). The family is not said there.
     """
     if len(quantities) < FEWEST:
-        return no_rows("lengths")
+        return join_rows("lengths")
     table = pd.concat([one.table.assign(participant=one.participant) for one in quantities], ignore_index=True)
     table = table[(table["kind"] == "network") & (table["walk"] == "exo")]
     longest = table.groupby("participant")["length_s"].transform("max")
@@ -74,7 +68,7 @@ def compare_lengths(quantities: Sequence[DataQuantity]) -> pd.DataFrame:
         augmented, exo = (by_participant(rows[rows["model"] == model]).reindex_like(whole) for model in MODELS[1:])
         for first, second, pair in (("augmented", "exo", (augmented, exo)), ("exo", WHOLE, (exo, whole))):
             parts.append(compare_columns(*pair).assign(length_s=length, first=first, second=second))
-    return pd.concat(parts, ignore_index=True)[list(LENGTH_COLUMNS)]
+    return join_rows("lengths", parts)
 
 
 def by_participant(table: pd.DataFrame, values: str = "r2") -> pd.DataFrame:
@@ -95,28 +89,18 @@ def residual_reductions(responses: Sequence[ParticipantResponse]) -> pd.DataFram
         participant. How the magnitude is measured is not said; both usual readings are given. An average over n
         strides keeps 1/n of the variance between strides, so the reduction stays below 1 even where nothing is missed.
     """
-    tables = [_of_one(response) for response in responses]
-    if not tables:
-        return no_rows("reductions")
-    return pd.concat(tables, ignore_index=True)[list(REDUCTION_COLUMNS)]
+    return join_rows("reductions", [_of_one(response) for response in responses])
 
 
 def compare_reductions(reductions: pd.DataFrame) -> pd.DataFrame:
     """Test reductions against zero, a family a measure and model; Hodges-Lehmann shift and 95 % interval."""
     if reductions["participant"].nunique() < FEWEST:
-        return no_rows("reduction_tests")
+        return join_rows("reduction_tests")
     parts = []
     for measure, model in product(MEASURES, MODELS[1:]):
         reduced = by_participant(reductions[reductions["model"] == model], f"{measure}_reduction")
         parts.append(compare_columns(reduced * 0.0, reduced).assign(measure=measure, first="nominal", second=model))
-    return pd.concat(parts, ignore_index=True)[list(REDUCTION_TEST_COLUMNS)]
-
-
-def representative(reductions: pd.DataFrame) -> str:
-    """Pseudonym whose reduction of the root mean square by Augmented is nearest the median; the first, or empty."""
-    augmented = reductions[reductions["model"] == "augmented"]
-    middle = augmented.groupby("participant", sort=False)["rms_reduction"].median().dropna()
-    return str((middle - middle.median()).abs().idxmin()) if len(middle) else ""
+    return join_rows("reduction_tests", parts)
 
 
 def _of_one(response: ParticipantResponse) -> pd.DataFrame:
@@ -150,11 +134,11 @@ def responder_table(responses: Sequence[ParticipantResponse], seed: int = 0) -> 
     who = f"n = {len(complete)} participants{left_out}"
     if len(complete) < FEWEST_GROUPED:
         verdict = f"Sub-groups were not tested, because the test requires {FEWEST_GROUPED} participants ({who})"
-        return no_rows("responders"), verdict
+        return join_rows("responders"), verdict
     try:
         groups = find_groups(discrepancy_curves(complete), seed=seed)
     except ComparisonError as error:
-        return no_rows("responders"), f"Sub-groups were not tested: {error}"
+        return join_rows("responders"), f"Sub-groups were not tested: {error}"
     numbers = (groups.count, groups.silhouette, groups.p, groups.stability)
     rows = [
         (response.participant, int(group), *numbers) for response, group in zip(complete, groups.labels, strict=True)
@@ -205,12 +189,11 @@ def compare_models(responses: Sequence[ParticipantResponse]) -> PairTests:
     models = {model: r2_by_participant(responses, model) for model in ("nominal", "augmented", "exo")}
     models["perfect"] = models["exo"].where(models["exo"].isna(), 1.0)
     if len(responses) < FEWEST:
-        empty = pd.DataFrame(columns=pd.Index(TEST_COLUMNS)), pd.DataFrame(columns=pd.Index(FAMILY_COLUMNS))
+        empty = join_rows("tests"), join_rows("families")
         return PairTests(len(responses), ALPHA, LEVEL, too_few(len(responses)), *empty)
-    tests = pd.concat(
-        [compare_columns(models[a], models[b]).assign(first=a, second=b) for a, b in PAIRS], ignore_index=True
-    )
-    return PairTests(len(responses), ALPHA, LEVEL, "", tests[list(TEST_COLUMNS)], by_family(tests))
+    tests = [compare_columns(models[a], models[b]).assign(first=a, second=b) for a, b in PAIRS]
+    joined = join_rows("tests", tests)
+    return PairTests(len(responses), ALPHA, LEVEL, "", joined, by_family(joined))
 
 
 def compare_columns(first: pd.DataFrame, second: pd.DataFrame, alpha: float = ALPHA) -> pd.DataFrame:
@@ -236,17 +219,13 @@ def compare_columns(first: pd.DataFrame, second: pd.DataFrame, alpha: float = AL
 def by_family(tests: pd.DataFrame) -> pd.DataFrame:
     """Tests (first, second, variable, p) of three pairs corrected under every family meant: `FAMILY_COLUMNS`."""
     chosen = tests[tests["p"].notna() & (tests["second"] != "perfect")]
-    families = {
-        "pair": (chosen["first"] + " " + chosen["second"]).tolist(),
-        "all": ["all"] * len(chosen),
-        "variable": chosen["variable"].tolist(),
-    }
+    families = {"pair": ["first", "second"], "all": np.zeros(len(chosen)), "variable": "variable"}
     parts = []
     for name in FAMILIES:
-        for family, corrected in holm_sidak_by(chosen["p"].to_numpy(), families[name], ALPHA).items():
-            rows = chosen.loc[np.array(families[name]) == family, ["first", "second", "variable"]]
+        for _, rows in chosen.groupby(families[name], sort=False):
+            corrected = holm_sidak(rows["p"], ALPHA)
             parts.append(
-                rows.assign(
+                rows[["first", "second", "variable"]].assign(
                     family=name,
                     tests=len(rows),
                     critical=corrected.critical,
@@ -255,9 +234,7 @@ def by_family(tests: pd.DataFrame) -> pd.DataFrame:
                     different=corrected.rejected,
                 )
             )
-    if not parts:
-        return pd.DataFrame(columns=pd.Index(FAMILY_COLUMNS))
-    return pd.concat(parts, ignore_index=True)[list(FAMILY_COLUMNS)]
+    return join_rows("families", parts)
 
 
 def r2_by_participant(responses: Sequence[ParticipantResponse], model: str, kind: str = "network") -> pd.DataFrame:

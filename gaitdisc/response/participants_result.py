@@ -105,9 +105,10 @@ def table_of_people(people: Sequence[Any], field: str, columns: Sequence[str]) -
     return pd.concat(tables, ignore_index=True)[every] if tables else pd.DataFrame(columns=pd.Index(every))
 
 
-def no_rows(name: str) -> pd.DataFrame:
-    """Table of that name without any row."""
-    return pd.DataFrame(columns=pd.Index(TABLES[name]))
+def join_rows(name: str, parts: Sequence[pd.DataFrame] = ()) -> pd.DataFrame:
+    """Table of that name, its parts one below the other."""
+    columns = {**TABLES, "tests": TEST_COLUMNS, "families": FAMILY_COLUMNS}[name]
+    return pd.concat(parts, ignore_index=True)[list(columns)] if parts else pd.DataFrame(columns=pd.Index(columns))
 
 
 TESTS = Kind(

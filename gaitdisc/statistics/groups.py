@@ -81,6 +81,8 @@ def best_cut(features: NDArray[np.float64]) -> tuple[NDArray[np.intp], float]:
     features (participant, feature): complete
     returns labels (participant,): from 1; all 1 where no cut leaves two in every group
     """
+    from sklearn.metrics import silhouette_score  # which takes a second
+
     between = pdist(features)
     tree = linkage(between, "ward")
     distances = squareform(between)
@@ -89,58 +91,19 @@ def best_cut(features: NDArray[np.float64]) -> tuple[NDArray[np.intp], float]:
         labels = np.asarray(fcluster(tree, count, "maxclust"), np.intp)
         if np.bincount(labels)[1:].min() < 2 or labels.max() < 2:
             continue
-        value = mean_silhouette(distances, labels)
+        value = float(silhouette_score(distances, labels, metric="precomputed"))
         if value > highest:
             best, highest = labels, value
     return best, highest
 
 
-def mean_silhouette(distances: NDArray[np.float64], labels: NDArray[np.intp]) -> float:
-    """Mean over participants of (b - a) / max(a, b): a to the own group, b to the nearest other.
-
-    distances (participant, participant): symmetric
-    labels (participant,): two groups or more, each of two or more
-
-    >>> x = np.array([0.0, 1.0, 10.0, 11.0])
-    >>> round(mean_silhouette(np.abs(x[:, None] - x), np.array([1, 1, 2, 2])), 3)
-    0.9
-    """
-    member = labels[:, None] == np.unique(labels)
-    own = member.argmax(axis=1)
-    sums, sizes = distances @ member, member.sum(axis=0)
-    rows = np.arange(len(labels))
-    a = sums[rows, own] / (sizes[own] - 1)
-    others = sums / sizes
-    others[rows, own] = np.inf
-    b = others.min(axis=1)
-    larger = np.maximum(a, b)
-    return float(np.mean(np.divide(b - a, larger, out=np.zeros_like(a), where=larger > 0)))
-
-
-def adjusted_rand(first: NDArray[np.intp], second: NDArray[np.intp]) -> float:
-    """Agreement of two groupings: 1 the same, 0 as by chance.
-
-    first, second (participant,): labels; their names do not matter
-
-    >>> adjusted_rand(np.array([1, 1, 2, 2]), np.array([2, 2, 1, 1]))
-    1.0
-    """
-    table = (first[:, None] == np.unique(first)).T.astype(float) @ (second[:, None] == np.unique(second))
-    together, rows, columns = (_pairs(part) for part in (table, table.sum(axis=1), table.sum(axis=0)))
-    by_chance = rows * columns / _pairs(np.array([len(first)]))
-    most = (rows + columns) / 2
-    return float((together - by_chance) / (most - by_chance)) if most != by_chance else 1.0
-
-
-def _pairs(counts: NDArray[np.float64]) -> float:
-    return float(np.sum(counts * (counts - 1) / 2))
-
-
 def _stability(features: NDArray[np.float64], labels: NDArray[np.intp], rng: np.random.Generator) -> float:
+    from sklearn.metrics import adjusted_rand_score
+
     kept = max(FEWEST - 1, round(SHARE_KEPT * len(features)))
     found = []
     for _ in range(SUBSAMPLES):
         chosen = rng.choice(len(features), kept, replace=False)
         again = fcluster(linkage(features[chosen], "ward"), int(labels.max()), "maxclust")
-        found.append(adjusted_rand(labels[chosen], np.asarray(again, np.intp)))
+        found.append(adjusted_rand_score(labels[chosen], again))
     return float(np.mean(found))

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -98,14 +97,3 @@ def check_level(level: float, name: str) -> None:
         raise ComparisonError(
             f"{name} must be a probability between 0 and 1", f"found {level:g}", "Write 0.05 for 5 %, 0.95 for 95 %."
         )
-
-
-def holm_sidak_by(p: ArrayLike, families: Sequence[str], alpha: float = 0.05) -> dict[str, StepDown]:
-    """Correct several families, each by itself, in the order in which they come.
-
-    >>> found = holm_sidak_by([0.01, 0.02, 0.03], ["a", "b", "a"])
-    >>> [family.adjusted.round(4).tolist() for family in found.values()]
-    [[0.0199, 0.03], [0.02]]
-    """
-    values, names = np.asarray(p, float).ravel(), np.asarray(families)
-    return {name: holm_sidak(values[names == name], alpha) for name in dict.fromkeys(families)}

@@ -66,7 +66,6 @@ class StrideMean:
     low: NDArray[np.float64]  # (phase, column) [each column's unit], lower end of the interval
     high: NDArray[np.float64]  # (phase, column) [each column's unit], upper end of the interval
     strides: NDArray[np.intp]  # (phase, column), strides with a value
-    effective: NDArray[np.float64]  # (column,), how many independent strides they are worth
     level: float  # of the interval, at each point by itself: the curve as a whole leaves it more often
 
     @property
@@ -112,14 +111,13 @@ def mean_over_strides(curves: NDArray[np.float64], level: float = 0.95) -> Strid
     there = np.isfinite(curves)
     count = there.sum(axis=0)
     enough = count >= LEAST_STRIDES
-    mean = np.where(there, curves, 0.0).sum(axis=0) / np.maximum(count, 1)
+    mean = mean_where_known(curves)
     apart = np.where(there, curves - mean, 0.0)
     sd = np.sqrt((apart**2).sum(axis=0) / np.maximum(count - 1, 1))
-    effective = effective_strides(curves)
-    worth = np.maximum(count * effective / len(curves), 2.0)
+    worth = np.maximum(count * effective_strides(curves) / len(curves), 2.0)
     half = student.ppf(0.5 + level / 2, worth - 1) * sd / np.sqrt(worth)
     mean, half = np.where(enough, mean, np.nan), np.where(enough, half, np.nan)
-    return StrideMean(mean, mean - half, mean + half, count, effective, level)
+    return StrideMean(mean, mean - half, mean + half, count, level)
 
 
 def effective_strides(curves: NDArray[np.float64]) -> NDArray[np.float64]:
@@ -129,8 +127,7 @@ def effective_strides(curves: NDArray[np.float64]) -> NDArray[np.float64]:
     """
     n = len(curves)
     there = np.isfinite(curves)
-    mean = np.where(there, curves, 0.0).sum(axis=0) / np.maximum(there.sum(axis=0), 1)
-    apart = np.where(there, curves - mean, 0.0)
+    apart = np.where(there, curves - mean_where_known(curves), 0.0)
     power = (apart**2).sum(axis=(0, 1))
     raw = (apart[1:] * apart[:-1]).sum(axis=(0, 1)) / np.where(power > 0, power, 1.0)
     rho = np.clip((n * raw + 1.0) / (n - 4.0) if n > LEAST_STRIDES else raw, 0.0, 0.99)

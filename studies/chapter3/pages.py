@@ -10,11 +10,12 @@ from typing import TYPE_CHECKING
 import numpy as np
 import pandas as pd
 from further import Result, write_page
+from log_axis import decades
 from numpy.typing import NDArray
 
 from gaitdisc.report.figure import Figure
 from gaitdisc.report.page import Block
-from gaitdisc.report.panels import Look, Room, decades, in_style, legend, legend_lines, panels
+from gaitdisc.report.panels import Look, Room, in_style, legend, legend_lines, panels
 from gaitdisc.report.table import Table, save_table, words_table
 from gaitdisc.words import unit_text
 

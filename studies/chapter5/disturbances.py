@@ -8,6 +8,7 @@ from typing import Any
 
 import numpy as np
 import pandas as pd
+from log_axis import decades
 from numpy.typing import NDArray
 
 from gaitdisc import Channel, Recording, Samples
@@ -27,7 +28,7 @@ from gaitdisc.reconstruction.window_model import (
 from gaitdisc.reconstruction.windows import Parts, fill_readings, split_within, with_missing
 from gaitdisc.report.figure import Figure
 from gaitdisc.report.page import Block
-from gaitdisc.report.panels import RECONSTRUCTED, Room, decades, in_style, legend, panels
+from gaitdisc.report.panels import RECONSTRUCTED, Room, in_style, legend, panels
 from gaitdisc.report.table import save_table
 from gaitdisc.words import listing
 

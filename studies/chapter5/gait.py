@@ -11,6 +11,7 @@ from typing import Any, NamedTuple
 import numpy as np
 import pandas as pd
 from command_line import SHARED
+from log_axis import decades
 
 import gaitdisc as gd
 from gaitdisc.channel import vocabulary
@@ -22,7 +23,7 @@ from gaitdisc.reconstruction.reconstruct_study import ReconstructionSettings, re
 from gaitdisc.reconstruction.reconstruction import CALIBRATED, mean_over_people
 from gaitdisc.reconstruction.window_model import KINDS, OF_TEXT, WITHOUT_NETWORK
 from gaitdisc.report.figure import Figure
-from gaitdisc.report.panels import RECONSTRUCTED, Room, decades, draw_box, in_style, legend, panels
+from gaitdisc.report.panels import RECONSTRUCTED, Room, draw_box, in_style, legend, panels
 from gaitdisc.report.table import Table
 from gaitdisc.words import counted, listing, number, unit_text
 

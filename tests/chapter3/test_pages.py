@@ -11,9 +11,8 @@ from chapter3.pages import (
     horizon_figure,
     system_figure,
 )
+from markdown_table import as_markdown
 from texts import says
-
-from gaitdisc.report.table import as_markdown
 
 TIME = np.arange(301) / 10
 TRUTH = np.column_stack([np.sin(TIME), np.cos(TIME)])

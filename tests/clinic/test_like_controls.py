@@ -85,9 +85,12 @@ def test_groups_of_ten_by_age_and_speed():
 def test_a_person_is_beside_the_group_that_is_nearest(age, froude, who, words):
     legs = controls(12, age=9, leg_m=0.65) + controls(11, first=20) + controls(10, first=40, froude=0.25)
     found = like_controls(legs, (own_leg(0.8, froude),), 0.8, age)
-    assert {leg.person for leg in found.curves} == set(who)
+    assert {leg.person for leg in found.group} == set(who)
     assert words in found.words[0]
     whole = set(range(12)) if age < 18 else {*range(20, 31), *range(40, 50)}
+    far = froude != 0.45  # a speed that nobody of the group walks at is on the line of everybody
+    assert {leg.person for leg in found.curves} == (whole if far else set(who))
+    assert found.nearest == "age" and (age < 18 or says(" ".join(found.words), "distances and curves", "outside"))
     assert {leg.person for leg in found.values} == whole  # a slow walker's speed is beside that of all speeds
 
 
@@ -97,6 +100,35 @@ def test_all_of_them_and_why():
     legs = controls(12, age=9) + controls(12, first=20)
     unknown = like_controls(legs, (), None, None)
     assert len(unknown.curves) == 48 and says(unknown.words[0], "age and speed", "unknown")
+
+
+def test_a_band_is_at_the_speed_that_the_limits_of_its_sentences_are_at():
+    """Knee flexion 20 deg at the slowest and 10 deg more for each m/s, with 1 deg of its own on either side."""
+    made = controls(20)
+    legs = tuple(
+        replace(leg, curves={"knee_flexion": np.full(101, 20 + 10 * leg.values["speed_m_per_s"] + (leg.side == "l"))})
+        for leg in made
+    )
+    speeds = np.array([leg.values["speed_m_per_s"] for leg in legs])
+    slow, quick = (bands(legs, speed)["knee_flexion"] for speed in (speeds.min(), speeds.max()))
+    assert quick.mean - slow.mean == pytest.approx(np.full(101, 10 * np.ptp(speeds)))
+    limits = Sample(np.array([leg.curves["knee_flexion"][0] for leg in legs]), 20, speeds).limits(1, speeds.min())
+    assert (slow.mean[0], slow.sd[0], slow.people) == pytest.approx((limits.mean, limits.sd, limits.people))
+    assert slow.at_speed and not bands(legs)["knee_flexion"].at_speed
+    assert not bands(legs, 10.0)["knee_flexion"].at_speed  # m/s: too far for a line
+
+
+def test_a_point_that_few_legs_know_has_their_mean_and_spread_at_a_speed_too():
+    made = controls(12)
+    curve = np.linspace(0.0, 60.0, 101)
+    ended = np.where(np.arange(101) < 90, curve, np.nan)
+    legs = tuple(replace(leg, curves={"knee_flexion": curve if k < 20 else ended}) for k, leg in enumerate(made))
+    few = tuple(replace(leg, curves={"knee_flexion": curve if k < 1 else ended}) for k, leg in enumerate(made))
+    speed = float(np.mean([leg.values["speed_m_per_s"] for leg in made]))
+    np.testing.assert_allclose(bands(legs, speed)["knee_flexion"].mean, curve, atol=1e-9)
+    assert (
+        np.isnan(bands(few, speed)["knee_flexion"].sd[95]) and bands(few, speed)["knee_flexion"].mean[95] == curve[95]
+    )
 
 
 def test_what_a_run_knows_of_size_and_age_reaches_the_reading():

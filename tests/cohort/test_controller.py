@@ -40,8 +40,8 @@ def test_a_slack_spring_teaches_nothing():
 
 
 def test_relief_lets_soleus_rest():
-    person = draw_one("A", 1, "f").relieve(0.6)
-    person = type(person)(**{**vars(person), "adaptation": person.unadapted().relieve(0.6).adaptation})
+    person = draw_one("A", 1, "f").unadapted()
+    person = replace(person, adaptation=replace(person.adaptation, relief=0.6))
     soleus = COLUMNS.excitation + 4
     before = learnt_table(person, 0)[:, soleus]
     after = learnt_table(person.adapt_to(Spring(5.0)), 0)[:, soleus]

@@ -65,7 +65,10 @@ def test_the_envelope_follows_the_excitation(trials, nominal):
     low = butter(4, ENVELOPE_HZ, fs=QUICK_HZ, output="sos")
     driven = np.roll(sosfiltfilt(low, nominal.excitation[:, 0], axis=0), -round(DELAY_S * QUICK_HZ), axis=0)
     for muscle, name in enumerate(MUSCLES):
-        seen, true = nominal.mean_stride(envelope[f"{name}_r"]), nominal.mean_stride(driven[:, muscle])
+        seen, true = (
+            nominal.strides(envelope[f"{name}_r"]).mean(axis=0),
+            nominal.strides(driven[:, muscle]).mean(axis=0),
+        )
         assert np.corrcoef(seen, true)[0, 1] > 0.99, name
 
 
@@ -77,8 +80,8 @@ def test_quality_checks_find_nothing_in_a_clean_walk(trials):
 def test_emg_can_be_late(nominal):
     late = measure(nominal, "C", "exo", emg_late_s=0.05).stream("emg")
     timely = measure(nominal, "C", "exo").stream("emg")
-    first = nominal.mean_stride(envelopes(timely)["emg_ta_r"])
-    second = nominal.mean_stride(envelopes(late)["emg_ta_r"])
+    first = nominal.strides(envelopes(timely)["emg_ta_r"]).mean(axis=0)
+    second = nominal.strides(envelopes(late)["emg_ta_r"]).mean(axis=0)
     lags = [np.dot(np.roll(first - first.mean(), k), second - second.mean()) for k in range(12)]
     assert int(np.argmax(lags)) == pytest.approx(0.05 / nominal.person.stride_s * 100, abs=1.5)
 

@@ -276,10 +276,17 @@ def test_of_a_study_everyone_is_searched_and_who_is_refused_costs_nobody_else(la
 
     monkeypatch.setattr("gaitdisc.discovery.discover_device.discover_study", searched)
     words = ("--participant", "all:knee_angle", "--out", tmp_path / "found", "--no-report", "-q")
-    done = called("discover", tmp_path / "study.toml", *words, ends=0)
+    done = called("discover", tmp_path / "study.toml", *words, ends=3)
     assert says(done.stderr, "walks of W02", "turn: refused: walks are needed")
     assert says(done.stdout, "2 of 2", "286")
     people = pd.read_csv(tmp_path / "found" / "people.csv").query("number == 'stiffness'")
     assert people[["condition", "who"]].values.tolist() == [[word, "W01 286, W03 286"] for word in ("exo", "soft")]
     for folder in ("W03", "W03/W03-soft"):
         assert load_discovery(tmp_path / "found" / folder).verdict == "missing_physics"
+
+    def refused(_, who, *rest):
+        raise GaitdiscError(f"walks of {who} are needed", "one is there", "Name the other.")
+
+    monkeypatch.setattr("gaitdisc.discovery.discover_device.discover_study", refused)
+    done = called("discover", tmp_path / "study.toml", *words, "--overwrite", ends=1)
+    assert done.stderr.count("refused: walks of W0") == 3 and done.stdout.split() == ["W01:", "W02:", "W03:"]

@@ -51,7 +51,7 @@ def test_one_person_before_and_after_beside_a_reference(called, run_folder, tmp_
     assert "6 controls of the laboratory" in (run_folder / "report" / "people" / "P07_s1.html").read_text()
     both = called("report", run_folder, "--person", "P07", "--before", "s1", "--after", "s2", ends=0)
     assert "P07_s1_s2.html" in both.stdout
-    assert "s1 walk and s2 walk" in (run_folder / "report" / "people" / "P07_s1_s2.html").read_text()
+    assert "s1 and s2, condition walk" in (run_folder / "report" / "people" / "P07_s1_s2.html").read_text()
 
 
 def test_what_is_not_there_is_refused_in_words(called, run_folder, tmp_path):

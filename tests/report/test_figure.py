@@ -6,6 +6,7 @@ import matplotlib as mpl
 import numpy as np
 import pandas as pd
 import pytest
+from log_axis import decades
 from matplotlib.figure import Figure as Drawing
 
 from gaitdisc.report.figure import Figure, file_names, save_figure
@@ -16,7 +17,6 @@ from gaitdisc.report.panels import (
     WITHOUT_DEVICE,
     Room,
     axes_or_new,
-    decades,
     draw_box,
     fonts_found,
     in_style,

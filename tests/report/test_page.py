@@ -6,12 +6,13 @@ import numpy as np
 import pandas as pd
 import pytest
 from chapter3.pages import statements_table
+from further import write_page as write_study_page
 from texts import says
 
 import gaitdisc
 from gaitdisc.own_files import claim_folder, guard
 from gaitdisc.recording import Finding
-from gaitdisc.report.page import Block, draw_side_by_side, save_block, write_blocks, write_markdown, write_page
+from gaitdisc.report.page import Block, draw_side_by_side, save_block, write_page
 from gaitdisc.report.table import (
     Table,
     flatten,
@@ -42,20 +43,15 @@ def test_a_block_lies_on_disk_as_it_is_shown(tmp_path):
     assert (tmp_path / "tables" / "sizes.csv").read_text() == "a\n1\n"
 
 
-def test_the_page_holds_its_blocks_and_the_tables_lie_beside(tmp_path):
-    table = statements_table([("Fig. 3.3", "no error remains", "99.7 %")], "stated")
-    page = write_blocks("Chapter 3", "About.", [Block("a", "Stated", ("One sentence.",), tables=(table,))], tmp_path)
+def test_the_page_of_a_study_holds_its_blocks_and_all_tables_lie_beside_once_more_as_markdown(tmp_path):
+    tables = tuple(statements_table([("3.4", "no error remains", "99.7 %")], name) for name in "st")
+    blocks = [Block("a", "Stated", ("One sentence.",), tables=tables), Block("b", "Nothing", ("None.",))]
+    page = write_study_page({}, blocks, "Chapter 3", "section 3.4", tmp_path).page
     text = page.read_text(encoding="utf-8")
-    assert "One sentence." in text
-    assert "99.7" in text
-    assert (tmp_path / "tables" / "stated.csv").exists()
-
-
-def test_all_tables_once_more_as_markdown(tmp_path):
-    block = Block("a", "Stated", (), tables=tuple(statements_table([("3.4", "a", "b")], name) for name in "st"))
-    text = write_markdown([block, Block("b", "Nothing", ("One sentence.",))], tmp_path).read_text(encoding="utf-8")
-    table = "Stated\n\n| where | dissertation | ours |\n|---|---|---|\n| 3.4 | a | b |"
-    assert text == f"{table}\n\n{table}\n"
+    assert "One sentence." in text and "99.7" in text
+    assert (tmp_path / "tables" / "s.csv").exists()
+    table = "Stated\n\n| where | dissertation | ours |\n|---|---|---|\n| 3.4 | no error remains | 99.7 % |"
+    assert (tmp_path / "tables.md").read_text(encoding="utf-8") == f"{table}\n\n{table}\n"
 
 
 def _where(word):

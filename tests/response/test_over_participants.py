@@ -5,6 +5,7 @@ from types import SimpleNamespace
 import numpy as np
 import pandas as pd
 import pytest
+from ch4_ours import representative
 from texts import says
 
 from gaitdisc.errors import ComparisonError
@@ -17,7 +18,6 @@ from gaitdisc.response.over_participants import (
     compare_participants,
     compare_reductions,
     discrepancy_curves,
-    representative,
     residual_reductions,
     responder_table,
     too_few,

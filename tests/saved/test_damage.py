@@ -16,7 +16,7 @@ from texts import says
 from gaitdisc.errors import GaitdiscError, SchemaError
 from gaitdisc.processing.pooled_cycles import WALK
 from gaitdisc.response.participant_response import QUANTITY, QUANTITY_COLUMNS, RESPONSE, DataQuantity, load_run
-from gaitdisc.response.participants_result import OVER, TABLES, TESTS, OverParticipants, no_rows
+from gaitdisc.response.participants_result import OVER, TABLES, TESTS, OverParticipants, join_rows
 from gaitdisc.response.variants import (
     VARIANT_COLUMNS,
     VARIANT_TEST_COLUMNS,
@@ -56,7 +56,7 @@ def everything(tmp_path_factory):
 def folder(everything, run, pair_tests, tmp_path):
     """A run with a file of every kind."""
     if not (everything / "run.json").exists():
-        over = OverParticipants(**{name: no_rows(name) for name in TABLES}, lengths_said="", responders_said="none")
+        over = OverParticipants(**{name: join_rows(name) for name in TABLES}, lengths_said="", responders_said="none")
         rows = pd.DataFrame([["60", 900, "knee", "exo", "network", "exo", 0.5, 100]], columns=list(QUANTITY_COLUMNS))
         quantity = DataQuantity("P01", "first", rows.astype({"length_s": float}), {240.0: "too long"})
         few = pd.DataFrame([["without EMG", "knee", "exo", "network", 0.5, 100]], columns=list(VARIANT_COLUMNS))

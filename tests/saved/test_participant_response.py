@@ -16,7 +16,7 @@ from gaitdisc.response.participants_result import (
     WHOLE,
     OverParticipants,
     PairTests,
-    no_rows,
+    join_rows,
 )
 from gaitdisc.response.variants import VARIANT_COLUMNS, VARIANT_TEST_COLUMNS, VariantRun, Variants
 
@@ -63,7 +63,7 @@ def test_one_pair_of_models(pair_tests):
 
 
 def over(lengths=None, **other):
-    tables = {name: no_rows(name) for name in TABLES} | other
+    tables = {name: join_rows(name) for name in TABLES} | other
     tables |= {} if lengths is None else {"lengths": lengths}
     return OverParticipants(**tables, lengths_said="", responders_said="")
 
@@ -97,7 +97,7 @@ def test_a_table_without_one_of_its_columns_is_refused_by_its_name(quantity):
     with pytest.raises(SchemaError, match=r"p_adjusted\. Compare the models"):
         PairTests(8, 0.05, 0.95, "", pd.DataFrame(columns=[c for c in TEST_COLUMNS if c != "p_adjusted"]), whole)
     with pytest.raises(SchemaError, match="baselines lacks rank_biserial"):
-        over(baselines=no_rows("baselines").drop(columns="rank_biserial"))
+        over(baselines=join_rows("baselines").drop(columns="rank_biserial"))
     with pytest.raises(SchemaError, match=r"P01.*variant"):
         Variants("P01", "modalities", TABLE.drop(columns="variant"), {})
 

@@ -14,7 +14,7 @@ from gaitdisc.errors import SchemaError
 from gaitdisc.processing.pooled_cycles import CYCLES, WALK, cycles_name
 from gaitdisc.processing.walk_pair import walk_pair
 from gaitdisc.response.participant_response import RESPONSE
-from gaitdisc.response.participants_result import OVER, TABLES, TESTS, OverParticipants, no_rows
+from gaitdisc.response.participants_result import OVER, TABLES, TESTS, OverParticipants, join_rows
 from gaitdisc.response.variants import (
     VARIANT_COLUMNS,
     VARIANT_TEST_COLUMNS,
@@ -53,7 +53,7 @@ def test_saving_twice_gives_the_same_bytes(response, tmp_path):
 
 @pytest.fixture
 def over():
-    tables = {name: no_rows(name) for name in TABLES}
+    tables = {name: join_rows(name) for name in TABLES}
     columns = list(TABLES["responders"])
     tables["responders"].loc[0, columns] = ["P01", 1, 2, 0.1 + 0.2, 0.005, 1.0]
     tables["baselines"].loc[0] = ["exo", "ridge", "network", "hip_flexion_r", *[0] * 15, 0.5, ""]

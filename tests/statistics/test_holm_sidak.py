@@ -5,7 +5,7 @@ from hypothesis import strategies as st
 from statsmodels.stats.multitest import multipletests
 
 from gaitdisc.errors import ComparisonError
-from gaitdisc.statistics.holm_sidak import check_level, holm_sidak, holm_sidak_by, step_levels
+from gaitdisc.statistics.holm_sidak import check_level, holm_sidak, step_levels
 
 PROBABILITIES = st.lists(st.floats(0, 1), min_size=1, max_size=24)
 
@@ -77,13 +77,6 @@ def test_a_p_of_zero_and_of_one():
 def test_what_is_no_p_is_refused(p, words):
     with pytest.raises(ComparisonError, match=rf"lie between 0 and 1; {words}"):
         holm_sidak(p)
-
-
-def test_families_are_corrected_each_by_itself():
-    found = holm_sidak_by([0.01, 0.02, 0.04], ["b", "a", "b"])
-    assert list(found) == ["b", "a"]
-    np.testing.assert_allclose(found["b"].adjusted, holm_sidak([0.01, 0.04]).adjusted)
-    assert found["a"].adjusted.tolist() == pytest.approx([0.02])
 
 
 @pytest.mark.parametrize("level", [0.0, 1.0, 5.0, float("nan")])

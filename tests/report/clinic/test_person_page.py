@@ -14,6 +14,7 @@ from gaitdisc.clinic.laboratory import Laboratory
 from gaitdisc.clinic.page_words import ENGLISH, PageWords
 from gaitdisc.clinic.person_page import index_rows, write_index, write_person_page
 from gaitdisc.clinic.reading import contrast, read_beside
+from gaitdisc.clinic.sentences import contrast_heading
 from gaitdisc.recording import PERCENT
 from gaitdisc.report.figure import file_names
 from gaitdisc.saved.provenance import Refusal
@@ -64,6 +65,24 @@ def test_its_parts_stand_in_the_order_of_a_clinic(page):
     assert headings[-3:] == ["Turn", "walk and turn", "How it was made"]
     assert text.count('role="img"') == text.count('aria-label="') - text.count('role="region"')
     assert says(text, "not", "device. No diagnosis")
+
+
+def test_two_sessions_are_named_as_sessions_and_their_condition_once(tmp_path):
+    before, after = (read_beside(made_person(session=word, each=6), REFERENCE) for word in ("before", "after"))
+    session = PersonSession("P01 before after", (after, before), (contrast(before, after),))
+    page = write_person_page(session, "P01", REFERENCE, PROVENANCE, tmp_path)[0]
+    text = page.read_text(encoding="utf-8")
+    headings = re.findall(r"<h2[^>]*>([^<]*)</h2>", text)
+    assert headings[1] == "before and after, condition walk" and "Session before, condition walk" in headings
+    assert "Kinematics, session after, condition walk" in headings
+    assert "Dotted lines: before; solid or dashed lines: after." in text and '<th scope="col">left, before</th>' in text
+    assert "after walk" not in text and "before walk" not in text
+    assert (page.with_suffix("") / "before_walk-after_walk-changes.csv").is_file()
+
+
+def test_conditions_of_a_session_are_named_with_their_session():
+    pair = contrast(*(read_beside(made_person(session="before", condition=word), None) for word in ("walk", "turn")))
+    assert contrast_heading(pair) == "walk and turn, session before"
 
 
 def test_the_numbers_of_every_sheet_and_table_lie_beside_it(page):
@@ -157,7 +176,7 @@ def test_before_and_after_stand_on_the_first_sheet_of_page_and_pdf(tmp_path):
     assert session.before_after is session.contrasts[0]
     page = write_person_page(session, "P01", REFERENCE, PROVENANCE, tmp_path)[0].read_text(encoding="utf-8")
     headings = re.findall(r"<h2[^>]*>([^<]*)</h2>", page)
-    assert headings[:3] == ["What stands out", "before walk and after walk", "Time and distance"]
+    assert headings[:3] == ["What stands out", "before and after, condition walk", "Time and distance"]
     changes = pd.read_csv(tmp_path / "people" / "P01" / "before_walk-after_walk-changes.csv")
     assert list(changes)[1:] == ["left, before walk", "left, after walk", "right, before walk", "right, after walk"]
     assert "gait profile score [deg]" in set(changes["value"])

@@ -1,6 +1,7 @@
 """Words of the pages in another language, from a table that somebody filled in."""
 
 import csv
+from dataclasses import replace
 
 import pytest
 from made_clinic import PROVENANCE, made_controls, made_person, made_run
@@ -10,7 +11,6 @@ from gaitdisc.clinic.clinical_reference import Limits, Noted, PersonSession
 from gaitdisc.clinic.page_words import PageWords, english_words, read_words, write_words
 from gaitdisc.clinic.person_page import index_rows, write_index, write_person_page
 from gaitdisc.clinic.reading import contrast, read_beside
-from gaitdisc.clinic.rules import rule_words
 from gaitdisc.clinic.sentences import (
     MOST,
     contrast_sentences,
@@ -22,7 +22,7 @@ from gaitdisc.clinic.sentences import (
 from gaitdisc.errors import SchemaError
 from gaitdisc.recording import PERCENT
 
-ENGLISH = english_words(rule_words())
+ENGLISH = english_words()
 
 
 def doubled(word):
@@ -66,14 +66,14 @@ def test_the_index_has_them_too_and_the_numbers_beside_stay(pages):
 
 
 def test_every_word_of_rules_is_in_the_table_and_a_filled_one_comes_back(tmp_path):
-    path = write_words(tmp_path / "de.csv", ENGLISH)
+    path = write_words(tmp_path / "de.csv")
     with path.open(encoding="utf-8", newline="") as file:
         rows = list(csv.reader(file))
     assert rows[0] == ["English", "other"] and [word for word, _ in rows[1:]] == ENGLISH and "short steps" in ENGLISH
     path.write_text("English;other\nknee flexion;Kniebeugung, <b>\nstep length;\n", encoding="utf-8-sig")
-    words = read_words(path, ENGLISH)
+    words = read_words(path)
     assert words("knee flexion [deg]") == "Kniebeugung, <b> [deg]" and words("step length") == "step length"
-    assert read_words(write_words(path, ENGLISH, words), ENGLISH) == words
+    assert read_words(write_words(path, words)) == words
 
 
 @pytest.mark.parametrize(
@@ -90,13 +90,13 @@ def test_every_word_of_rules_is_in_the_table_and_a_filled_one_comes_back(tmp_pat
 def test_another_table_is_refused_with_its_line(tmp_path, text, said):
     (tmp_path / "de.csv").write_text(text, encoding="utf-8")
     with pytest.raises(SchemaError, match=said):
-        read_words(tmp_path / "de.csv", ENGLISH)
+        read_words(tmp_path / "de.csv")
 
 
 def test_a_table_that_is_no_text_is_refused(tmp_path):
     (tmp_path / "de.csv").write_bytes(b"\xff\xfe\x00E")
     with pytest.raises(SchemaError, match=r"CSV.*UTF-8"):
-        read_words(tmp_path / "de.csv", ENGLISH)
+        read_words(tmp_path / "de.csv")
 
 
 LIMITS = Limits(46.0, 72.0, 59.0, 3.6, 18)
@@ -133,6 +133,17 @@ def test_nothing_that_stands_out_and_why_nothing_can_be_said():
     assert "there is no reference" in outstanding_sentences(read_beside(made_person(), None))[""][0]
 
 
+@pytest.mark.parametrize(
+    ("nearest", "which"),
+    [("", "(6)"), ("age", "(6, those nearest in age)"), ("speed", "(6, those nearest in walking speed)"),
+     ("age and speed", "(6, those nearest in age and walking speed)")],
+)  # fmt: skip
+def test_few_controls_are_said_with_which_of_them_they_are(nearest, which):
+    reading = read_beside(made_person(), made_controls(6))
+    said = outstanding_sentences(replace(reading, nearest=nearest))[""][-1]
+    assert said == f"With few controls {which} the 95 % limits are wide: differences may be missed."
+
+
 def test_quality_and_scores_are_said_with_counts():
     reading = read_beside(made_person(each=2), made_controls(6))
     assert says(quality_sentence(reading), "2 left", "2 right cycles", "2 trials", "2")
@@ -147,7 +158,7 @@ def test_a_difference_is_said_with_place_p_and_counts():
     after = read_beside(made_person(session="after", each=8, spread=0.0, seed=1, changed={"knee_angle_l": bump}), None)
     said, *_ = contrast_sentences(contrast(before, after))
     assert says(said, "left: 15 deg more", "after", "before", "65", "80 %")
-    assert said.endswith("8 and 8 cycles.")
+    assert "in ‘after’ than in ‘before’" in said and said.endswith("8 and 8 cycles.")
     both = {"knee_angle_l": bump / 5, "hip_flexion_l": bump / 5}  # less than matters
     slightly = read_beside(made_person(session="after", each=8, spread=0.0, seed=1, changed=both), None)
     assert says(contrast_sentences(contrast(before, slightly))[-1], "2 parts", "less than 5 deg")
