@@ -111,7 +111,8 @@ def search(fit: EngineFit, base: EngineAnswer, request: Request, read: dict[Path
     hidden = [size[2] for size in found.held_out.channels.values()]  # noise that the record itself may not show
     pushed = [f"{effect.name} at {effect.place}" for effect in found.effects if effect.name == "process_noise"]
     unchecked = " and ".join((*written.absent, *pushed))
-    if unchecked and not runs.before_at_noise:
+    at_noise = (runs.with_floor(hidden) if found.effects else runs).before_at_noise
+    if unchecked and not at_noise:
         why = f"{engine.called} has not run {unchecked}: this result is based on the expansion of the model alone."
         return EngineAnswer(replace(found, sentence=f"{found.sentence} {why}"), augmented, written, runs, engine)
     if unchecked:  # what the engine cannot run is not said where its own runs leave mere noise
@@ -136,7 +137,7 @@ def search(fit: EngineFit, base: EngineAnswer, request: Request, read: dict[Path
             runs = replace(runs, after=fit.left(found, kept, runs))
         if kept:
             augmented, written = fit.compared(found, runs)
-    if not found.effects and runs.before_at_noise:  # the expansion errs, through a contact say
+    if not found.effects and (at_noise or runs.before_at_noise):  # the expansion errs, through a contact say
         found = replace(found, verdict="no_gap", rivals=(), explanations=())
     runs = runs.with_floor(hidden)
     return EngineAnswer(with_own_runs(found, runs, fit, linear), augmented, written, runs, engine)

@@ -23,8 +23,9 @@ from gaitdisc.engines.engine import Engine
 from gaitdisc.engines.mapping import replace_inputs, with_input_changed, with_strength
 from gaitdisc.engines.motion import Values
 from gaitdisc.engines.own_runs import Driven, OwnRuns, residual_by, root_mean_square, spread_stretches, trial_called
-from gaitdisc.engines.written import WrittenModel, write_model
+from gaitdisc.engines.written import WrittenModel, forces_at, write_model
 from gaitdisc.processing.kept_parts import hash_content
+from gaitdisc.simulation.evaluating import Points
 from gaitdisc.simulation.expression import names, parse
 from gaitdisc.simulation.measured import Measured
 from gaitdisc.simulation.simulation import Simulation
@@ -79,9 +80,13 @@ class EngineFit:
         augmented = replace(whole, states=self.mapping.states, equations=self.mapping.equations, effects=kept)
         controls, lags, called = data.drive.inputs.copy(), {}, [control.name for control in self.engine.controls]
         driving = replace(augmented, definitions=written.definitions)
+        forces = np.zeros((*controls.shape[:2], len(self.engine.coordinates))) if written.along else None
         for trial, samples in enumerate(data.samples):
             time, u = data.time(trial)[:samples], data.drive.inputs[trial, :samples]
             controls[trial, :samples] = replace_inputs(driving, time, u, data.rate)
+            if forces is not None:
+                at = Points(time, self.states[trial, :samples], u, rate=data.rate)
+                forces[trial, :samples] = forces_at(self.engine, augmented, written.along, at)
         for part in parts:
             if part.candidate.name == "input_lag":
                 column = called.index(part.candidate.place)
@@ -90,7 +95,7 @@ class EngineFit:
                 lag = f"{part.candidate.place} with a first-order lag of {seconds:.4g} s cannot stand in a mapping: "
                 written = replace(written, notes=(*written.notes, f"{lag}only discovery.json contains it"))
         recorded = self.low_pass.filtered
-        return augmented, written, Driven(written.engine, augmented, controls, lags, recorded, self.progress)
+        return augmented, written, Driven(written.engine, augmented, controls, forces, lags, recorded, self.progress)
 
     def left(
         self, found: Discovery, parts: tuple[Part, ...], runs: OwnRuns, near: dict[int, Values] | None = None
@@ -177,7 +182,7 @@ def base_runs(engine: Engine, fit: EngineFit) -> OwnRuns:
     mapping, data, recorded = fit.mapping, fit.measured, fit.low_pass.filtered
     at = spread_stretches(data, find_rhythm(data.observed, data.rate).samples, engine.fibres, fit.low_pass.margin)
     given = hash_content((mapping, data, data.drive, fit.low_pass), engine.path.read_text(encoding="utf-8"))
-    driven, runs = Driven(engine, mapping, data.drive.inputs, {}, recorded, fit.progress), []
+    driven, runs = Driven(engine, mapping, data.drive.inputs, None, {}, recorded, fit.progress), []
     for trial in np.unique(at.trial):  # each is kept as it ends
         known = recall(given, str(trial))
         if known is None:

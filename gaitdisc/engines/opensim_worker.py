@@ -47,7 +47,7 @@ class Ready:
         if profiles is not None:  # controls along time, linear between samples
             controller = osim.PrescribedController()
             lines = _follow(osim.PiecewiseLinearFunction, *profiles)
-            for name, line in zip(self.actuators, lines, strict=True):
+            for name, line in zip([*self.actuators, *(PORT + one for one in free)], lines, strict=False):
                 controller.addActuator(model.getActuators().get(name))
                 controller.prescribeControlForActuator(name, line)
             model.addController(controller)

@@ -35,6 +35,7 @@ class Driven:
     engine: Engine
     mapping: Simulation
     controls: Values  # (trial, sample, control)
+    forces: Values | None = None  # (trial, sample, coordinate), besides
     lags: Mapping[int, float] = field(default_factory=dict)  # control: time constant [s] of the lag in these
     # channels, samples along an axis, as the record's filter leaves them
     recorded: Callable[[Values, int], Values] = field(default_factory=lambda: lambda simulated, _: simulated)
@@ -164,7 +165,8 @@ def residual_by(
             known = engine.near(recorded[trial].at(np.full(len(starts), first)), starts[:, :n], starts[:, n : 2 * n])
             t, seen = measured.time(trial)[some], measured.observed[trial, some]
             begun = replace(known, own=starts[:, 2 * n + len(lags) :], t=np.full(len(starts), t[0]))
-            run = engine.run(begun, driven, measured.rate)
+            push = None if model.forces is None else np.repeat(model.forces[None, trial, some], len(starts), axis=0)
+            run = engine.run(begun, driven, measured.rate, push)
             points = [Points(t, x, u, rate=measured.rate) for x, u in zip(run, driven, strict=True)]
             simulated = np.stack([evaluate_many(plain, seen_as, one).T for one in points])
             if samples < at.length:
@@ -186,22 +188,27 @@ def residual_by(
 
 
 def _find_start(left_from: Callable[[Values], Values], start: Values) -> tuple[Values, Values]:
-    """Start that suits a run best, and what it leaves."""
-    left = left_from(start[None])[0]
+    """Start that suits a run best, and what it leaves; slopes are mended by each step (Broyden) while that gains."""
+    left, slopes, computed = left_from(start[None])[0], None, False
     there = np.isfinite(left)
     for _ in range(TURNS):
-        slopes = ((left_from(start + NUDGE * np.eye(len(start))) - left) / NUDGE)[:, there]
+        if slopes is None:
+            slopes, computed = ((left_from(start + NUDGE * np.eye(len(start))) - left) / NUDGE)[:, there], True
         if not np.isfinite(slopes).all():  # a run that leaves every bound has no slopes
             break
         move = np.linalg.lstsq(slopes.T, -left[there], rcond=1e-9)[0]
-        for step in (1.0, 0.3):
-            tried = left_from((start + step * move)[None])[0]
+        for step in (move, 0.3 * move):
+            tried = left_from((start + step)[None])[0]
             gain = (left[there] ** 2).sum() - (tried[there] ** 2).sum()
             if gain > 0:
                 break
         if not gain > 0:
-            break
-        start, left = start + step * move, tried
+            if computed:
+                break
+            slopes = None
+            continue
+        slopes, computed = slopes + np.outer(step, (tried - left)[there] - step @ slopes) / (step @ step), False
+        start, left = start + step, tried
         if gain < 1e-4 * (left[there] ** 2).sum():
             break
     return start, left
