@@ -114,7 +114,7 @@ class EngineFit:
         """Return mapping and model with what was found, and how far its held-out runs are from those by hand."""
         both = [replace(self, native=native).written(found, self.parts) for native in (True, False)]
         (augmented, written, _), plain = both[0], both[1][1]
-        if plain.absent or plain.text == written.text:
+        if plain.absent or plain.along or plain.text == written.text:
             return augmented, written
         held, near = held_out(found, runs, self.measured), dict[int, Values]()
         at = runs.among(held if held.any() else ~held).at

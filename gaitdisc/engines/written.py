@@ -49,8 +49,7 @@ def write_model(engine: Engine, augmented: Simulation, native: bool = True) -> W
 
     native: whether effects and limits are written at all; else each acts so
     """
-    text, notes, current = engine.path.read_text(encoding="utf-8"), [], engine
-    absent: list[str] = []
+    text, notes, absent, current = engine.path.read_text(encoding="utf-8"), list[str](), list[str](), engine
     forces, by_hand = (), ()
     values, held = dict[str, float](), dict[str, float]()
     before = {one.name: one.value for one in engine.parameters}
@@ -75,8 +74,8 @@ def write_model(engine: Engine, augmented: Simulation, native: bool = True) -> W
                 said = f"would change the accelerations by a fraction of {deviation:.1g} in the model's own form"
             used = {name for one in more_forces for name in names(parse(one.term))}
             notes.append(f"{what} {said}: only {'discovery.json' if used & own else 'augmented.toml'} contains it")
-            on_port = [one for one in more_forces if one.kind == "port"]
-            if on_port and not (prescribed and (used & own or getattr(engine, "balls", ()))):
+            runs = not prescribed or not (used & own or getattr(engine, "balls", ()))
+            if runs and any(one.kind == "port" for one in more_forces):
                 by_hand = (*by_hand, *more_forces)
             elif more_values and hasattr(engine, "with_values"):
                 held |= more_values
@@ -115,7 +114,7 @@ def whole_model(path: Path | str) -> tuple[Simulation, Engine]:
     mapping, engine = read_mapping(path)
     written = write_model(engine, mapping)
     others = (f"{name} = {text}" for name, text in mapping.definitions if not name.startswith(REPLACED))
-    absent = (*written.absent, *others)
+    absent = (*written.absent, *(f"{one.name} at {one.place}" for one in written.along), *others)
     if absent:
         raise SchemaError(
             f"{engine.called} can run only what the model's own file contains",

@@ -165,7 +165,10 @@ def test_muscles_along_a_prescribed_motion_are_those_of_the_run_that_made_it(arm
 
 def test_a_force_beside_fibres_acts_as_along_the_motion(arm):
     """Along a run with OpenSim's own spring, the force of its expression is that spring; a product has no form."""
-    mapping, t = draft(arm).with_effect(Term("elbow_moment", "port", "linear_stiffness", "-2*elbow")), np.arange(40) / 100
+    mapping, t = (
+        draft(arm).with_effect(Term("elbow_moment", "port", "linear_stiffness", "-2*elbow")),
+        np.arange(40) / 100,
+    )
     product = draft(arm).with_effect(Term("elbow_moment", "port", "product_coupling", "-step(elbow_speed)*elbow"))
     assert write_model(arm, product).along == product.effects and not write_model(arm, product).absent
     u = np.column_stack([0.2 + 0.15 * np.sin(9 * t), 0.2 + 0.1 * np.cos(7 * t)])
