@@ -119,7 +119,7 @@ def search(fit: EngineFit, base: EngineAnswer, request: Request, read: dict[Path
         found, augmented, written = replace(found, effects=(), corrections=()), mapping, base.written
     if found.effects and found.verdict != "wrong_initial_condition":
         held = held_out(found, runs, data)
-        if not engine.fibres:  # their runs take too long
+        if not written.along:  # whose numbers rest on the smoothed motion
             found = with_forces_of_muscles(fit, fit.fitted(found, linear, runs.among(~held)), linear, runs.among(~held))
         runs = replace(runs, after=fit.left(found, fit.parts, runs)).with_floor(hidden)
         kept = keep_borne_out(fit, found, runs, held)

@@ -144,8 +144,9 @@ class EngineFit:
 
         near: dict[int, Values] = {}
         now, slopes = white(values, near), np.zeros((0, len(slots)))
-        for turn in range(TURNS):
-            self.progress(f"fitting {counted(len(slots), 'value')} by engine runs, round {turn + 1} of at most {TURNS}")
+        turns = 1 if self.engine.fibres else TURNS  # runs with fibres take long
+        for turn in range(turns):
+            self.progress(f"fitting {counted(len(slots), 'value')} by engine runs, round {turn + 1} of at most {turns}")
             steps = STEP * np.maximum(np.abs(values), STEP) * np.eye(len(slots))
             slopes = np.column_stack([(white(values + step, near.copy()) - now) / step.sum() for step in steps])
             moved = values + np.asarray(np.linalg.lstsq(slopes, -now, rcond=None)[0], np.float64)
