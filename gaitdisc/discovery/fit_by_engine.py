@@ -193,9 +193,14 @@ def base_runs(engine: Engine, fit: EngineFit) -> OwnRuns:
     left = np.array(runs)
     sensors = {name: mapping.sensor(name) for name in data.channels}
     given = np.array([sensor.sd or np.nan for sensor in sensors.values()], float)
-    floor = np.where(np.isnan(given), sensor_noise(data.observed), given)
-    units = {name: one.unit for name, one in sensors.items()}
-    return OwnRuns(left, left, at, engine.called, units, floor=floor, states=fit.states.shape[2])
+    units, passed = {name: one.unit for name, one in sensors.items()}, fit.low_pass
+    runs = OwnRuns(left, left, at, engine.called, units, sensor_noise(data.observed), fit.states.shape[2])
+    if passed.margin:  # a filter hides the size of the noise: what is within windows shows it
+        runs = replace(runs, every=passed.every, memory=passed.autocorrelation(at.length))
+        hidden = np.sqrt(np.nanmean(runs.variances(left)[1], axis=(0, 1)))
+        runs = replace(runs, floor=np.where([one is None for one in passed.cutoffs_hz], runs.floor, hidden))
+        given = given * passed.gains
+    return replace(runs, floor=np.where(np.isnan(given), runs.floor, given))
 
 
 def held_out(found: Discovery, runs: OwnRuns, data: Measured) -> NDArray[np.bool_]:

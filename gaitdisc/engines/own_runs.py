@@ -68,6 +68,8 @@ class OwnRuns:
     units: Mapping[str, str]  # of the channels
     floor: Values  # (channel,), standard deviation of the noise
     states: int  # numbers that each run's start was fitted with
+    every: int = 1  # samples between those that hold all that the record's filter passes
+    memory: Values | None = None  # (lag, channel), autocorrelation of its noise between these; white where absent
 
     def among(self, some: NDArray[np.bool_]) -> OwnRuns:
         """Return some of them (run,)."""
@@ -75,23 +77,29 @@ class OwnRuns:
 
     @property
     def leave_mere_noise(self) -> bool:
-        """Whether runs of the model as read leave white noise of the sensors' size.
+        """Whether runs of the model as read leave noise of the sensors' size, white before the record's filter.
 
         Means of windows vary no more than the spread within them says (F test): what is missing bends whole windows.
         """
         from scipy.stats import f as variance_ratio
 
-        size = max(round(self.at.period / WINDOWS), 3)
-        count = self.at.length // size
-        parts = (self.before / self.floor)[:, : count * size].reshape(len(self.before), count, size, -1)
-        means = parts.mean(axis=2)
-        known = np.isfinite(means)
+        between, within, inner = self.variances(self.before / self.floor)
+        known = np.isfinite(between)
         if not known.any() or np.isinf(self.before).any():
             return False
-        inner, free = known.sum() * (size - 1), max(known.sum() - self.states * len(self.before), 1)
-        within = ((parts - means[:, :, None]) ** 2).sum(axis=2)[known].sum() / inner
-        between = size * (means[known] ** 2).sum() / free
-        return bool(within < MERE_NOISE and variance_ratio.sf(between / within, free, inner) > CHANCE)
+        free, size = max(known.sum() - self.states * len(self.before), 1), within[known].mean()
+        over = between[known].sum() / free / size
+        return bool(size < MERE_NOISE and variance_ratio.sf(over, free, known.sum() * inner) > CHANCE)
+
+    def variances(self, left: Values) -> tuple[Values, Values, int]:
+        """Variance of the noise by each window's mean and by its spread (run, window, channel), and the latter's freedom."""
+        size = max(round(self.at.period / self.every / WINDOWS), 3)
+        some = left[:, :: self.every]
+        parts = some[:, : some.shape[1] // size * size].reshape(len(left), -1, size, left.shape[2])
+        means, lags = parts.mean(axis=2), np.arange(1, size)[:, None]
+        alike = 1.0 if self.memory is None else 1 + 2 * ((1 - lags / size) * self.memory[1:size]).sum(axis=0)
+        within = ((parts - means[:, :, None]) ** 2).sum(axis=2) / (size - alike)
+        return size * means**2 / alike, within, size - 1
 
     @property
     def before_at_noise(self) -> bool:

@@ -131,7 +131,8 @@ def _adding(engine: Engine, augmented: Simulation, term: Term, text: str) -> str
     def at(coordinate: float, speed: float) -> float:
         x = np.zeros((1, len(augmented.states)))
         x[0, [number, len(engine.coordinates) + number]] = coordinate, speed
-        return float(_by_hand(engine, augmented, (term,), x)[0, number])
+        still = Points(np.zeros(1), x, np.zeros((1, len(augmented.inputs))))
+        return float(forces_at(engine, augmented, (term,), still)[0, number])
 
     return None if number < 0 else engine.text_with_effect(text, ByHand(term, number, at))
 
@@ -165,20 +166,15 @@ def _of_force(augmented: Simulation, expression: str) -> str:
 
 
 def forces_at(engine: Engine, augmented: Simulation, terms: tuple[Term, ...], points: Points) -> Values:
-    """Force of terms on each coordinate (point, coordinate)."""
+    """Force of terms on each coordinate (point, coordinate); infinite where points of no trial do not determine it."""
+    if not points.rate and any("delay(" in one.term or "t" in names(parse(one.term)) for one in terms):
+        return np.full((len(points.x), len(engine.coordinates)), np.inf)
     plain = replace(augmented, model="", effects=(), definitions=())
     forces = np.zeros((len(points.x), len(engine.coordinates)))
     for term in terms:
         column = next(k for k, one in enumerate(engine.coordinates) if one.port == term.place)
         forces[:, column] += evaluate(plain, term.term, points)
     return forces
-
-
-def _by_hand(engine: Engine, augmented: Simulation, terms: tuple[Term, ...], x: Values) -> Values:
-    """Forces of terms at states (point, coordinate); infinite where one depends on more than states."""
-    if any("delay(" in one.term or "t" in names(parse(one.term)) for one in terms):
-        return np.full((len(x), len(engine.coordinates)), np.inf)
-    return forces_at(engine, augmented, terms, Points(np.zeros(len(x)), x, np.zeros((len(x), len(augmented.inputs)))))
 
 
 def _deviation(
@@ -194,7 +190,7 @@ def _deviation(
     v = rng.uniform(AT_SPEED, 4.0, (STATES, n)) * rng.choice([-1, 1], (STATES, n))
     at = Motion(q, v, rng.uniform(0, 1, (STATES, len(engine.controls))))
     x = np.hstack([q, v, np.zeros((STATES, len(augmented.states) - 2 * n))])
-    push = _by_hand(engine, augmented, forces, x)
+    push = forces_at(engine, augmented, forces, Points(np.zeros(STATES), x, 0.0 * at.u))
     if not np.isfinite(push).all():
         return np.inf, None
     try:

@@ -3,8 +3,10 @@
 from dataclasses import replace
 
 import numpy as np
+import pytest
 from texts import says
 
+from gaitdisc.discovery.record_filter import RecordFilter
 from gaitdisc.engines.engine import read_model
 from gaitdisc.engines.expansion import FASTEST, _slow_speeds, expand
 from gaitdisc.engines.mapping import draft, with_input_changed
@@ -153,3 +155,14 @@ def test_white_noise_is_mere_noise_and_a_slow_bend_of_half_its_size_is_not():
     noise, bend = rng.normal(size=(8, 200, 1)), 0.5 * np.sin(np.arange(200) / 16)[None, :, None]
     runs = [OwnRuns(one, one, at, "MuJoCo", {"x": "rad"}, np.ones(1), 2) for one in (noise, noise + bend)]
     assert [one.leave_mere_noise for one in runs] == [True, False]
+
+
+def test_noise_that_went_through_the_records_filter_is_mere_noise_as_well_and_its_size_is_seen():
+    """Of 6 Hz: taken for white it would be what a model lacks, and its roughness shows a tenth of its size."""
+    rng, at = np.random.default_rng(4), Stretches(np.zeros(8, int), np.zeros(8, int), 200, 100.0)
+    passed, bend = RecordFilter((6.0,), 100.0), 0.2 * np.sin(np.arange(200) / 16)[None, :, None]
+    noise = passed.filtered(rng.normal(size=(8, 234, 1)), 1)[:, 17:-17]
+    runs = OwnRuns(noise, noise, at, "MuJoCo", {"x": "rad"}, passed.gains, 0, passed.every, passed.autocorrelation(200))
+    assert runs.leave_mere_noise and not replace(runs, before=noise + bend).leave_mere_noise
+    assert not replace(runs, every=1, memory=None).leave_mere_noise
+    assert np.sqrt(np.mean(runs.variances(noise)[1])) == pytest.approx(passed.gains[0], rel=0.1)
