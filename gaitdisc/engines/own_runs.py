@@ -92,7 +92,7 @@ class OwnRuns:
         return bool(size < MERE_NOISE and variance_ratio.sf(over, free, known.sum() * inner) > CHANCE)
 
     def variances(self, left: Values) -> tuple[Values, Values, int]:
-        """Variance of the noise by each window's mean and by its spread (run, window, channel), and freedom of these."""
+        """Variance of the noise by each window's mean and by its spread (run, window, channel), and their freedom."""
         size = max(round(self.at.period / self.every / WINDOWS), 3)
         some = left[:, :: self.every]
         parts = some[:, : some.shape[1] // size * size].reshape(len(left), -1, size, left.shape[2])
