@@ -147,10 +147,7 @@ class MujocoModel:
 
     @_heard
     def run(self, start: Motion, controls: Values, rate: float, forces: Values | None = None) -> Values:
-        """Coordinates, then speeds (run, sample, state), by MuJoCo's own integrator; controls are linear in between.
-
-        forces (run, sample, coordinate): besides, linear in between
-        """
+        """Coordinates, then speeds (run, sample, state), by MuJoCo itself; controls and forces are linear between."""
         model, data, steps, kinds = self._model, self._data, self._steps(rate), self._mujoco.mjtState
         kept, balls, nu = model.opt.timestep, self.balls, model.nu
         model.opt.timestep = 1.0 / (rate * steps)

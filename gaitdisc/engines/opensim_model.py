@@ -107,10 +107,7 @@ class OpensimModel:
         return Motion(q, v, known.u, known.z + after - before)
 
     def run(self, start: Motion, controls: Values, rate: float, forces: Values | None = None) -> Values:
-        """Coordinates, then speeds (run, sample, state), by OpenSim's Manager; with pushes by Runge-Kutta, order 4.
-
-        forces (run, sample, coordinate): besides, linear in between
-        """
+        """Coordinates, then speeds (run, sample, state), by OpenSim's Manager; with pushes by Runge-Kutta, order 4."""
         if self.pushes is None:
             driven = controls if forces is None else np.concatenate([controls, forces], axis=2)
             return self._query("run", start.q, start.v, start.u, start.z, driven, rate)

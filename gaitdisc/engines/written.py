@@ -44,8 +44,7 @@ class WrittenModel:
 def write_model(engine: Engine, augmented: Simulation, native: bool = True) -> WrittenModel:
     """Write effects, changed parameters and limits of controls into a model's text, as far as they have a form there.
 
-    What has none acts as a force at each step of the engine's runs; beside fibres, or where one remembers what was
-    before, as it does along the measured motion.
+    What has none acts as a force at each step of the engine's runs, beside fibres or with a delay as along the record.
 
     native: whether effects and limits are written at all; else each acts so
     """
