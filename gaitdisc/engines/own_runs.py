@@ -108,7 +108,8 @@ class OwnRuns:
 
     def with_floor(self, hidden: list[float]) -> OwnRuns:
         """Return runs with the noise that a search saw (channel,), where these do not leave less."""
-        return replace(self, floor=np.fmax(self.floor, np.fmin(hidden, root_mean_square(self.after))))
+        own = np.inf if self.memory is None else np.sqrt(np.nanmean(self.variances(self.after)[1], axis=(0, 1)))
+        return replace(self, floor=np.fmax(np.fmin(self.floor, own), np.fmin(hidden, root_mean_square(self.after))))
 
     @property
     def said(self) -> str:

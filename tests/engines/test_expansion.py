@@ -181,3 +181,5 @@ def test_noise_that_went_through_the_records_filter_is_mere_noise_as_well_and_it
     assert runs.leave_mere_noise and not replace(runs, before=noise + bend).leave_mere_noise
     assert not replace(runs, every=1, memory=None).leave_mere_noise
     assert np.sqrt(np.mean(runs.variances(noise)[1])) == pytest.approx(passed.gains[0], rel=0.1)
+    bent = replace(runs, before=noise + 50 * bend, floor=np.array([3.0]))  # a rough guess, from runs that miss so much
+    assert bent.with_floor([0.0]).floor == pytest.approx(passed.gains, rel=0.1)
