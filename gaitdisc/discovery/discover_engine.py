@@ -14,6 +14,7 @@ from gaitdisc.discovery.candidate import Candidate, saturations
 from gaitdisc.discovery.catalogue import ALL, Request
 from gaitdisc.discovery.discover_files import find_missing, seal
 from gaitdisc.discovery.effect_words import named_at
+from gaitdisc.discovery.estimated_filter import find_record_filter
 from gaitdisc.discovery.first_states import guess_states
 from gaitdisc.discovery.fit_by_engine import EngineFit, base_runs, errs_less, held_out, with_own_runs
 from gaitdisc.discovery.grids import find_rhythm
@@ -68,12 +69,14 @@ def discover_engine(
     data = measured(mapping)
     refuse_unmeasured(mapping, engine, data)
     clean, rate_of = without_spikes(data), {coordinate.name: coordinate.speed for coordinate in engine.coordinates}
-    window = (SMOOTH if engine.fibres else NARROW) * find_rhythm(clean.observed, clean.rate).period
+    period = find_rhythm(clean.observed, clean.rate).period
+    window = (SMOOTH if engine.fibres else NARROW) * period
     states = guess_states(replace(mapping, model=""), clean, window, rate_of)  # coordinates, then speeds
     refuse_other_units(mapping, engine, data, states)
     refuse_other_conventions(mapping, engine, data, states)
     met, read = tuple(_report_limits(engine, states, data)), {engine.path: "model", **(files or {})}
-    fit = EngineFit(mapping, engine, data, states, progress=request.progress)
+    passed, noted = find_record_filter(mapping, clean, period)
+    fit = EngineFit(mapping, engine, data, states, low_pass=passed, progress=request.progress)
     request.progress(f"running {engine.path.name} with {engine.called} along every trial")
     as_read = write_model(engine, mapping)  # what the mapping says otherwise than the model's file
     answer = EngineAnswer(_NOTHING, mapping, as_read, base_runs(as_read.engine, fit), engine)
@@ -81,7 +84,7 @@ def discover_engine(
         answer = search(fit, answer, replace(request, refitted=fit.noted), read)
     else:
         units = tuple(answer.runs.units.values())
-        nothing = replace(_NOTHING, channels=data.channels, units=units, findings=data.findings)
+        nothing = replace(_NOTHING, channels=data.channels, units=units, findings=(*data.findings, *noted))
         found = seal(with_own_runs(nothing, answer.runs, fit, mapping), mapping, data, read)
         answer = replace(answer, found=found)
     found = answer.found
@@ -100,10 +103,12 @@ def discover_engine(
 
 def search(fit: EngineFit, base: EngineAnswer, request: Request, read: dict[Path, str]) -> EngineAnswer:
     """Search the expansion along the record; of what it names, that stays which the engine's own runs bear out."""
-    mapping, engine, data = fit.mapping, fit.engine, fit.measured
+    mapping, engine, data, passed = fit.mapping, fit.engine, fit.measured, fit.low_pass
     found, linear = search_expansion(fit, request, read)
     request.progress(f"running the augmented model with {engine.called}")
-    runs = base_runs(base.written.engine, fit) if fit.low_pass.margin else base.runs  # filtered as the record was
+    runs = base.runs
+    if fit.low_pass != passed and (fit.low_pass.margin or passed.margin):  # as the search has it
+        runs = base_runs(base.written.engine, fit)
     runs = runs.among(np.isin(runs.at.trial, [trial_called(data, name) for name in found.runs.names]))
     augmented, written, _ = fit.written(found, fit.parts)
     hidden = [size[2] for size in found.held_out.channels.values()]  # noise that the record itself may not show
@@ -116,7 +121,7 @@ def search(fit: EngineFit, base: EngineAnswer, request: Request, read: dict[Path
         found, augmented, written = replace(found, effects=(), corrections=()), mapping, base.written
     if found.effects and found.verdict != "wrong_initial_condition":
         held = held_out(found, runs, data)
-        if not engine.fibres:  # their runs take too long
+        if not written.along:  # whose numbers rest on the smoothed motion
             found = with_forces_of_muscles(fit, fit.fitted(found, linear, runs.among(~held)), linear, runs.among(~held))
         runs = replace(runs, after=fit.left(found, fit.parts, runs)).with_floor(hidden)
         kept = keep_borne_out(fit, found, runs, held)
@@ -136,6 +141,8 @@ def search(fit: EngineFit, base: EngineAnswer, request: Request, read: dict[Path
             augmented, written = fit.compared(found, runs)
     if not found.effects and runs.before_at_noise:  # the expansion errs, through a contact say
         found = replace(found, verdict="no_gap", rivals=(), explanations=())
+    elif found.verdict == "no_gap":  # in short runs, in which much is a matter of the start
+        found = replace(found, verdict="unexplained")
     runs = runs.with_floor(hidden)
     return EngineAnswer(with_own_runs(found, runs, fit, linear), augmented, written, runs, engine)
 

@@ -30,12 +30,12 @@ ROUGH = 1.0  # times the noise's power at the cut-off, from which on a signal th
 
 
 def find_record_filter(
-    simulation: Simulation, measured: Measured, period: float, guess: Values
+    simulation: Simulation, measured: Measured, period: float, guess: Values | None = None
 ) -> tuple[RecordFilter, tuple[Finding, ...]]:
     """Return what the measured channels went through: as the file says, or as their spectra show.
 
     period: the motion's main period [s]
-    guess (trial, sample, state): states of every trial, roughly
+    guess (trial, sample, state): states of every trial, roughly; the simulation says nothing where absent
     """
     stated = tuple(simulation.sensor(name).lowpass for name in measured.channels)
     unknown = [number for number, cutoff in enumerate(stated) if cutoff is None]
@@ -45,8 +45,12 @@ def find_record_filter(
         beside = [one.cutoff_hz for k, one in seen.items() if units[k] == units[number] and one.signal <= ROUGH]
         if beside and (found := find_filter(_trials(measured, number), measured.rate, at_hz=geometric_mean(beside))):
             seen[number] = found
-    inputs = bool(seen) and _inputs_are_filtered(simulation, measured)
-    if inputs or any(one.signal > FELT for one in seen.values()):
+    if guess is None:  # channels of one unit are taken to be recorded alike
+        sure = {number: one for number, one in seen.items() if one.signal <= ROUGH}
+        alike = {number: [one for k, one in sure.items() if units[k] == units[number]] for number in unknown}
+        seen = {number: sure.get(number, some[0]) for number, some in alike.items() if some}
+    inputs = guess is not None and bool(seen) and _inputs_are_filtered(simulation, measured)
+    if guess is not None and (inputs or any(one.signal > FELT for one in seen.values())):
         length = min(max(int(period * measured.rate), FEWEST_SAMPLES), int(measured.samples.min()) // 2)
         runs = cut_segments(measured.samples, tuple(range(len(measured.trials))), length, length // OVERLAP)
         size = np.nanstd(measured.observed, axis=(0, 1))

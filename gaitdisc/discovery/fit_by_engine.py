@@ -23,8 +23,9 @@ from gaitdisc.engines.engine import Engine
 from gaitdisc.engines.mapping import replace_inputs, with_input_changed, with_strength
 from gaitdisc.engines.motion import Values
 from gaitdisc.engines.own_runs import Driven, OwnRuns, residual_by, root_mean_square, spread_stretches, trial_called
-from gaitdisc.engines.written import WrittenModel, write_model
+from gaitdisc.engines.written import WrittenModel, forces_at, write_model
 from gaitdisc.processing.kept_parts import hash_content
+from gaitdisc.simulation.evaluating import Points
 from gaitdisc.simulation.expression import names, parse
 from gaitdisc.simulation.measured import Measured
 from gaitdisc.simulation.simulation import Simulation
@@ -79,9 +80,13 @@ class EngineFit:
         augmented = replace(whole, states=self.mapping.states, equations=self.mapping.equations, effects=kept)
         controls, lags, called = data.drive.inputs.copy(), {}, [control.name for control in self.engine.controls]
         driving = replace(augmented, definitions=written.definitions)
+        forces = np.zeros((*controls.shape[:2], len(self.engine.coordinates))) if written.along else None
         for trial, samples in enumerate(data.samples):
             time, u = data.time(trial)[:samples], data.drive.inputs[trial, :samples]
             controls[trial, :samples] = replace_inputs(driving, time, u, data.rate)
+            if forces is not None:
+                at = Points(time, self.states[trial, :samples], u, rate=data.rate)
+                forces[trial, :samples] = forces_at(self.engine, augmented, written.along, at)
         for part in parts:
             if part.candidate.name == "input_lag":
                 column = called.index(part.candidate.place)
@@ -90,7 +95,7 @@ class EngineFit:
                 lag = f"{part.candidate.place} with a first-order lag of {seconds:.4g} s cannot stand in a mapping: "
                 written = replace(written, notes=(*written.notes, f"{lag}only discovery.json contains it"))
         recorded = self.low_pass.filtered
-        return augmented, written, Driven(written.engine, augmented, controls, lags, recorded, self.progress)
+        return augmented, written, Driven(written.engine, augmented, controls, forces, lags, recorded, self.progress)
 
     def left(
         self, found: Discovery, parts: tuple[Part, ...], runs: OwnRuns, near: dict[int, Values] | None = None
@@ -109,7 +114,7 @@ class EngineFit:
         """Return mapping and model with what was found, and how far its held-out runs are from those by hand."""
         both = [replace(self, native=native).written(found, self.parts) for native in (True, False)]
         (augmented, written, _), plain = both[0], both[1][1]
-        if plain.absent or plain.text == written.text:
+        if plain.absent or plain.along or plain.text == written.text:
             return augmented, written
         held, near = held_out(found, runs, self.measured), dict[int, Values]()
         at = runs.among(held if held.any() else ~held).at
@@ -135,8 +140,9 @@ class EngineFit:
 
         near: dict[int, Values] = {}
         now, slopes = white(values, near), np.zeros((0, len(slots)))
-        for turn in range(TURNS):
-            self.progress(f"fitting {counted(len(slots), 'value')} by engine runs, round {turn + 1} of at most {TURNS}")
+        turns = 1 if self.engine.fibres else TURNS  # runs with fibres take long
+        for turn in range(turns):
+            self.progress(f"fitting {counted(len(slots), 'value')} by engine runs, round {turn + 1} of at most {turns}")
             steps = STEP * np.maximum(np.abs(values), STEP) * np.eye(len(slots))
             slopes = np.column_stack([(white(values + step, near.copy()) - now) / step.sum() for step in steps])
             moved = values + np.asarray(np.linalg.lstsq(slopes, -now, rcond=None)[0], np.float64)
@@ -173,7 +179,7 @@ def base_runs(engine: Engine, fit: EngineFit) -> OwnRuns:
     mapping, data, recorded = fit.mapping, fit.measured, fit.low_pass.filtered
     at = spread_stretches(data, find_rhythm(data.observed, data.rate).samples, engine.fibres, fit.low_pass.margin)
     given = hash_content((mapping, data, data.drive, fit.low_pass), engine.path.read_text(encoding="utf-8"))
-    driven, runs = Driven(engine, mapping, data.drive.inputs, {}, recorded, fit.progress), []
+    driven, runs = Driven(engine, mapping, data.drive.inputs, None, {}, recorded, fit.progress), []
     for trial in np.unique(at.trial):  # each is kept as it ends
         known = recall(given, str(trial))
         if known is None:
@@ -183,9 +189,14 @@ def base_runs(engine: Engine, fit: EngineFit) -> OwnRuns:
     left = np.array(runs)
     sensors = {name: mapping.sensor(name) for name in data.channels}
     given = np.array([sensor.sd or np.nan for sensor in sensors.values()], float)
-    floor = np.where(np.isnan(given), sensor_noise(data.observed), given)
-    units = {name: one.unit for name, one in sensors.items()}
-    return OwnRuns(left, left, at, engine.called, units, floor=floor, states=fit.states.shape[2])
+    units, passed = {name: one.unit for name, one in sensors.items()}, fit.low_pass
+    runs = OwnRuns(left, left, at, engine.called, units, sensor_noise(data.observed), fit.states.shape[2])
+    if passed.margin:  # a filter hides the size of the noise: what is within windows shows it
+        runs = replace(runs, every=passed.every, memory=passed.autocorrelation(at.length))
+        hidden = np.sqrt(np.nanmean(runs.variances(left)[1], axis=(0, 1)))
+        runs = replace(runs, floor=np.where([one is None for one in passed.cutoffs_hz], runs.floor, hidden))
+        given = given * passed.gains
+    return replace(runs, floor=np.where(np.isnan(given), runs.floor, given))
 
 
 def held_out(found: Discovery, runs: OwnRuns, data: Measured) -> NDArray[np.bool_]:

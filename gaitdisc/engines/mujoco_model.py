@@ -146,21 +146,23 @@ class MujocoModel:
         return replace(known, q=q, v=v)
 
     @_heard
-    def run(self, start: Motion, controls: Values, rate: float) -> Values:
-        """Coordinates, then speeds (run, sample, state), by MuJoCo's own integrator; controls are linear in between."""
-        model, data, steps = self._model, self._data, self._steps(rate)
-        kept, balls = model.opt.timestep, self.balls
+    def run(self, start: Motion, controls: Values, rate: float, forces: Values | None = None) -> Values:
+        """Coordinates, then speeds (run, sample, state), by MuJoCo itself; controls and forces are linear between."""
+        model, data, steps, kinds = self._model, self._data, self._steps(rate), self._mujoco.mjtState
+        kept, balls, nu = model.opt.timestep, self.balls, model.nu
         model.opt.timestep = 1.0 / (rate * steps)
-        change = np.diff(controls, axis=1)[:, :, None] / steps
-        driven = np.clip(controls[:, :-1, None] + np.arange(steps)[:, None] * change, *self.control_ranges.T)
-        driven = driven.reshape(len(controls), driven.shape[1] * steps, model.nu)
+        given = controls if forces is None else np.concatenate([controls, forces], axis=2)
+        driven = given[:, :-1, None] + np.arange(steps)[:, None] * np.diff(given, axis=1)[:, :, None] / steps
+        driven = driven.reshape(len(given), driven.shape[1] * steps, given.shape[2])
+        driven[:, :, :nu] = np.clip(driven[:, :, :nu], *self.control_ranges.T)
         found = np.empty((len(controls), driven.shape[1] + 1, model.nq + model.nv))
         begun = np.hstack(to_positions(balls, start.q, start.v))
         found[:, 0] = begun
         halted = np.ones(len(controls), bool)
         if self.pushes is None and driven.shape[1]:  # all at once, each halted where MuJoCo warns
             whole = np.array([self._begin(*one) for one in zip(begun, start.u, strict=True)])
-            states, _ = self._mujoco.rollout.rollout(model, data, whole, driven)
+            kind = int(kinds.mjSTATE_CTRL) | (forces is not None) * int(kinds.mjSTATE_QFRC_APPLIED)
+            states, _ = self._mujoco.rollout.rollout(model, data, whole, driven, control_spec=kind)
             found[:, 1:] = states[:, :, 1 : 1 + begun.shape[1]]
             halted = states[:, -1, 0] < (driven.shape[1] - 0.5) * model.opt.timestep
         for run in np.flatnonzero(halted):
@@ -168,13 +170,13 @@ class MujocoModel:
             pushed = None if self.pushes is None else self.pushes.begun(start)[[run]]
             begins = 0.0 if start.t is None else start.t[run]
             for step, control in enumerate(driven[run]):
-                data.ctrl[:] = control
+                data.ctrl[:], data.qfrc_applied[:] = control[:nu], 0.0 if forces is None else control[nu:]
                 if self.pushes is not None and pushed is not None:
                     q = pushed[:, : model.nv]
                     x = to_coordinates(balls, data.qpos[None, None], data.qvel[None, None], q)
                     pushed[:, : 2 * model.nv] = x[0]
-                    forces, rates = self.pushes.at(np.array([begins + data.time]), pushed, data.ctrl[None])
-                    data.qfrc_applied[:] = to_forces(balls, q, forces)[0]
+                    acting, rates = self.pushes.at(np.array([begins + data.time]), pushed, data.ctrl[None])
+                    data.qfrc_applied[:] = to_forces(balls, q, acting)[0]
                     pushed[:, 2 * model.nv :] += model.opt.timestep * rates
                 self._mujoco.mj_step(model, data)
                 found[run, step + 1] = *data.qpos, *data.qvel

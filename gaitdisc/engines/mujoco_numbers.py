@@ -54,16 +54,17 @@ def list_of_controls(mujoco: Any, model: Any, controls: Sequence[Input]) -> dict
     places: dict[str, Number] = {}
     for number, one in enumerate(controls):
         if model.actuator_gaintype[number] == int(mujoco.mjtGain.mjGAIN_MUSCLE):
-            if model.actuator_gainprm[number, 2] > 0:
-                places[f"{one.name}_force"] = Number("actuator_gainprm", (number, 2), "N", ("actuator", number))
+            places[f"{one.name}_force"] = Number("actuator_gainprm", (number, 2), "N", ("actuator", number))
         else:
             places[f"{one.name}_gear"] = Number("actuator_gear", (number, 0), "1", ("actuator", number))
     return places
 
 
 def read_number(model: Any, name: str, at: Number) -> float:
-    """Length of gravity; of several equal numbers the first."""
+    """Length of gravity; of several equal numbers the first; of a muscle that has only a scale, what that makes."""
     own = attrgetter(at.array)(model)[at.index]
+    if at.unit == "N" and name.endswith("_force") and own < 0:
+        own = model.actuator_gainprm[at.index[0], 3] / model.actuator_acc0[at.index[0]]
     return float(np.linalg.norm(own) if name == "gravity" else np.ravel(own)[0])
 
 

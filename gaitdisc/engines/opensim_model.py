@@ -106,10 +106,11 @@ class OpensimModel:
         before, after = (self._query("equilibria", each, known.u) for each in (known.q, q))
         return Motion(q, v, known.u, known.z + after - before)
 
-    def run(self, start: Motion, controls: Values, rate: float) -> Values:
+    def run(self, start: Motion, controls: Values, rate: float, forces: Values | None = None) -> Values:
         """Coordinates, then speeds (run, sample, state), by OpenSim's Manager; with pushes by Runge-Kutta, order 4."""
         if self.pushes is None:
-            return self._query("run", start.q, start.v, start.u, start.z, controls, rate)
+            driven = controls if forces is None else np.concatenate([controls, forces], axis=2)
+            return self._query("run", start.q, start.v, start.u, start.z, driven, rate)
         pushes, n, h = self.pushes, len(self.coordinates), 1 / rate
         t = np.zeros(len(start.q)) if start.t is None else start.t
 

@@ -7,7 +7,7 @@ import pickle
 import sys
 from collections.abc import Callable, Iterator
 from contextlib import suppress
-from functools import partial
+from functools import lru_cache, partial
 from typing import Any, BinaryIO
 
 import numpy as np
@@ -47,7 +47,7 @@ class Ready:
         if profiles is not None:  # controls along time, linear between samples
             controller = osim.PrescribedController()
             lines = _follow(osim.PiecewiseLinearFunction, *profiles)
-            for name, line in zip(self.actuators, lines, strict=True):
+            for name, line in zip([*self.actuators, *(PORT + one for one in free)], lines, strict=False):
                 controller.addActuator(model.getActuators().get(name))
                 controller.prescribeControlForActuator(name, line)
             model.addController(controller)
@@ -170,15 +170,11 @@ class _Answers:
     """What is known of a model, question by question."""
 
     def __init__(self, osim: Any, path: str) -> None:
-        self.osim, self.path, self.ready = osim, path, {}
+        self.osim, self.path = osim, path
+        self.ready = lru_cache(KEPT)(lambda *values: self.fresh(dict(values)))
 
     def with_values(self, values: dict[str, float]) -> Ready:
-        key = tuple(sorted(values.items()))
-        if key not in self.ready:
-            while len(self.ready) >= KEPT:
-                self.ready.pop(next(iter(self.ready)))
-            self.ready[key] = self.fresh(values)
-        return self.ready[key]
+        return self.ready(*sorted(values.items()))
 
     def fresh(self, values: dict[str, float], profiles: Any = None, motion: Any = None) -> Ready:
         return Ready(self.osim, self.osim.Model(self.path), values, profiles, motion)

@@ -35,6 +35,7 @@ class Driven:
     engine: Engine
     mapping: Simulation
     controls: Values  # (trial, sample, control)
+    forces: Values | None = None  # (trial, sample, coordinate), besides
     lags: Mapping[int, float] = field(default_factory=dict)  # control: time constant [s] of the lag in these
     # channels, samples along an axis, as the record's filter leaves them
     recorded: Callable[[Values, int], Values] = field(default_factory=lambda: lambda simulated, _: simulated)
@@ -67,6 +68,8 @@ class OwnRuns:
     units: Mapping[str, str]  # of the channels
     floor: Values  # (channel,), standard deviation of the noise
     states: int  # numbers that each run's start was fitted with
+    every: int = 1  # samples between those that hold all that the record's filter passes
+    memory: Values | None = None  # (lag, channel), autocorrelation of its noise between these; white where absent
 
     def among(self, some: NDArray[np.bool_]) -> OwnRuns:
         """Return some of them (run,)."""
@@ -74,23 +77,29 @@ class OwnRuns:
 
     @property
     def leave_mere_noise(self) -> bool:
-        """Whether runs of the model as read leave white noise of the sensors' size.
+        """Whether runs of the model as read leave noise of the sensors' size, white before the record's filter.
 
         Means of windows vary no more than the spread within them says (F test): what is missing bends whole windows.
         """
         from scipy.stats import f as variance_ratio
 
-        size = max(round(self.at.period / WINDOWS), 3)
-        count = self.at.length // size
-        parts = (self.before / self.floor)[:, : count * size].reshape(len(self.before), count, size, -1)
-        means = parts.mean(axis=2)
-        known = np.isfinite(means)
+        between, within, inner = self.variances(self.before / self.floor)
+        known = np.isfinite(between)
         if not known.any() or np.isinf(self.before).any():
             return False
-        inner, free = known.sum() * (size - 1), max(known.sum() - self.states * len(self.before), 1)
-        within = ((parts - means[:, :, None]) ** 2).sum(axis=2)[known].sum() / inner
-        between = size * (means[known] ** 2).sum() / free
-        return bool(within < MERE_NOISE and variance_ratio.sf(between / within, free, inner) > CHANCE)
+        free, size = max(known.sum() - self.states * len(self.before), 1), within[known].mean()
+        over = between[known].sum() / free / size
+        return bool(size < MERE_NOISE and variance_ratio.sf(over, free, known.sum() * inner) > CHANCE)
+
+    def variances(self, left: Values) -> tuple[Values, Values, int]:
+        """Variance of the noise by each window's mean and by its spread (run, window, channel), and their freedom."""
+        size = max(round(self.at.period / self.every / WINDOWS), 3)
+        some = left[:, :: self.every]
+        parts = some[:, : some.shape[1] // size * size].reshape(len(left), -1, size, left.shape[2])
+        means, lags = parts.mean(axis=2), np.arange(1, size)[:, None]
+        alike = 1.0 if self.memory is None else 1 + 2 * ((1 - lags / size) * self.memory[1:size]).sum(axis=0)
+        within = ((parts - means[:, :, None]) ** 2).sum(axis=2) / (size - alike)
+        return size * means**2 / alike, within, size - 1
 
     @property
     def before_at_noise(self) -> bool:
@@ -99,7 +108,8 @@ class OwnRuns:
 
     def with_floor(self, hidden: list[float]) -> OwnRuns:
         """Return runs with the noise that a search saw (channel,), where these do not leave less."""
-        return replace(self, floor=np.fmax(self.floor, np.fmin(hidden, root_mean_square(self.after))))
+        own = np.inf if self.memory is None else np.sqrt(np.nanmean(self.variances(self.after)[1], axis=(0, 1)))
+        return replace(self, floor=np.fmax(np.fmin(self.floor, own), np.fmin(hidden, root_mean_square(self.after))))
 
     @property
     def said(self) -> str:
@@ -164,7 +174,8 @@ def residual_by(
             known = engine.near(recorded[trial].at(np.full(len(starts), first)), starts[:, :n], starts[:, n : 2 * n])
             t, seen = measured.time(trial)[some], measured.observed[trial, some]
             begun = replace(known, own=starts[:, 2 * n + len(lags) :], t=np.full(len(starts), t[0]))
-            run = engine.run(begun, driven, measured.rate)
+            push = None if model.forces is None else np.repeat(model.forces[None, trial, some], len(starts), axis=0)
+            run = engine.run(begun, driven, measured.rate, push)
             points = [Points(t, x, u, rate=measured.rate) for x, u in zip(run, driven, strict=True)]
             simulated = np.stack([evaluate_many(plain, seen_as, one).T for one in points])
             if samples < at.length:
@@ -186,22 +197,27 @@ def residual_by(
 
 
 def _find_start(left_from: Callable[[Values], Values], start: Values) -> tuple[Values, Values]:
-    """Start that suits a run best, and what it leaves."""
-    left = left_from(start[None])[0]
+    """Start that suits a run best, and what it leaves; slopes are mended by each step (Broyden) while that gains."""
+    left, slopes, computed = left_from(start[None])[0], None, False
     there = np.isfinite(left)
     for _ in range(TURNS):
-        slopes = ((left_from(start + NUDGE * np.eye(len(start))) - left) / NUDGE)[:, there]
+        if slopes is None:
+            slopes, computed = ((left_from(start + NUDGE * np.eye(len(start))) - left) / NUDGE)[:, there], True
         if not np.isfinite(slopes).all():  # a run that leaves every bound has no slopes
             break
         move = np.linalg.lstsq(slopes.T, -left[there], rcond=1e-9)[0]
-        for step in (1.0, 0.3):
-            tried = left_from((start + step * move)[None])[0]
+        for step in (move, 0.3 * move):
+            tried = left_from((start + step)[None])[0]
             gain = (left[there] ** 2).sum() - (tried[there] ** 2).sum()
             if gain > 0:
                 break
         if not gain > 0:
-            break
-        start, left = start + step * move, tried
+            if computed:
+                break
+            slopes = None
+            continue
+        slopes, computed = slopes + np.outer(step, (tried - left)[there] - step @ slopes) / (step @ step), False
+        start, left = start + step, tried
         if gain < 1e-4 * (left[there] ** 2).sum():
             break
     return start, left

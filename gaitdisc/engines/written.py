@@ -37,22 +37,23 @@ class WrittenModel:
     text: str  # the user's own, with insertions; the same where nothing has a native form
     notes: tuple[str, ...]  # what was written in, with its deviation, and what was not
     absent: tuple[str, ...]  # what the engine does not run
+    along: tuple[Term, ...]  # forces without a form that act as along the measured motion
     definitions: tuple[tuple[str, str], ...]  # of controls in the mapping, without those that the text says
 
 
 def write_model(engine: Engine, augmented: Simulation, native: bool = True) -> WrittenModel:
     """Write effects, changed parameters and limits of controls into a model's text, as far as they have a form there.
 
-    What has none acts as a force at each step of the engine's runs.
+    What has none acts as a force at each step of the engine's runs, beside fibres or with a delay as along the record.
 
     native: whether effects and limits are written at all; else each acts so
     """
-    text, notes, current = engine.path.read_text(encoding="utf-8"), [], engine
-    absent: list[str] = []
+    text, notes, absent, current = engine.path.read_text(encoding="utf-8"), list[str](), list[str](), engine
     forces, by_hand = (), ()
     values, held = dict[str, float](), dict[str, float]()
     before = {one.name: one.value for one in engine.parameters}
     own = {state.name for state in augmented.states[2 * len(engine.coordinates) :]}
+    prescribed = engine.fibres or any("delay(" in term.term for term in augmented.effects)
     changes: list[tuple[str, Callable[[str], str | None], tuple[Term, ...], dict[str, float]]] = [
         (f"{name} = {value:.6g}", partial(engine.text_with_value, name=name, value=value), (), {name: value})
         for name, value in augmented.values().items()
@@ -72,12 +73,12 @@ def write_model(engine: Engine, augmented: Simulation, native: bool = True) -> W
                 said = f"would change the accelerations by a fraction of {deviation:.1g} in the model's own form"
             used = {name for one in more_forces for name in names(parse(one.term))}
             notes.append(f"{what} {said}: only {'discovery.json' if used & own else 'augmented.toml'} contains it")
-            at_once = [one for one in more_forces if one.kind == "port" and "delay(" not in one.term]
-            if at_once and not engine.fibres:
+            runs = not prescribed or not (used & own or getattr(engine, "balls", ()))
+            if runs and any(one.kind == "port" for one in more_forces):
                 by_hand = (*by_hand, *more_forces)
             elif more_values and hasattr(engine, "with_values"):
                 held |= more_values
-            else:  # a force at each step of a run does not know what was before
+            else:
                 absent.append(what)
             continue
         text, current, forces, values = tried, read, *wanted[1:]
@@ -97,14 +98,14 @@ def write_model(engine: Engine, augmented: Simulation, native: bool = True) -> W
     if text == engine.path.read_text(encoding="utf-8"):
         notes.append(f"the written model is the same as {engine.path.name}")
     current = getattr(current, "with_values", lambda _: current)(held)
-    if by_hand:
+    if by_hand and not prescribed:
         n, current = len(engine.coordinates), copy(engine) if current is engine else current
         acting = {one.speed: [f"({by.term})" for by in by_hand if by.place == one.port] for one in engine.coordinates}
         rates = ((one.name, " + ".join(acting.get(one.name, ())) or "0") for one in augmented.states[: 2 * n])
         lines = (*rates, *augmented.equations[2 * n :])
         parts = augmented.states, augmented.inputs, augmented.parameters
         current.pushes = Pushes(compile_simulation(Simulation("pushes", *parts, equations=lines)), n)
-    return WrittenModel(current, text, tuple(notes), tuple(absent), definitions)
+    return WrittenModel(current, text, tuple(notes), tuple(absent), by_hand if prescribed else (), definitions)
 
 
 def whole_model(path: Path | str) -> tuple[Simulation, Engine]:
@@ -112,7 +113,7 @@ def whole_model(path: Path | str) -> tuple[Simulation, Engine]:
     mapping, engine = read_mapping(path)
     written = write_model(engine, mapping)
     others = (f"{name} = {text}" for name, text in mapping.definitions if not name.startswith(REPLACED))
-    absent = (*written.absent, *others)
+    absent = (*written.absent, *(f"{one.name} at {one.place}" for one in written.along), *others)
     if absent:
         raise SchemaError(
             f"{engine.called} can run only what the model's own file contains",
@@ -129,7 +130,8 @@ def _adding(engine: Engine, augmented: Simulation, term: Term, text: str) -> str
     def at(coordinate: float, speed: float) -> float:
         x = np.zeros((1, len(augmented.states)))
         x[0, [number, len(engine.coordinates) + number]] = coordinate, speed
-        return float(_by_hand(augmented, term, x)[0])
+        still = Points(np.zeros(1), x, np.zeros((1, len(augmented.inputs))))
+        return float(forces_at(engine, augmented, (term,), still)[0, number])
 
     return None if number < 0 else engine.text_with_effect(text, ByHand(term, number, at))
 
@@ -162,13 +164,16 @@ def _of_force(augmented: Simulation, expression: str) -> str:
     return "" if {one.name for one in augmented.states}.isdisjoint(names(parse(expression))) else "'s force"
 
 
-def _by_hand(augmented: Simulation, term: Term, x: Values) -> Values:
-    """Force of a term at states (point,); infinite where it depends on more than states."""
+def forces_at(engine: Engine, augmented: Simulation, terms: tuple[Term, ...], points: Points) -> Values:
+    """Force of terms on each coordinate (point, coordinate); infinite where points of no trial do not determine it."""
+    if not points.rate and any("delay(" in one.term or "t" in names(parse(one.term)) for one in terms):
+        return np.full((len(points.x), len(engine.coordinates)), np.inf)
     plain = replace(augmented, model="", effects=(), definitions=())
-    if "delay(" in term.term or "t" in names(parse(term.term)):
-        return np.full(len(x), np.inf)
-    u = np.zeros((len(x), len(augmented.inputs)))
-    return np.broadcast_to(evaluate(plain, term.term, Points(np.zeros(len(x)), x, u)), len(x))
+    forces = np.zeros((len(points.x), len(engine.coordinates)))
+    for term in terms:
+        column = next(k for k, one in enumerate(engine.coordinates) if one.port == term.place)
+        forces[:, column] += evaluate(plain, term.term, points)
+    return forces
 
 
 def _deviation(
@@ -183,10 +188,8 @@ def _deviation(
     q = rng.uniform(low, high, (STATES, n))
     v = rng.uniform(AT_SPEED, 4.0, (STATES, n)) * rng.choice([-1, 1], (STATES, n))
     at = Motion(q, v, rng.uniform(0, 1, (STATES, len(engine.controls))))
-    push, x = np.zeros((STATES, n)), np.hstack([q, v, np.zeros((STATES, len(augmented.states) - 2 * n))])
-    for term in forces:
-        column = next(k for k, one in enumerate(engine.coordinates) if one.port == term.place)
-        push[:, column] += _by_hand(augmented, term, x)
+    x = np.hstack([q, v, np.zeros((STATES, len(augmented.states) - 2 * n))])
+    push = forces_at(engine, augmented, forces, Points(np.zeros(STATES), x, 0.0 * at.u))
     if not np.isfinite(push).all():
         return np.inf, None
     try:

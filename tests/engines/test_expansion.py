@@ -3,8 +3,11 @@
 from dataclasses import replace
 
 import numpy as np
+import pytest
 from texts import says
 
+from gaitdisc.discovery.estimated_filter import find_record_filter
+from gaitdisc.discovery.record_filter import RecordFilter
 from gaitdisc.engines.engine import read_model
 from gaitdisc.engines.expansion import FASTEST, _slow_speeds, expand
 from gaitdisc.engines.mapping import draft, with_input_changed
@@ -13,8 +16,9 @@ from gaitdisc.engines.own_runs import Driven, OwnRuns, Stretches, residual_by, r
 from gaitdisc.engines.written import write_model
 from gaitdisc.simulation.compiled_simulation import Drive, Rows
 from gaitdisc.simulation.measured import Measured
-from gaitdisc.simulation.parts import Term
+from gaitdisc.simulation.parts import Sensor, State, Term
 from gaitdisc.simulation.running import compile_simulation
+from gaitdisc.simulation.simulation import Simulation
 
 from .conftest import DAMPING, GEAR, PENDULUM
 
@@ -153,3 +157,29 @@ def test_white_noise_is_mere_noise_and_a_slow_bend_of_half_its_size_is_not():
     noise, bend = rng.normal(size=(8, 200, 1)), 0.5 * np.sin(np.arange(200) / 16)[None, :, None]
     runs = [OwnRuns(one, one, at, "MuJoCo", {"x": "rad"}, np.ones(1), 2) for one in (noise, noise + bend)]
     assert [one.leave_mere_noise for one in runs] == [True, False]
+
+
+def test_a_channel_whose_spectrum_hides_a_filter_has_that_of_its_unit():
+    rng, t = np.random.default_rng(0), np.arange(4000) / 100
+    sine, noise = np.sin(2 * np.pi * t)[:, None], rng.normal(0, 0.05, (4000, 3))
+    raw = np.hstack([sine + noise[:, :1], sine + noise[:, 1:2].cumsum(axis=0), sine + noise[:, 2:]])
+    seen = RecordFilter((6.0, 6.0, None), 100.0).filtered(raw[None], 1)
+    measured = Measured(Drive.of([np.zeros((4000, 0))], 100.0), seen, ("1",), tuple("abc"))
+    sensors = (Sensor("a", "rad"), Sensor("b", "rad"), Sensor("c", "m"))
+    shown = (("a", "x"), ("b", "x"), ("c", "x"))
+    simulation = Simulation("", (State("x"),), equations=(("x", "-x"),), observations=shown, sensors=sensors)
+    found, _ = find_record_filter(simulation, measured, 1.0)
+    assert found.cutoffs_hz[2] is None and found.cutoffs_hz[:2] == pytest.approx((6.0, 6.0), abs=0.5)
+
+
+def test_noise_that_went_through_the_records_filter_is_mere_noise_as_well_and_its_size_is_seen():
+    """Of 6 Hz: taken for white it would be what a model lacks, and its roughness shows a tenth of its size."""
+    rng, at = np.random.default_rng(4), Stretches(np.zeros(8, int), np.zeros(8, int), 200, 100.0)
+    passed, bend = RecordFilter((6.0,), 100.0), 0.2 * np.sin(np.arange(200) / 16)[None, :, None]
+    noise = passed.filtered(rng.normal(size=(8, 234, 1)), 1)[:, 17:-17]
+    runs = OwnRuns(noise, noise, at, "MuJoCo", {"x": "rad"}, passed.gains, 0, passed.every, passed.autocorrelation(200))
+    assert runs.leave_mere_noise and not replace(runs, before=noise + bend).leave_mere_noise
+    assert not replace(runs, every=1, memory=None).leave_mere_noise
+    assert np.sqrt(np.mean(runs.variances(noise)[1])) == pytest.approx(passed.gains[0], rel=0.1)
+    bent = replace(runs, before=noise + 50 * bend, floor=np.array([3.0]))  # a rough guess, from runs that miss so much
+    assert bent.with_floor([0.0]).floor == pytest.approx(passed.gains, rel=0.1)

@@ -52,6 +52,20 @@ def test_a_small_swing_has_the_period_of_mechanics(pendulum, driven):
     assert np.allclose(run, 0.01 * np.cos(omega * np.arange(400) / 100), atol=2e-4)
 
 
+def test_a_muscle_that_has_only_a_scale_has_a_force(pendulum):
+    muscle = '<muscle name="drive" joint="pivot" lengthrange="-1 1" scale="80"{}/>'
+    said = PENDULUM.replace(f'<motor name="drive" joint="pivot" gear="{GEAR}"/>', muscle)
+    at = Motion(np.array([[0.2]]), np.zeros((1, 1)), np.array([[0.5]]))
+    pendulum.write_text(said.format(""))
+    model = read_model(pendulum)
+    force = next(one.value for one in model.parameters if one.name == "drive_force")
+    pendulum.write_text(model.text_with_value(said.format(""), "drive_force", 0.7 * force))
+    assert np.allclose(
+        read_model(pendulum).accelerations(at, {}), model.accelerations(at, {"drive_force": 0.7 * force})
+    )
+    assert np.allclose(model.accelerations(at, {"drive_force": force * (1 + 1e-12)}), model.accelerations(at, {}))
+
+
 def test_an_activation_lags_as_its_actuator_says(pendulum):
     lagging = '<general name="drive" joint="pivot" dyntype="filter" dynprm="0.05"/>'
     pendulum.write_text(PENDULUM.replace(f'<motor name="drive" joint="pivot" gear="{GEAR}"/>', lagging))

@@ -15,8 +15,9 @@ from gaitdisc.engines.mapping import draft, with_strength
 from gaitdisc.engines.motion import ByHand, Coordinate, Motion
 from gaitdisc.engines.opensim_model import with_effect, with_value
 from gaitdisc.engines.opensim_worker import serve
-from gaitdisc.engines.written import write_model
+from gaitdisc.engines.written import forces_at, write_model
 from gaitdisc.errors import GaitdiscError
+from gaitdisc.simulation.evaluating import Points
 from gaitdisc.simulation.parts import Term
 
 from .conftest import ELBOW, WHEEL
@@ -160,6 +161,22 @@ def test_muscles_along_a_prescribed_motion_are_those_of_the_run_that_made_it(arm
     wanted = np.gradient(run[:, 1], t)[9:-1]  # by then the run has forgotten that it began with fibres at rest
     assert np.abs(arm.accelerations(along, {})[9:-1, 0] - wanted).max() < 0.05 * np.abs(wanted).max()
     assert np.abs(along.u[10:] - u[10:]).max() > 0.005  # an activation is not its excitation
+
+
+def test_a_force_beside_fibres_acts_as_along_the_motion(arm):
+    """Along a run with OpenSim's own spring, the force of its expression is that spring; a product has no form."""
+    mapping, t = (
+        draft(arm).with_effect(Term("elbow_moment", "port", "linear_stiffness", "-2*elbow")),
+        np.arange(40) / 100,
+    )
+    product = draft(arm).with_effect(Term("elbow_moment", "port", "product_coupling", "-step(elbow_speed)*elbow"))
+    assert write_model(arm, product).along == product.effects and not write_model(arm, product).absent
+    u = np.column_stack([0.2 + 0.15 * np.sin(9 * t), 0.2 + 0.1 * np.cos(7 * t)])
+    start = Motion(np.array([[0.3]]), np.zeros((1, 1)), u[:1])
+    run = write_model(arm, mapping).engine.run(start, u[None], 100.0)
+    forces = forces_at(arm, mapping, mapping.effects, Points(t, run[0], u, rate=100.0))
+    assert np.abs(arm.run(start, u[None], 100.0) - run).max() > 0.05
+    assert np.abs(arm.run(start, u[None], 100.0, forces[None]) - run).max() < 1e-3
 
 
 def test_fibres_near_a_known_motion_move_as_those_at_rest(arm):

@@ -11,7 +11,8 @@ from gaitdisc.discovery.candidate import saturations
 from gaitdisc.engines.engine import read_model
 from gaitdisc.engines.mapping import draft, with_input_changed, with_strength
 from gaitdisc.engines.motion import Motion
-from gaitdisc.engines.written import load_beside, write_model
+from gaitdisc.engines.written import forces_at, load_beside, write_model
+from gaitdisc.simulation.evaluating import Points
 from gaitdisc.simulation.parts import Term
 
 from .conftest import PENDULUM
@@ -47,6 +48,20 @@ def test_a_form_that_is_not_the_expression_is_not_written(pendulum):
     found = write_model(model, draft(model).with_effect(wrong))
     assert found.text == PENDULUM
     assert "would change the accelerations by a fraction of" in found.notes[0]
+
+
+def test_a_force_that_remembers_acts_as_along_the_motion(pendulum):
+    """Along a run of the same model with another force at each step, it is that force."""
+    model, spring = read_model(pendulum), term("gravity_moment", "-3*sin(pivot) - 0.4*pivot_speed")
+    late = write_model(model, draft(model).with_effect(term("delayed_feedback", "-2*delay(pivot, 0.05)")))
+    assert [one.name for one in late.along] == ["delayed_feedback"] and late.absent == ()
+    mapping, t = draft(model).with_effect(spring), np.arange(80) / 100
+    beside, u = write_model(model, mapping), 0.2 * np.sin(7 * t)[:, None]
+    start = Motion(np.array([[0.3]]), np.zeros((1, 1)), u[:1])
+    run = beside.engine.run(start, u[None], 100.0)
+    forces = forces_at(model, mapping, (spring,), Points(t, run[0], u, rate=100.0))
+    assert beside.along == () and np.abs(model.run(start, u[None], 100.0) - run).max() > 0.1
+    assert np.abs(model.run(start, u[None], 100.0, forces[None]) - run).max() < 1e-3
 
 
 @pytest.mark.parametrize(("low", "high"), [(-0.7, 0.7), (-0.2, 0.5), (-1000.0, 0.5)])

@@ -8,12 +8,14 @@ import pytest
 from saved_folders import PENDULUM
 
 from gaitdisc.discovery.candidate import Candidate
-from gaitdisc.discovery.discover_engine import _NOTHING
+from gaitdisc.discovery.discover_engine import _NOTHING, keep_borne_out
 from gaitdisc.discovery.fit_by_engine import NO_FILTER, EngineFit, base_runs
 from gaitdisc.discovery.kept_work import kept_work
 from gaitdisc.discovery.record_filter import RecordFilter
 from gaitdisc.discovery.result import FoundEffect
 from gaitdisc.discovery.scored_model import Part
+from gaitdisc.engines.mapping import draft
+from gaitdisc.engines.motion import Motion
 from gaitdisc.engines.own_runs import residual_by
 from gaitdisc.simulation.compiled_simulation import Drive
 from gaitdisc.simulation.measured import Measured
@@ -23,6 +25,7 @@ SPRING = Candidate(
 )
 DAMPED = Candidate("wrong_parameter", "parameter", "pivot_damping", "wrong_parameter", value=0.3)
 WEAK = Candidate("input_error", "input", "drive", "input_gain")
+LATE = Candidate("missing_physics", "port", "pivot_moment", "delayed_feedback", ("delay(pivot, _d)",), {"d": "delays"})
 KNEE = Path(__file__).parents[2] / "studies/systems/knee_muscles.xml"
 CLIPPED = Candidate("input_error", "input", "drive", "input_saturation", ("min({s}, {limit})",), {"limit": ""})
 
@@ -31,7 +34,6 @@ def driven(folder, change, low_pass):
     """Return a model, what three driven trials of one with a change show, and their states."""
     pytest.importorskip("mujoco", reason="MuJoCo is not installed: gaitdisc[mujoco]")
     from gaitdisc.engines.engine import read_model
-    from gaitdisc.engines.motion import Motion
 
     (folder / "plain.xml").write_text(PENDULUM)
     (folder / "truth.xml").write_text(PENDULUM.replace(*change))
@@ -47,8 +49,6 @@ def driven(folder, change, low_pass):
 
 def fitted(plain, measured, states, part, low_pass):
     """Return what was found with numbers of the engine's own runs."""
-    from gaitdisc.engines.mapping import draft
-
     fit = EngineFit(draft(plain), plain, measured, states, (part,), low_pass)
     effect = FoundEffect(part.candidate.kind, part.candidate.place, part.candidate.name, "")
     return fit.fitted(replace(_NOTHING, effects=(effect,)), fit.mapping, base_runs(plain, fit))
@@ -93,14 +93,33 @@ def test_a_fit_that_was_stopped_goes_on_to_the_same_numbers(tmp_path, monkeypatc
     assert again.effects == at_once.effects and len(made) == every - done
 
 
+@pytest.mark.parametrize("gain", [-2.0, 0.0])
+def test_a_late_feedback_is_borne_out_by_the_engine_where_it_acts_and_not_where_it_is_invented(tmp_path, gain):
+    """MuJoCo runs it along the measured motion: a name of the expansion alone was said without a proof."""
+    plain, measured, whole = driven(tmp_path, ("damping=", "damping="), NO_FILTER)
+    part = Part(LATE, {"factor": -2.0, "d": 0.1})
+    fit = EngineFit(draft(plain), plain, measured, whole, (part,))
+    controls, start = measured.drive.inputs, Motion(whole[:, 0, :1], whole[:, 0, 1:], np.zeros((3, 1)))
+    for _ in range(9 if gain else 0):  # a run under the forces of the run before, until it is its own
+        forces = [gain * np.interp(measured.time(0) - 0.1, measured.time(0), one[:, 0]) for one in whole]
+        whole = plain.run(start, controls, 100.0, np.array(forces)[:, :, None])
+    rng = np.random.default_rng(5)
+    fit.measured = replace(measured, observed=whole[:, :, :1] + 0.003 * rng.normal(size=(3, 300, 1)))
+    fit.states = whole
+    runs = base_runs(plain, fit)
+    found = replace(_NOTHING, effects=(FoundEffect("port", "pivot_moment", "delayed_feedback", part.term),))
+    runs = replace(runs, after=fit.left(found, fit.parts, runs))
+    assert fit.written(found, fit.parts)[1].absent == () and runs.leave_mere_noise == (gain == 0.0)
+    kept = keep_borne_out(fit, found, runs, runs.at.trial == 2)
+    assert kept == ((part,) if gain else ())
+
+
 @pytest.mark.parametrize("weak", ["force", "excitation"])
 def test_own_runs_distinguish_a_muscles_force_from_its_excitation(weak):
     """Activation rises faster the less there is of it: a scaled excitation makes no scaled activation."""
     pytest.importorskip("mujoco", reason="MuJoCo is not installed: gaitdisc[mujoco]")
     from gaitdisc.discovery.discover_engine import with_forces_of_muscles
     from gaitdisc.engines.engine import read_model
-    from gaitdisc.engines.mapping import draft
-    from gaitdisc.engines.motion import Motion
 
     model, t, rng = read_model(KNEE), np.arange(300) / 100, np.random.default_rng(4)
     controls = [0.25 + 0.2 * np.sin(2 * np.pi * f * t[:, None] + [0.0, 2.5]) for f in (0.6, 1.1, 1.7)]
