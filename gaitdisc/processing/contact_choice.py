@@ -15,10 +15,11 @@ from gaitdisc.signals.contacts import MATCH_S, Contacts, event_contacts, force_c
 from gaitdisc.signals.direction import Direction, state_direction, walking_direction
 
 HEELS = {
-    "r": ("RHEE", "R.Heel", "RHEEL", "R_Heel", "RCAL", "RCALC"),
-    "l": ("LHEE", "L.Heel", "LHEEL", "L_Heel", "LCAL"),
+    "r": ("RHEE", "R.Heel", "RHEEL", "R_Heel", "RCAL", "RCALC", "r_calc"),
+    "l": ("LHEE", "L.Heel", "LHEEL", "L_Heel", "LCAL", "LCALC", "L_calc"),
 }
-PELVIS = ("LASI", "RASI", "LPSI", "RPSI", "SACR", "L.ASIS", "R.ASIS", "L.PSIS", "R.PSIS", "LASIS", "RASIS")
+PELVIS = ("LASI", "RASI", "LPSI", "RPSI", "SACR", "L.ASIS", "R.ASIS", "r.ASIS", "L.PSIS", "R.PSIS", "r.PSIS")
+PELVIS += ("LASIS", "RASIS")
 PREFERRED = ("force", "events", "markers", "angles")
 ENOUGH = 0.8  # of the strides that the most prolific detector sees
 DISAGREEMENT_MS = 50.0  # a twentieth of a stride
@@ -74,7 +75,7 @@ def choose_contacts(
     why = refused if detector == "auto" else {detector: refused.get(detector)}
     if not strides or (detector != "auto" and detector not in strides):
         reasons = [f"{name}: {error.found if error else 'no stride of both feet'}" for name, error in why.items()]
-        raise why.get(detector) or nothing_found(trial, needed, reasons)
+        raise why.get(detector) or nothing_found(trial, needed, reasons, refused.get("markers"))
     chosen = detector if detector != "auto" else best_detector(PREFERRED, strides, seen)
     reference, offset_s = _offset(chosen, seen)
     taken = seen[chosen] if offset_s is None else _move(seen[chosen], offset_s)
@@ -278,10 +279,13 @@ def _findings(
     return findings
 
 
-def nothing_found(trial: Trial, needed: str, reasons: Sequence[str]) -> StrideError:
-    """That no detector serves, and why each does not."""
+def nothing_found(
+    trial: Trial, needed: str, reasons: Sequence[str], markers: GaitdiscError | None = None
+) -> StrideError:
+    """That no detector serves, and why each does not; markers of unknown names are the first thing to correct."""
+    remedy = "Add the file that contains forces, markers or angles to the trial, or remove the trial."
     return StrideError(
         needed,
         f"{trial.name} has {', '.join(trial.streams) or 'no stream'}; {'; '.join(reasons) or 'none of them serves'}",
-        "Add the file that contains forces, markers or angles to the trial, or remove the trial.",
+        markers.remedy if isinstance(markers, ChannelError) else remedy,
     )

@@ -106,9 +106,10 @@ def step_events(
         for name in dict.fromkeys([*seen, *refused]):
             error = refused.get(name)
             counts = ", ".join(f"{len(one)} of side {side}" for side, one in sorted(seen.get(name, {}).items()))
-            reasons.append(f"{name}: {error.found if error else counts or 'no contact'}")
+            reasons.append(f"{name}: {error.found if error else f'contacts: {counts or 0}'}")
         by = "events, force, markers or joint angles" if detector == "auto" else detector
-        raise nothing_found(trial, f"a cycle must have two initial contacts of the same foot, from {by}", reasons)
+        needed = f"a cycle must have two initial contacts of the same foot, from {by}"
+        raise nothing_found(trial, needed, reasons, refused.get("markers"))
     sure = {name: count for name, count in strides.items() if name != "angles"} or strides
     chosen = best_detector(ORDER, sure, seen) if detector == "auto" else detector
     if chosen == "events":

@@ -145,7 +145,7 @@ def _cycles(kinematics: Recording, name: str) -> tuple[Values, float]:
         raise StrideError(
             f"strides from angles need a hip that swings by at least {FEWEST_HIP_DEG:g} deg and repeats",
             f"{hip.source.file or 'the recording'}, {name}: the range is {reach:.1f} deg, the regularity "
-            f"{regularity:.2f}",
+            f"{regularity:.2f} in {hip.duration_s:.1f} s",
             "Check whether the trial is walking and whether the angle is in deg.",
         )
     slow = low_pass(hip, CYCLE_CUTOFF / period).values[:, 0]

@@ -104,7 +104,7 @@ def _headings(centre: Values, level: list[int], rate_hz: float) -> Values | None
     velocity = (path[late] - path[early]) / np.maximum(late - early, 1)[:, None] * rate_hz
     speed = np.linalg.norm(velocity, axis=1)
     moving = np.flatnonzero((speed >= LEAST_SPEED) & (late - early >= half))
-    if len(moving) < len(centre) / 2:
+    if len(moving) < (known[-1] + 1 - known[0]) / 2:  # of the frames from where the cameras see somebody
         return None
     nearest = moving[np.rint(np.interp(samples, moving, np.arange(len(moving)))).astype(int)]  # held in standing
     headings = np.zeros(centre.shape)

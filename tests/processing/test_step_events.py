@@ -169,9 +169,9 @@ def test_standing_before_and_after_a_walk_is_cut_out_and_said(walks, before_s, a
         assert walking_part(walk) is walk
 
 
-def test_a_walker_whom_the_cameras_do_not_see_yet_is_not_standing(walks):
+def test_a_walker_whom_the_cameras_do_not_see_yet_neither_stands_nor_is_on_a_treadmill(walks):
     walk = replace(walks["HC030A22"], streams={"markers": walks["HC030A22"].stream("markers")}, events=())
-    longer = _standing_about(walk, 2.5, 2.5)
+    longer = _standing_about(walk, 4.0, 4.0)
     markers = longer.stream("markers")
     unseen = (markers.time < walk.stream("markers").time[0]) | (markers.time > walk.stream("markers").time[-1])
     values = np.where(unseen[:, None], np.nan, markers.values)
@@ -179,6 +179,7 @@ def test_a_walker_whom_the_cameras_do_not_see_yet_is_not_standing(walks):
     assert walking_part(longer) is not longer
     longer = replace(longer, streams={"markers": hidden})
     assert walking_part(longer) is longer
+    assert over_ground(longer)
 
 
 def test_nothing_is_cut_where_nobody_steps_or_all_do(walks, trial):
