@@ -78,12 +78,12 @@ def text_start(conditions: Conditions) -> str:
 
 
 def artefact(record: Record) -> str:
-    """Forecast improvement by the published way and metric, then each put right."""
+    """Forecast improvement by the published way and metric, then each put right; every run begins at the true state."""
     system, dt = record.system, record.conditions.dt_s
     learned = learned_model(record, "dmd", "dynamics", SETTINGS)
     time = record.time[record.split - 1 :]
     words = []
-    for name, start in (("pulse anew at the forecast", system.start), ("field goes on", record.start(forecast=True))):
+    for name, start in (("pulse anew at the forecast", system.start), ("field goes on (oracle)", record.start(forecast=True))):
         truth, known = (rates.run(start[None], dt, len(time) - 1)[0] for rates in (system.true, system.known))
         augmented = with_learned_rates(system.known, learned, start, time).values
         mean = [float(np.mean(np.abs(np.mean(truth - each, axis=1)))) for each in (known, augmented)]

@@ -42,7 +42,7 @@ class OpensimTracked(OpensimModel):
         self._called = {new_name(f"{name}_mass", "number", taken): f"{name}_mass" for name, _ in described["masses"]}
         masses = zip(self._called, described["masses"], strict=True)
         self.parameters = tuple(Parameter(name, mass, "kg") for name, (_, mass) in masses)
-        self.controls, self.offered = (), ()
+        self.controls, self.offered, self.fibres = (), (), False  # muscles pull as recorded, whatever their fibres do
         self.actuators: tuple[str, ...] = tuple(described["actuators"])
         self.base: tuple[int, ...] = tuple(described["base"])  # coordinates of the joint with the ground
         self.vertical: int = described["vertical"]  # the base's upward coordinate, -1 where there is none
