@@ -114,11 +114,6 @@ class ClinicalReference:
         """Number of controls of a condition."""
         return len({leg.person for leg in self.of(condition)})
 
-    def without(self, person: int) -> ClinicalReference:
-        """Reference of all controls but one."""
-        legs = {word: tuple(leg for leg in own if leg.person != person) for word, own in self.legs.items()}
-        return ClinicalReference(self.title, legs, self.settings, self.versions, self.created)
-
 
 def save_reference(reference: ClinicalReference, folder: Path) -> Path:
     """Save a reference as `reference.json`, whole, with a hash of its own."""

@@ -12,7 +12,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from gaitdisc.clinic.laboratory import Laboratory
-from gaitdisc.clinic.rules import rule_words
+from gaitdisc.clinic.rules import SCORE, SCORE_WORDS, rules
 from gaitdisc.errors import SchemaError
 from gaitdisc.processing.leg_curves import VARIABLES
 from gaitdisc.processing.tables import VALUES
@@ -86,7 +86,8 @@ def english_words() -> list[str]:
     found = [word for text in texts for word in re.findall(r'say\("([^"]+)"\)', text)]
     found += [word for one in VARIABLES for word in (one.words, one.up, one.down)]
     found += [words for words, _, _ in VALUES.values()]
-    return [word for word in dict.fromkeys((*found, *rule_words(), *TABLES)) if word]
+    found += [word for rule in rules() for word in (rule.name, rule.less, rule.more)]
+    return [word for word in dict.fromkeys((*found, SCORE, SCORE_WORDS, *TABLES)) if word]
 
 
 def write_words(path: Path, words: PageWords = ENGLISH) -> Path:

@@ -26,7 +26,6 @@ BAR = 5  # height of a bar below the curves
 STRIP = 30  # height of a raw trace below a panel, of one leg
 BINS = 500  # of a raw trace, each drawn from its smallest to its largest sample
 AMPLIFIED_V = 0.005  # surface EMG is below 5 mV on the skin
-SPANS = 6  # parts of a row: a panel takes two or three
 SHORT = {"l": "L", "r": "R"}
 MOST_SINGLE = 12  # cycles of a leg that are drawn one by one
 
@@ -58,7 +57,7 @@ class Panel:
     # tuple of (str, int, int, bool), side, where two sets of its cycles differ, and whether by as much as matters
     differs: tuple[tuple[str, int, int, bool], ...] = ()
     axis: tuple[float, float] | None = None  # its ends, wherever no curve goes beyond; fitted where there is none
-    span: int = 2  # parts of the row
+    span: int = 2  # parts of the six of a row
     about: str = ""  # what else stands above the curves
     raw: tuple[Line, ...] = ()  # raw traces of one cycle of each leg, below the curves, each (sample,)
     raw_unit: str = ""
@@ -293,8 +292,7 @@ def emg_sheet(pooled: PooledCycles) -> list[Panel]:
             mean = own.mean(axis=0)
             line, volts = Line(channel.side, 100 * mean / mean.max()), mean.max() if channel.unit == "V" else np.nan
             muscles.setdefault(sideless(channel.name), []).append((line, len(own), volts))
-    kept = pooled.kept
-    means = {side: float(kept.loc[kept["side"] == side, "stance_percent"].mean()) for side in FEET}
+    means = {side: float(pooled.kept.loc[feet == side, "stance_percent"].mean()) for side in FEET}
     offs = tuple((side, mean) for side, mean in means.items() if np.isfinite(mean))
     found = []
     for muscle, own in muscles.items():

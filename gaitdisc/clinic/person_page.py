@@ -181,8 +181,8 @@ def _contrast(contrast: Contrast, beside: Path, say: PageWords) -> dict[str, Any
     stem = next(iter(file_names([f"{first}-{second}"]).values()))
     curves = _sheet(contrast_sheet(contrast), CONTRAST.format(*contrast.names), beside, f"{stem}-curves", say)
     changes = _save(change_table(contrast), beside, f"{stem}-", say)
-    words = {"heading": contrast_heading(contrast, say), "sentences": contrast_sentences(contrast)}
-    return {**words, "curves": curves, "changes": changes}
+    heading, sentences = contrast_heading(contrast, say), contrast_sentences(contrast)
+    return {"heading": heading, "sentences": sentences, "curves": curves, "changes": changes}
 
 
 def _reference(reference: ClinicalReference | None, condition: str) -> str:
@@ -262,7 +262,6 @@ def write_index(
     cells = [tuple(row[key] for key in COLUMNS) for row in rows]
     table = words_table("people", "Participants of the run.", HEADINGS, cells)
     save_tables([table], folder)
-    lights = {light: sum(row["light"] == light for row in rows) for light in RANKS}
     shown = {
         "say": say,
         "title": run.title,
@@ -270,7 +269,7 @@ def write_index(
         "rows": rows,
         "headings": HEADINGS,
         "whole": (folder / "report.html").is_file(),
-        "lights": lights,
+        "lights": {light: sum(row["light"] == light for row in rows) for light in RANKS},
         "reference": _reference_words(reference),
         "people": counted(len({row["subject"] for row in rows}), "person").replace("persons", "people"),
     }

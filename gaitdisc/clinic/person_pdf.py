@@ -5,7 +5,6 @@ from __future__ import annotations
 import base64
 import json
 from collections.abc import Mapping
-from importlib.util import find_spec
 from pathlib import Path
 from typing import Any
 
@@ -16,11 +15,6 @@ from gaitdisc.report.table import Table
 from gaitdisc.whole_file import write_whole
 
 NO_PDF = ("PDF requires the package typst", "it is not installed", "Install it: pip install 'gaitdisc[pdf]'.")
-
-
-def can_write_pdf() -> bool:
-    """Whether typst, which carries its compiler, is installed."""
-    return find_spec("typst") is not None
 
 
 def write_person_pdf(shown: Mapping[str, Any], path: Path) -> Path:

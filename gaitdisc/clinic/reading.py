@@ -296,11 +296,9 @@ def _spans(first: LegCurves, second: LegCurves) -> tuple[list[DifferingSpan], in
         raise ComparisonError(
             "a test needs an angle in all cycles of both sets", "found none", "Record the same angles in both sets."
         )
-    sets: Mapping[str, np.ndarray] = {
-        word: np.stack([leg.cycles[name] for name in names], axis=2) for word, leg in (("a", first), ("b", second))
-    }
-    tested = two_sample_test(sets["a"], sets["b"], PLAN)
-    apart = sets["b"].mean(axis=0) - sets["a"].mean(axis=0)
+    before, after = (np.stack([leg.cycles[name] for name in names], axis=2) for leg in (first, second))
+    tested = two_sample_test(before, after, PLAN)
+    apart = after.mean(axis=0) - before.mean(axis=0)
     found = []
     for cluster in tested.clusters:
         own = apart[cluster.first : cluster.last + 1, cluster.channel]

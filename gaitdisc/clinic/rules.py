@@ -105,11 +105,6 @@ def rules() -> tuple[Rule, ...]:
     return rules_in(tomllib.loads(Path(__file__).with_name("rules.toml").read_text(encoding="utf-8")))
 
 
-def rule_words() -> list[str]:
-    """Name of every rule, and what it calls too little and too much."""
-    return [word for rule in rules() for word in (rule.name, rule.less, rule.more) if word] + [SCORE, SCORE_WORDS]
-
-
 def rules_in(data: Mapping[str, list[dict[str, object]]]) -> tuple[Rule, ...]:
     """Rules of a table, each checked."""
     found = []

@@ -5,6 +5,7 @@ from __future__ import annotations
 import itertools
 from collections.abc import Callable, Sequence
 from dataclasses import replace
+from importlib.util import find_spec
 from pathlib import Path
 
 from gaitdisc.clinic.clinical_reference import (
@@ -16,9 +17,9 @@ from gaitdisc.clinic.clinical_reference import (
     save_reference,
 )
 from gaitdisc.clinic.laboratory import load_laboratory
-from gaitdisc.clinic.page_words import ENGLISH, PageWords, english_words, read_words, write_words
+from gaitdisc.clinic.page_words import ENGLISH, english_words, read_words, write_words
 from gaitdisc.clinic.person_page import index_rows, write_index, write_person_page
-from gaitdisc.clinic.person_pdf import NO_PDF, can_write_pdf
+from gaitdisc.clinic.person_pdf import NO_PDF
 from gaitdisc.clinic.reading import contrast, read_beside
 from gaitdisc.errors import LOG, GaitdiscError, SchemaError, WriteError
 from gaitdisc.own_files import file_sha256
@@ -65,12 +66,6 @@ def keep_words(language: str, run_folder: Path) -> list[str]:
     words = read_words(Path(language))
     write_words(run_folder / WORDS, words)
     return [word for word in english_words() if not words.other.get(word)]
-
-
-def load_kept_words(run_folder: Path) -> PageWords:
-    """Words of the pages of a run, English where no others were kept; and what `clinic.toml` says."""
-    words = read_words(run_folder / WORDS) if (run_folder / WORDS).is_file() else ENGLISH
-    return replace(words, laboratory=load_laboratory(run_folder))
 
 
 def write_people(
@@ -191,9 +186,11 @@ class _Pages:
 
     def __init__(self, run: StudyRun, run_folder: Path, pdf: bool) -> None:
         self.report, self._provenance = run_folder / "report", run.provenance
-        self.reference, self.say = load_kept_reference(run_folder), load_kept_words(run_folder)
+        words = read_words(run_folder / WORDS) if (run_folder / WORDS).is_file() else ENGLISH
+        self.reference = load_kept_reference(run_folder)
+        self.say = replace(words, laboratory=load_laboratory(run_folder))
         self.pdf = pdf or self.say.laboratory.pdf
-        if self.pdf and not can_write_pdf():
+        if self.pdf and find_spec("typst") is None:
             if pdf:
                 raise SchemaError(*NO_PDF)
             LOG.warning(f"Pages are written without PDF: {NO_PDF[0]}. {NO_PDF[2]}")

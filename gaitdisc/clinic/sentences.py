@@ -178,9 +178,7 @@ def contrast_heading(contrast: Contrast, say: Callable[[str], str] = str) -> str
 def contrast_sentences(contrast: Contrast) -> list[str]:
     """Where two sets of cycles differ and by how much; the largest first, and what was not tested."""
     first, second = contrast.names
-    found = []
-    for side, why in contrast.untested.items():
-        found.append(f"{SIDE_WORDS[side].capitalize()}: not tested; {why}")
+    found = [f"{SIDE_WORDS[side].capitalize()}: not tested; {why}" for side, why in contrast.untested.items()]
     spans = sorted((one for one in contrast.spans if one.matters), key=lambda one: -abs(one.difference))
     found += [_span(one, contrast) for one in spans[:MOST_SPANS]]
     small = len(contrast.spans) - len(spans)

@@ -156,10 +156,8 @@ def profile_svg(profile: Profile, say: Callable[[str], str] = str) -> str:
 
 def _bars(scores: dict[str, Score], at: float, height: float, x) -> list[str]:
     parts: list[str] = []
-    if not scores:
-        return parts
-    some = next(iter(scores.values()))
-    if np.isfinite(some.reference_mean):
+    some = next(iter(scores.values()), None)
+    if some is not None and np.isfinite(some.reference_mean):
         low, high = max(0.0, some.reference_mean - some.reference_sd), some.reference_mean + some.reference_sd
         parts.append(
             f'<rect class="band" x="{x(low):.1f}" y="{at + 2:.1f}" width="{x(high) - x(low):.1f}" '

@@ -1,4 +1,7 @@
-"""Records in another convention than the model's: degrees for radians, the other sign, millimetres for metres."""
+"""Records in another convention than the model's: degrees for radians, the other sign, millimetres for metres.
+
+states (trial, sample, state): smoothed: coordinates, then speeds
+"""
 
 from __future__ import annotations
 
@@ -47,10 +50,7 @@ CONVENTIONS = {
 
 
 def refuse_other_units(mapping: Simulation, engine: Engine, measured: Measured, states: Values) -> None:
-    """Refuse angles that can be no radians: degrees that nobody said are degrees; a wheel may turn as often as it does.
-
-    states (trial, sample, state): smoothed: coordinates, then speeds
-    """
+    """Refuse angles that can be no radians: degrees that nobody said are degrees; a wheel may turn on and on."""
     largest, as_read = np.nanmax(np.abs(states), axis=(0, 1)), np.ones(len(engine.coordinates))
     far = [k for k, one in enumerate(engine.coordinates) if one.unit == "rad" and largest[k] > _limit(one)]
     steep = [k + 1 for k in getattr(engine, "balls", ()) if largest[k + 1] > STEEPEST]
@@ -75,10 +75,7 @@ def refuse_other_units(mapping: Simulation, engine: Engine, measured: Measured, 
 
 
 def refuse_other_conventions(mapping: Simulation, engine: Engine, measured: Measured, states: Values) -> None:
-    """Refuse a record that the model follows with other signs or units of some columns, and does not as it stands.
-
-    states (trial, sample, state): smoothed: coordinates, then speeds
-    """
+    """Refuse a record that the model follows with other signs or units of some columns, and does not as it stands."""
     factors = np.ones(len(engine.coordinates))
     misfit = _Misfit(mapping, engine, measured, states)
     as_read = now = misfit.with_factors(factors)
@@ -147,5 +144,4 @@ def _limit(one: Coordinate) -> float:
 
 
 def _column(mapping: Simulation, one: Coordinate) -> str:
-    """Column that shows a coordinate."""
     return next((name for name, text in mapping.observations if one.name in text), one.name)

@@ -49,7 +49,8 @@ def expand(
     """
     own, drive = simulation.values() | dict(values or {}), measured.drive
     motions = [compute_motion(engine, drive, states, trial) for trial in range(len(states))]
-    at = Motion.joined(motions)
+    fields = ("q", "v", "u") if motions[0].z is None else ("q", "v", "u", "z")
+    at = Motion(*(np.concatenate([getattr(one, name) for one in motions]) for name in fields))
     paths = [np.gradient(one.v, 1 / drive.rate, axis=0) for one in motions]
     stride = 1 if at.z is None else max(round(drive.rate / SLOPES_HZ), 1)
     begun = np.cumsum(drive.samples) - drive.samples
@@ -58,9 +59,8 @@ def expand(
     ]
     columns = _Columns(engine)
     _expand(columns, simulation, _Along(at, np.concatenate(paths), np.concatenate(points)), own)
-    computed = columns.values
-    inputs = (*simulation.inputs, *(Input(name, "", "computed along the record", True) for name in computed))
-    trials = np.split(np.column_stack([at.u, *computed.values()]), begun[1:])
+    inputs = (*simulation.inputs, *(Input(name, "", "computed along the record", True) for name in columns.values))
+    trials = np.split(np.column_stack([at.u, *columns.values.values()]), begun[1:])
     lines = tuple((state.name, columns.equations[state.name]) for state in simulation.states)
     linear = replace(simulation, inputs=inputs, equations=lines, definitions=(), model="", layout="", source=None)
     linear = linear if at.z is None else replace(linear, inexact=INEXACT)
@@ -188,7 +188,6 @@ def _slopes(engine: Engine, along: _Along, values: Mapping[str, float]) -> dict[
 
 
 def _fibres(at: Motion) -> list[str]:
-    """Names of the states of fibres."""
     return [] if at.z is None else [f"fibre_{number}" for number in range(at.z.shape[1])]
 
 

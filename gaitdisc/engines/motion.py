@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import keyword
 import re
-from collections.abc import Callable, Sequence
+from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
@@ -62,12 +62,6 @@ class Motion:
     def at(self, points: NDArray[np.intp]) -> Motion:
         """Return some of its points."""
         return Motion(self.q[points], self.v[points], self.u[points], None if self.z is None else self.z[points])
-
-    @staticmethod
-    def joined(motions: Sequence[Motion]) -> Motion:
-        """Points of several motions as those of one."""
-        fields = ("q", "v", "u") if motions[0].z is None else ("q", "v", "u", "z")
-        return Motion(*(np.concatenate([getattr(one, name) for one in motions]) for name in fields))
 
 
 @dataclass(frozen=True)

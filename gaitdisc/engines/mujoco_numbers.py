@@ -53,10 +53,9 @@ def list_of_controls(mujoco: Any, model: Any, controls: Sequence[Input]) -> dict
     """Every muscle's force, and every motor's gear."""
     places: dict[str, Number] = {}
     for number, one in enumerate(controls):
-        if model.actuator_gaintype[number] == int(mujoco.mjtGain.mjGAIN_MUSCLE):
-            places[f"{one.name}_force"] = Number("actuator_gainprm", (number, 2), "N", ("actuator", number))
-        else:
-            places[f"{one.name}_gear"] = Number("actuator_gear", (number, 0), "1", ("actuator", number))
+        muscle = model.actuator_gaintype[number] == int(mujoco.mjtGain.mjGAIN_MUSCLE)
+        word, array, place, unit = ("force", "gainprm", 2, "N") if muscle else ("gear", "gear", 0, "1")
+        places[f"{one.name}_{word}"] = Number(f"actuator_{array}", (number, place), unit, ("actuator", number))
     return places
 
 

@@ -17,12 +17,8 @@ MORE_OF = {"viscous_damping": "damping", "coulomb_friction": "frictionloss"}  # 
 
 def with_range(text: str, called: str, low: float, high: float, of: str) -> str | None:
     """Text with the range of an actuator's control, or of its force; None where the file does not name it."""
-    for name, value in ((f"{of}limited", "true"), (f"{of}range", f"{low!r} {high!r}")):
-        tags = [one for one in _tags(text) if _is(text, one, "actuator", called)]
-        if len(tags) != 1:
-            return None
-        text = _with_attribute(text, tags[0], name, value)
-    return text
+    tag, values = _find(text, "actuator", called), {f"{of}limited": "true", f"{of}range": f"{low!r} {high!r}"}
+    return None if tag is None else _with_attributes(text, tag, values)
 
 
 def with_value(text: str, name: str, value: float, kind: str, called: str, shape: Mapping | None = None) -> str | None:
@@ -38,22 +34,19 @@ def with_value(text: str, name: str, value: float, kind: str, called: str, shape
         vector = np.array([float(each) for each in given.split()]) if given else np.array([0.0, 0.0, -9.81])
         words = " ".join(repr(float(each)) for each in vector * (value / np.linalg.norm(vector)))
         end = f'  <option gravity="{words}"/>\n'
-        return _with_attribute(text, tags[0], "gravity", words) if tags else _before_end(text, end)
-    word = name.rpartition("_")[2]
-    tags = [one for one in _tags(text) if _is(text, one, kind, called)]
-    if len(tags) != 1:
+        return _with_attributes(text, tags[0], {"gravity": words}) if tags else _before_end(text, end)
+    tag, word = _find(text, kind, called), name.rpartition("_")[2]
+    if tag is None:
         return None
     if word == "mass":
         words = (f'{word}="{" ".join(map(repr, each.tolist()))}"' for word, each in (shape or {}).items())
         inertial = f'<inertial mass="{value!r}" {" ".join(words)}/>' if shape else ""
-        return _with_mass(text, tags[0], value, inertial)
-    if tags[0][0] == "freejoint" and text[tags[0][2] - 2] == "/":
-        text = text[: tags[0][1]] + AS_FREE + text[tags[0][1] + len("<freejoint") :]
-        tags = [one for one in _tags(text) if one[1] == tags[0][1]]
-    if word == "gear":
-        rest = (_attribute(text, tags[0], "gear") or "1").split()[1:]
-        return _with_attribute(text, tags[0], "gear", " ".join([repr(value), *rest]))
-    return _with_attribute(text, tags[0], word, repr(value))
+        return _with_mass(text, tag, value, inertial)
+    if tag[0] == "freejoint" and text[tag[2] - 2] == "/":
+        text = text[: tag[1]] + AS_FREE + text[tag[1] + len("<freejoint") :]
+        tag = next(one for one in _tags(text) if one[1] == tag[1])
+    rest = (_attribute(text, tag, "gear") or "1").split()[1:] if word == "gear" else []
+    return _with_attributes(text, tag, {word: " ".join([repr(value), *rest])})
 
 
 def with_effect(text: str, effect: ByHand, joint: str, own: Mapping[str, float]) -> str | None:
@@ -62,10 +55,9 @@ def with_effect(text: str, effect: ByHand, joint: str, own: Mapping[str, float])
     joint: its name in the file
     own: stiffness, damping and frictionloss that the joint has, which may come from a default class
     """
-    tags = [one for one in _tags(text) if _is(text, one, "joint", joint)]
-    if not joint or len(tags) != 1:
+    tag, name = _find(text, "joint", joint), effect.term.name
+    if not joint or tag is None:
         return None
-    tag, name = tags[0], effect.term.name
     at_one, at_speed_one = -effect.at(1.0, 0.0), -effect.at(0.0, 1.0)
     if name == "linear_stiffness":
         return _with_spring(text, tag, at_one, own["stiffness"])
@@ -78,7 +70,7 @@ def with_effect(text: str, effect: ByHand, joint: str, own: Mapping[str, float])
     elif name == "quadratic_drag" and not rest:
         attribute, words = "damping", f"{first} {at_speed_one!r}"
     if attribute:
-        return _with_attribute(text, tag, attribute, words)
+        return _with_attributes(text, tag, {attribute: words})
     low, stiffness, high = effect.slack if name == "one_sided_spring" else (0.0, 0.0, 0.0)  # slack in between
     if not stiffness > 0:
         return None
@@ -93,15 +85,13 @@ def _with_mass(text: str, body: _Tag, value: float, inertial: str) -> str | None
     own = [one for one in inner if one[0] == "inertial"] or inner
     if len(own) != 1 or _attribute(text, own[0], "mass") is None:
         return f"{text[: body[2]]}{inertial}{text[body[2] :]}" if inertial and len(own) == len(inner) else None
-    tag = own[0]
+    tag, values = own[0], {"mass": repr(value)}
     for name in ("diaginertia", "fullinertia") if tag[0] == "inertial" else ():
         given = _attribute(text, tag, name)
         if given:  # of the same shape: the inertia goes with the mass
             share = value / float(_attribute(text, tag, "mass") or 1.0)
-            words = " ".join(repr(float(word) * share) for word in given.split())
-            text = _with_attribute(text, tag, name, words)
-            tag = next(one for one in _tags(text) if one[1] == tag[1])
-    return _with_attribute(text, tag, "mass", repr(value))
+            values[name] = " ".join(repr(float(word) * share) for word in given.split())
+    return _with_attributes(text, tag, values)
 
 
 def _with_spring(text: str, tag: _Tag, stiffness: float, before: float) -> str | None:
@@ -111,10 +101,8 @@ def _with_spring(text: str, tag: _Tag, stiffness: float, before: float) -> str |
     if len(own) > 1:
         return None
     both = float(own[0]) + stiffness
-    if rest and both:
-        text = _with_attribute(text, tag, "springref", repr(float(own[0]) * rest / both))
-        tag = next(one for one in _tags(text) if one[1] == tag[1])
-    return _with_attribute(text, tag, "stiffness", repr(both))
+    turned = {"springref": repr(float(own[0]) * rest / both)} if rest and both else {}
+    return _with_attributes(text, tag, {**turned, "stiffness": repr(both)})
 
 
 _TAG = re.compile(r"""<(?:[^>"']|"[^"]*"|'[^']*')*>""")
@@ -141,11 +129,12 @@ def _tags(text: str) -> list[_Tag]:
     return found
 
 
-def _is(text: str, tag: _Tag, kind: str, called: str) -> bool:
-    """Whether a tag is that of an element; those of actuators and tendons have many names."""
-    group = kind in ("actuator", "tendon")
-    fits = text[tag[3] :].startswith(f"<{kind}") if group else tag[0] in (kind, f"free{kind}")
-    return fits and _attribute(text, tag, "name") == called
+def _find(text: str, kind: str, called: str) -> _Tag | None:
+    """The one tag of an element, None where there is none or more; those of actuators and tendons have many names."""
+    group, tags = kind in ("actuator", "tendon"), _tags(text)
+    own = (one for one in tags if (text[one[3] :].startswith(f"<{kind}") if group else one[0] in (kind, f"free{kind}")))
+    found = [one for one in own if _attribute(text, one, "name") == called]
+    return found[0] if len(found) == 1 else None
 
 
 def _attribute(text: str, tag: _Tag, name: str) -> str | None:
@@ -153,13 +142,15 @@ def _attribute(text: str, tag: _Tag, name: str) -> str | None:
     return found[1][1:-1] if found else None
 
 
-def _with_attribute(text: str, tag: _Tag, name: str, value: str) -> str:
+def _with_attributes(text: str, tag: _Tag, values: Mapping[str, str]) -> str:
     own = text[tag[1] : tag[2]]
-    if _attribute(text, tag, name) is not None:
-        changed = re.sub(rf"(\s{name}\s*=\s*)(\"[^\"]*\"|'[^']*')", lambda found: f'{found[1]}"{value}"', own, count=1)
-    else:
-        changed = re.sub(r"\s*(/?>)$", lambda found: f' {name}="{value}"{found[1]}', own)
-    return text[: tag[1]] + changed + text[tag[2] :]
+    for name, value in values.items():
+        if _attribute(text, tag, name) is not None:
+            known = rf"(\s{name}\s*=\s*)(\"[^\"]*\"|'[^']*')"
+            own = re.sub(known, rf'\g<1>"{value}"', own, count=1)
+        else:
+            own = re.sub(r"\s*(/?>)$", rf' {name}="{value}"\g<1>', own)
+    return text[: tag[1]] + own + text[tag[2] :]
 
 
 def _before_end(text: str, more: str) -> str:

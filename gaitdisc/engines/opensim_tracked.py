@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import replace
 from pathlib import Path
-from types import MappingProxyType
 from typing import Any
 
 import numpy as np
@@ -18,7 +17,6 @@ from gaitdisc.errors import SchemaError
 from gaitdisc.simulation.parts import Parameter
 
 TRANSLATIONAL = 2
-FILES = MappingProxyType[str, float]({})  # masses of the file
 
 
 class OpensimTracked(OpensimModel):
@@ -54,12 +52,12 @@ class OpensimTracked(OpensimModel):
         push = np.zeros_like(at.q) if forces is None else forces
         return self._query("accelerations", self._numbers(values), at.q, at.v, push)
 
-    def demanded(self, motion: TrackedMotion, loaded: bool = True, values: Mapping[str, float] = FILES) -> Values:
+    def demanded(self, motion: TrackedMotion, loaded: bool = True, values: Mapping[str, float] | None = None) -> Values:
         """Generalised forces (sample, coordinate) that a motion demands of muscles beside the recorded loads."""
         return self._query("demanded", self._numbers(values), motion.time, motion.q, motion.v, motion.a, loaded)
 
-    def _numbers(self, values: Mapping[str, float]) -> dict[str, float]:
-        return {self._called[name]: value for name, value in values.items()}
+    def _numbers(self, values: Mapping[str, float] | None) -> dict[str, float]:
+        return {self._called[name]: value for name, value in (values or {}).items()}
 
     def arms(self, time: Values, q: Values, names: tuple[str, ...]) -> Values:
         """Generalised force (sample, name, coordinate) of each actuator's unit force, or unit net moment."""

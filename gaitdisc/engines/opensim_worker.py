@@ -15,8 +15,7 @@ import numpy as np
 PORT = "force_by_hand_on_"
 ROTATIONAL, UNBOUND = 1, (-np.inf, np.inf)
 KEPT = 12  # models with other values that are kept ready
-ACCURACY = {False: 1e-7, True: 1e-5}  # of runs, without and with muscles: fibres take short steps
-ACCURACY_ALONG = 1e-5  # of muscles along a prescribed motion
+ACCURACY = {False: 1e-7, True: 1e-5}  # without and with muscles: fibres take short steps
 BEFORE, STEPS = 0.1, 10  # [s] in which a prescribed motion sets out from rest, and in how many steps
 REST = 0.01  # activation of a muscle at rest, below which those of OpenSim do not go
 
@@ -232,7 +231,7 @@ class _Answers:
         one.state.setTime(-BEFORE)
         one.tense(whole[0], 0.0 * whole[0], controls[0])
         manager = self.osim.Manager(one.model)
-        manager.setIntegratorAccuracy(ACCURACY_ALONG)
+        manager.setIntegratorAccuracy(ACCURACY[True])
         manager.initialize(one.state)
         found = np.array([manager.integrate(float(t)).getZ().to_numpy().copy() for t in time])
         u = np.array(controls, float)

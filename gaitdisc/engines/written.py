@@ -183,8 +183,7 @@ def _deviation(
     if text is None:
         return np.inf, None
     rng, n = np.random.default_rng(0), len(engine.coordinates)
-    low = [max(one.low, -1.0) for one in engine.coordinates]
-    high = [min(one.high, 1.0) for one in engine.coordinates]
+    low, high = np.transpose([(max(one.low, -1.0), min(one.high, 1.0)) for one in engine.coordinates])
     q = rng.uniform(low, high, (STATES, n))
     v = rng.uniform(AT_SPEED, 4.0, (STATES, n)) * rng.choice([-1, 1], (STATES, n))
     at = Motion(q, v, rng.uniform(0, 1, (STATES, len(engine.controls))))

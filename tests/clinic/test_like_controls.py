@@ -180,7 +180,6 @@ def test_the_first_session_of_a_person_counts_and_no_pseudonym_is_kept():
     assert found.people("walk") == 2 and len(found.of("walk")) == 4
     assert {leg.person for leg in found.of("walk")} == {1, 2}
     assert found.of("turn") == ()
-    assert found.without(1).people("walk") == 1
     with pytest.raises(SchemaError, match=r"controls.*none.*0"):
         make_reference([], "controls", PROVENANCE)
 
