@@ -95,7 +95,8 @@ class EngineFit:
                 lag = f"{part.candidate.place} with a first-order lag of {seconds:.4g} s cannot stand in a mapping: "
                 written = replace(written, notes=(*written.notes, f"{lag}only discovery.json contains it"))
         recorded = self.low_pass.filtered
-        return augmented, written, Driven(written.engine, augmented, controls, forces, lags, recorded, self.progress)
+        driven = Driven(written.engine, augmented, controls, forces, lags, recorded=recorded, progress=self.progress)
+        return augmented, written, driven
 
     def left(
         self, found: Discovery, parts: tuple[Part, ...], runs: OwnRuns, near: dict[int, Values] | None = None
@@ -179,7 +180,7 @@ def base_runs(engine: Engine, fit: EngineFit) -> OwnRuns:
     mapping, data, recorded = fit.mapping, fit.measured, fit.low_pass.filtered
     at = spread_stretches(data, find_rhythm(data.observed, data.rate).samples, engine.fibres, fit.low_pass.margin)
     given = hash_content((mapping, data, data.drive, fit.low_pass), engine.path.read_text(encoding="utf-8"))
-    driven, runs = Driven(engine, mapping, data.drive.inputs, None, {}, recorded, fit.progress), []
+    driven, runs = Driven(engine, mapping, data.drive.inputs, recorded=recorded, progress=fit.progress), []
     for trial in np.unique(at.trial):  # each is kept as it ends
         known = recall(given, str(trial))
         if known is None:
@@ -190,7 +191,8 @@ def base_runs(engine: Engine, fit: EngineFit) -> OwnRuns:
     sensors = {name: mapping.sensor(name) for name in data.channels}
     given = np.array([sensor.sd or np.nan for sensor in sensors.values()], float)
     units, passed = {name: one.unit for name, one in sensors.items()}, fit.low_pass
-    runs = OwnRuns(left, left, at, engine.called, units, sensor_noise(data.observed), fit.states.shape[2])
+    floor, count = sensor_noise(data.observed), fit.states.shape[2]
+    runs = OwnRuns(left, left, at, engine.called, units, floor=floor, states=count)
     if passed.margin:  # a filter hides the size of the noise: what is within windows shows it
         runs = replace(runs, every=passed.every, memory=passed.autocorrelation(at.length))
         hidden = np.sqrt(np.nanmean(runs.variances(left)[1], axis=(0, 1)))
