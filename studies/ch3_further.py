@@ -25,8 +25,7 @@ GIVEN = tables_line(__name__, __doc__, "ch3_further", TABLES, SEEDS)  # before t
 import warnings
 
 import pandas as pd
-from ch3_further_numbers import SIDES, numbers
-from chapter3.biased_sensor import OFF
+from chapter3.further_numbers import OFF, SIDES, numbers
 from chapter3.kept_cells import said_of
 from markdown_table import markdown_table
 

@@ -9,8 +9,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 import pandas as pd
-from further import Result, write_page
-from log_axis import decades
+from further import Result, decades, write_page
 from numpy.typing import NDArray
 
 from gaitdisc.report.figure import Figure

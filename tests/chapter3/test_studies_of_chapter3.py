@@ -6,8 +6,8 @@ import ch3_who_names
 import numpy as np
 import pytest
 from chapter3 import pages
-from chapter3.biased_sensor import FILTERS, filtered
 from chapter3.cell import PARTS, DiscrepancyCell, PartAccuracy, cell_of
+from chapter3.further_numbers import FILTERS, filtered
 from chapter3.record import Conditions, recorded
 from texts import says
 

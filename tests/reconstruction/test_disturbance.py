@@ -1,7 +1,7 @@
 import numpy as np
 import pandas as pd
 import pytest
-from chapter5.disturbances import DISTURBED, NOISES, SHARES, against_missing, against_noise, noisy
+from chapter5.gait import DISTURBED, NOISES, SHARES, against_missing, against_noise, noisy
 
 KINDS = ("linear", "delay ridge")
 
