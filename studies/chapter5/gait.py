@@ -13,6 +13,7 @@ import numpy as np
 import pandas as pd
 from command_line import SHARED
 from further import decades
+from matplotlib.lines import Line2D
 from numpy.typing import NDArray
 
 import gaitdisc as gd
@@ -231,8 +232,6 @@ def sensor_sets_figure(errors: pd.DataFrame, data: str, name: str, rule: str) ->
 
     errors: `errors` of reconstructions, with a column `sensors`
     """
-    from matplotlib.lines import Line2D
-
     shown = errors[errors["model"].isin(list(RECONSTRUCTED))]
     units = [unit for unit in ("deg", "m") if (shown["unit"] == unit).any()]
     models = [model for model in RECONSTRUCTED if (shown["model"] == model).any()]
@@ -340,8 +339,6 @@ def disturbance_figure(found: pd.DataFrame, whose: str) -> Figure:
 
     found: disturbance, level, model, rmse_deg
     """
-    from matplotlib.lines import Line2D
-
     kinds = [word for word in AXES if (found["disturbance"] == word).any()]
     models = list(dict.fromkeys(found["model"]))
     drawn, grid = panels(1, len(kinds), 2.1, Room(left=0.6, across=0.6))
