@@ -4,10 +4,9 @@
     python studies/ch3_further.py --print TABLE
 
 `methods`: exact DMD, SINDy in weak form and as an ensemble, a Gaussian process with a Matern kernel; `noise` that is
-not normal; `filters`: the start of a forecast by unscented and ensemble Kalman filters; `gain`: filters with
-a sensor's bias among their states; `trajectories`: several, and a
-forecast whose beginning is learned from; `variance` of the Gaussian process. Each number is a file of its own in
-FOLDER: a run that was stopped goes on.
+not normal; `filters`: the start of a forecast by unscented and ensemble Kalman filters; `gain`: filters with a
+sensor's bias among their states; `trajectories`: several, and a forecast whose beginning is learned from; `variance`
+of the Gaussian process. Each number is a file of its own in FOLDER: a run that was stopped goes on.
 """
 
 from __future__ import annotations

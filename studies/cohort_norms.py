@@ -36,10 +36,8 @@ SOURCES, BURSTS = PUBLISHED["sources"], PUBLISHED["bursts"]
 def numbers(walk: TrueWalk) -> dict[str, float]:
     """What is read off one walk, right side."""
     person = walk.person
-    angles, moments = (
-        walk.strides(walk.angles).mean(axis=0)[:, 0],
-        walk.strides(walk.moments).mean(axis=0)[:, 0] / person.mass_kg,
-    )
+    angles = walk.strides(walk.angles).mean(axis=0)[:, 0]
+    moments = walk.strides(walk.moments).mean(axis=0)[:, 0] / person.mass_kg
     hip = angles[:, 0] + habitual("pelvis_tilt", person.dimensionless_speed).mean
     knee, ankle = angles[:, 3], angles[:, 4]
     force = walk.strides(walk.force).mean(axis=0)[:, 0] / person.mass_kg / 9.81

@@ -13,7 +13,6 @@ import numpy as np
 import pandas as pd
 from command_line import SHARED
 from further import decades
-from matplotlib.lines import Line2D
 from numpy.typing import NDArray
 
 import gaitdisc as gd
@@ -39,7 +38,7 @@ from gaitdisc.reconstruction.window_model import (
 from gaitdisc.reconstruction.windows import Parts, fill_readings, split_within, with_missing
 from gaitdisc.report.figure import Figure
 from gaitdisc.report.page import Block
-from gaitdisc.report.panels import RECONSTRUCTED, Room, draw_box, in_style, legend, panels
+from gaitdisc.report.panels import RECONSTRUCTED, Room, draw_box, in_style, legend, legend_lines, panels
 from gaitdisc.report.table import Table, save_table
 from gaitdisc.words import counted, listing, number, unit_text
 
@@ -246,7 +245,7 @@ def sensor_sets_figure(errors: pd.DataFrame, data: str, name: str, rule: str) ->
         axes.set_xticks([PITCH * place for place in range(len(sets))], sets)
         axes.set_xlim(-PITCH / 2, PITCH * (len(sets) - 0.5))
         axes.set_ylabel(f"RMSE of a state [{unit_text(unit)}]")
-    legend(drawn, [Line2D([], [], color=RECONSTRUCTED[model].colour, label=model) for model in models])
+    legend(drawn, legend_lines({model: {"color": RECONSTRUCTED[model].colour} for model in models}))
     people = shown["participant"].nunique()
     caption = (
         f"{data}, n = {counted(people, 'participant')}: RMSE of every state that no sensor measures, by sensor set and "
@@ -344,10 +343,10 @@ def disturbance_figure(found: pd.DataFrame, whose: str) -> Figure:
     drawn, grid = panels(1, len(kinds), 2.1, Room(left=0.6, across=0.6))
     for axes, kind in zip(grid[0], kinds, strict=True):
         for model, rows in found[found["disturbance"] == kind].groupby("model", sort=False):
-            axes.plot(100 * rows["level"], rows["rmse_deg"], markersize=3, linewidth=1.1, **_look(str(model)))
+            axes.plot(100 * rows["level"], rows["rmse_deg"], linewidth=1.1, **_look(str(model)))
         axes.set(xlabel=AXES[kind], ylabel="RMSE [deg]")
         decades(axes)
-    legend(drawn, [Line2D([], [], label=model, markersize=3, **_look(model)) for model in models])
+    legend(drawn, legend_lines({model: _look(model) for model in models}))
     caption = (
         f"{whose}: RMSE of the angles that no sensor measures, temporal split. Left: white noise on the sensors, in "
         f"the fitted and the test part alike. Right: readings lost one by one in the test part; models were "
@@ -359,4 +358,4 @@ def disturbance_figure(found: pd.DataFrame, whose: str) -> Figure:
 
 def _look(model: str) -> dict[str, Any]:
     look = RECONSTRUCTED[model]
-    return {"color": look.colour, "linestyle": look.line, "marker": look.mark}
+    return {"color": look.colour, "linestyle": look.line, "marker": look.mark, "markersize": 3}
