@@ -4,10 +4,9 @@
     python studies/ch3_further.py --print TABLE
 
 `methods`: exact DMD, SINDy in weak form and as an ensemble, a Gaussian process with a Matern kernel; `noise` that is
-not normal; `filters`: the start of a forecast by unscented and ensemble Kalman filters; `gain`: filters with
-a sensor's bias among their states; `trajectories`: several, and a
-forecast whose beginning is learned from; `variance` of the Gaussian process. Each number is a file of its own in
-FOLDER: a run that was stopped goes on.
+not normal; `filters`: the start of a forecast by unscented and ensemble Kalman filters; `gain`: filters with a
+sensor's bias among their states; `trajectories`: several, and a forecast whose beginning is learned from; `variance`
+of the Gaussian process. Each number is a file of its own in FOLDER: a run that was stopped goes on.
 """
 
 from __future__ import annotations
@@ -25,8 +24,7 @@ GIVEN = tables_line(__name__, __doc__, "ch3_further", TABLES, SEEDS)  # before t
 import warnings
 
 import pandas as pd
-from ch3_further_numbers import SIDES, numbers
-from chapter3.biased_sensor import OFF
+from chapter3.further_numbers import OFF, SIDES, numbers
 from chapter3.kept_cells import said_of
 from markdown_table import markdown_table
 

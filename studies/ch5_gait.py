@@ -32,7 +32,6 @@ from collections.abc import Mapping
 
 import pandas as pd
 from chapter5 import gait
-from chapter5.disturbances import disturbed
 from chapter5.gait import SAGITTAL, Wanted
 from further import Result, result_text, write_page
 
@@ -58,7 +57,7 @@ def individual(wanted: Wanted) -> Result:
     table = pd.concat(summaries, ignore_index=True)
     sets = gait.sensor_sets_table(table, gait.printed("individual"), "sets", "temporal")
     split, first = leaks(walks, wanted), Block("sets", "Table 5.2", (), tables=(sets,))
-    of_noise = disturbed(walks["cohort"], wanted.folder, wanted.quick)
+    of_noise = gait.disturbed(walks["cohort"], wanted.folder, wanted.quick)
     blocks = [first, *blocks, Block("splits", "The split", (), tables=(split,)), of_noise]
     return write_page(table, blocks, "Individual models, section 5.3.3", ABOUT, wanted.folder)
 

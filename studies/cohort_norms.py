@@ -15,10 +15,10 @@ import tomllib
 from pathlib import Path
 
 import numpy as np
+from cohort_muscles import envelopes
 from markdown_table import markdown_table
 from numpy.typing import NDArray
 
-import gaitdisc as gd
 from gaitdisc.cohort.cohort import the_twelve
 from gaitdisc.cohort.habit import habitual
 from gaitdisc.cohort.measurement import measure
@@ -36,10 +36,8 @@ SOURCES, BURSTS = PUBLISHED["sources"], PUBLISHED["bursts"]
 def numbers(walk: TrueWalk) -> dict[str, float]:
     """What is read off one walk, right side."""
     person = walk.person
-    angles, moments = (
-        walk.strides(walk.angles).mean(axis=0)[:, 0],
-        walk.strides(walk.moments).mean(axis=0)[:, 0] / person.mass_kg,
-    )
+    angles = walk.strides(walk.angles).mean(axis=0)[:, 0]
+    moments = walk.strides(walk.moments).mean(axis=0)[:, 0] / person.mass_kg
     hip = angles[:, 0] + habitual("pelvis_tilt", person.dimensionless_speed).mean
     knee, ankle = angles[:, 3], angles[:, 4]
     force = walk.strides(walk.force).mean(axis=0)[:, 0] / person.mass_kg / 9.81
@@ -69,19 +67,18 @@ def burst(curve: NDArray[np.float64]) -> str:
 def run(quick: bool = False) -> dict[str, NDArray[np.float64]]:
     """Walk the twelve in both conditions, print both tables, and return what was read off the Nominal walks."""
     people, duration_s = (the_twelve()[:2], 20.0) if quick else (the_twelve(), WALK_S)
-    tables, envelopes = {"nominal": [], "exo": []}, []
+    tables, shapes = {"nominal": [], "exo": []}, []
     for number, person in enumerate(people):
         nominal = walked(person, None, duration_s, SEED + number)
         tables["nominal"].append(numbers(nominal))
         tables["exo"].append(numbers(walked(person.adapt_to(Spring()), Spring(), duration_s, SEED + number)))
-        emg = gd.envelope(measure(nominal, "walk", "nominal").stream("emg"))
-        curves = nominal.strides(emg.values[:, : len(MUSCLES)]).mean(axis=0)
-        envelopes.append(curves / curves.max(axis=0))
+        curves = nominal.strides(envelopes(nominal)).mean(axis=0)
+        shapes.append(curves / curves.max(axis=0))
     print(f"n = {len(people)} people, {duration_s:.0f} s, right side; mean +- sd over people\n")
     found, exo = ({name: np.array([row[name] for row in rows]) for name in SOURCES} for rows in tables.values())
     rows = [(name, _spread(found[name]), _spread(exo[name]), source) for name, source in SOURCES.items()]
     print(markdown_table("quantity | Nominal | Exo | literature", rows), end="\n\n")
-    mean = zip(MUSCLES, np.mean(envelopes, axis=0).T, strict=True)
+    mean = zip(MUSCLES, np.mean(shapes, axis=0).T, strict=True)
     bursts = [(name, burst(curve), BURSTS[name]) for name, curve in mean]
     print(markdown_table("muscle | on-off [% stride] | literature", bursts))
     return found

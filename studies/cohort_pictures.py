@@ -16,15 +16,14 @@ GIVEN = command_line(
 )  # before the slow imports
 
 import numpy as np
+from cohort_muscles import envelopes
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
-import gaitdisc as gd
 from gaitdisc.cohort.cohort import the_twelve
 from gaitdisc.cohort.habit import habitual
-from gaitdisc.cohort.measurement import measure
-from gaitdisc.cohort.person import MUSCLES, Person
+from gaitdisc.cohort.person import Person
 from gaitdisc.cohort.walk import walked
 
 SEED = 900
@@ -53,8 +52,7 @@ def curves(person: Person, number: int) -> dict[str, NDArray[np.float64]]:
         panels[title] = walk.strides(walk.force[:, 0, axis]).mean(axis=0) / (9.81 * person.mass_kg)
     for title, (column, _) in MOMENTS.items():
         panels[title] = walk.strides(walk.moments[:, 0, column]).mean(axis=0) / person.mass_kg
-    emg = gd.envelope(measure(walk, "walk", "nominal").stream("emg")).values[:, : len(MUSCLES)]
-    mean = walk.strides(emg).mean(axis=0)
+    mean = walk.strides(envelopes(walk)).mean(axis=0)
     return panels | {f"EMG {name} [of peak]": one / one.max() for name, one in zip(NORMAL, mean.T, strict=True)}
 
 

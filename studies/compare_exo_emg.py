@@ -17,6 +17,8 @@ GIVEN = command_line(__name__, __doc__, GAIT, OUT)  # before the slow imports
 
 import numpy as np
 import pandas as pd
+from ankle_exo_emg import EASIEST, HARDEST
+from ankle_exo_walks import PEOPLE
 from numpy.typing import NDArray
 
 import gaitdisc as gd
@@ -26,16 +28,14 @@ from gaitdisc.comparison.sentences import mismatch_sentences
 from gaitdisc.processing.pooled_cycles import STRIDE_COLUMNS, WalkSummary
 from gaitdisc.recording import PERCENT
 
-PEOPLE, FORCES = 8, 6  # the first six signals are ground forces
-HARD, EASY = "C6", "C1"
+FORCES = 6  # the first six signals are ground forces
 
 
-def run(data: Path, first: str = EASY, second: str = HARD) -> gd.Mismatch:
+def run(data: Path, first: str = EASIEST, second: str = HARDEST) -> gd.Mismatch:
     """Mismatch of two settings, second minus first, paired over the eight people."""
     stored = np.load(data / "ankle_exo_emg_grf" / "assisted.npz")
     signals = [str(name) for name in stored["signals"]][FORCES:]
-    people = [f"S{number:02d}" for number in range(1, PEOPLE + 1)]
-    walks = {one: [summary(stored[f"x_{who}{one}"], signals, who, one) for who in people] for one in (first, second)}
+    walks = {one: [summary(stored[f"x_{who}{one}"], signals, who, one) for who in PEOPLE] for one in (first, second)}
     return compare_people(walks[first], walks[second])
 
 

@@ -13,6 +13,8 @@ from typing import Any, NamedTuple
 import numpy as np
 import pandas as pd
 from markdown_table import as_markdown, markdown_table
+from matplotlib.axes import Axes
+from matplotlib.ticker import LogLocator, NullFormatter
 
 from gaitdisc.report.page import Block, save_block
 from gaitdisc.report.page import write_page as write_report
@@ -107,3 +109,11 @@ def write_page(cells: Any, blocks: Sequence[Block], title: str, about: str, fold
 def result_text(result: Result) -> str:
     """Every table of a study's result below its caption, and where its page is."""
     return "\n\n".join([*(f"{one.caption}\n\n{as_markdown(one)}" for one in result.tables), str(result.page)])
+
+
+def decades(axes: Axes) -> None:
+    """Make the vertical axis logarithmic, with plain numbers at 1, 2 and 5 of every decade."""
+    axes.set_yscale("log")
+    axes.yaxis.set_major_locator(LogLocator(subs=(1.0, 2.0, 5.0)))
+    axes.yaxis.set_major_formatter(lambda value, _: f"{value:g}")
+    axes.yaxis.set_minor_formatter(NullFormatter())

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from dataclasses import replace
 from pathlib import Path
 
@@ -25,7 +24,6 @@ HEELS, TOES = {"r": "R.Heel", "l": "L.Heel"}, {"r": "R.Toe.Tip", "l": "L.Toe.Tip
 JOINTS = {"ankle_angle": "foot", "knee_angle": "shank", "hip_flexion": "thigh"}
 EDGE = 25  # frames at which the filters of two programs differ
 OPENSIM_ORDER = 3  # of its low-pass, forwards and backwards
-Angles = Mapping[str, NDArray[np.float64]]
 
 
 def generalised_forces(model: Gait10dof, motion: gd.Recording, ground: gd.Trial) -> dict[str, NDArray[np.float64]]:

@@ -38,45 +38,20 @@ BURST = {"sol": (0.38, 0.11, 2.0e-4), "ta": (0.95, 0.10, 1.2e-4)}
 class DrivenWalker:
     """One person.
 
-    Parameters
-    ----------
-    name : str
-        Pseudonym.
-    stride_s : float
-        Mean stride time [s].
-    size : float
-        Factor on the habitual curves.
-    spring_per_s2 : float
-        Spring stiffness over effective inertia [1/s2]; 0 for no device.
-    engaged_deg : float
-        Dorsiflexion above which the spring acts [deg].
-    seed : int
-        Seed of the person's variability.
-
-    Examples
-    --------
     >>> trial = DrivenWalker("P01", seed=1).walked(5.0, "nominal")
     >>> trial.stream("kinematics").rate_hz, len(trial.stream("kinematics").names)
     (100.0, 10)
     """
 
-    name: str
-    stride_s: float = 1.1
-    size: float = 1.0
-    spring_per_s2: float = 0.0
-    engaged_deg: float = 1.0
-    seed: int = 0
+    name: str  # pseudonym
+    stride_s: float = 1.1  # mean stride time
+    size: float = 1.0  # factor on the habitual curves
+    spring_per_s2: float = 0.0  # spring stiffness over effective inertia; 0 for no device
+    engaged_deg: float = 1.0  # dorsiflexion above which the spring acts
+    seed: int = 0  # of the person's variability
 
     def walked(self, duration_s: float, condition: str) -> Trial:
-        """Walk for a while and be measured: angles at 100 Hz, EMG and vertical force at 1000 Hz.
-
-        Parameters
-        ----------
-        duration_s : float
-            Length of the trial [s].
-        condition : str
-            What the trial is called.
-        """
+        """Walk for a while and be measured: angles at 100 Hz, EMG and vertical force at 1000 Hz."""
         rng = np.random.default_rng([self.seed, int(self.spring_per_s2 * 1000)])
         count = round(duration_s / STEP_S)
         time: NDArray[np.float64] = np.arange(float(count)) * STEP_S
@@ -93,13 +68,7 @@ class DrivenWalker:
         )
 
     def spring(self, ankle_deg: NDArray[np.float64]) -> NDArray[np.float64]:
-        """Acceleration that the device adds at an ankle, the effect that is to be found [deg/s2].
-
-        Parameters
-        ----------
-        ankle_deg : ndarray, any shape [deg]
-            Dorsiflexion.
-        """
+        """Acceleration that the device adds at an ankle, the effect that is to be found [deg/s2]."""
         return -self.spring_per_s2 * np.maximum(0.0, ankle_deg - self.engaged_deg)
 
     def _phase(self, rng: np.random.Generator, count: int) -> NDArray[np.float64]:

@@ -6,6 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.signal import butter, sosfiltfilt
 
+from gaitdisc.discovery.candidate import Candidate
 from gaitdisc.simulation.compiled_simulation import Drive, Rows
 from gaitdisc.simulation.measured import Measured
 from gaitdisc.simulation.parts import State, Term
@@ -14,6 +15,10 @@ from gaitdisc.simulation.simulation import Simulation
 from gaitdisc.simulation.simulation_file import parse_simulation
 
 RATE = 50.0
+ONE_SIDED = Candidate(
+    "missing_physics", "port", "load", "one_sided_spring", ("max(0, x - _x0)",), {"x0": "quantiles of x"}, "x"
+)
+DAMPER = Candidate("missing_physics", "port", "load", "viscous_damping", ("v",), None, "x")
 MASS = """
 title = "A mass on a spring, pushed"
 [states.x]
@@ -84,33 +89,15 @@ w = "1.6*(v + 0.7 - b*w)"
 
 @dataclass(frozen=True)
 class Experiment:
-    """How trials are recorded.
-
-    Parameters
-    ----------
-    trials : int
-        How many.
-    seconds : float
-        Length of each.
-    noise : float
-        Standard deviation of the sensor's noise over that of the channel.
-    cutoff_hz : float
-        Of the low-pass filter that colours the noise; 0 leaves it white.
-    late : int
-        Samples by which the recorded push is ahead of the true one; negative where it is behind.
-    shaking : float
-        Standard deviation of a random push that nobody records [N].
-    lowpass_hz : float
-        Of the zero-lag low-pass (order 2, forwards and back) that signal and noise go through; 0 for none.
-    """
+    """How trials are recorded."""
 
     trials: int = 4
-    seconds: float = 14.0
-    noise: float = 0.02
-    cutoff_hz: float = 0.0
-    late: int = 0
-    shaking: float = 0.0
-    lowpass_hz: float = 0.0
+    seconds: float = 14.0  # length of each
+    noise: float = 0.02  # standard deviation of the sensor's noise over that of the channel
+    cutoff_hz: float = 0.0  # of the low-pass filter that colours the noise; 0 leaves it white
+    late: int = 0  # samples by which the recorded push is ahead of the true one; negative where it is behind
+    shaking: float = 0.0  # standard deviation of a random push that nobody records [N]
+    lowpass_hz: float = 0.0  # of the zero-lag low-pass (order 2) that signal and noise go through; 0 for none
 
 
 def mass() -> Simulation:

@@ -256,24 +256,18 @@ def test_a_lock_from_another_machine_is_respected(tmp_path):
         pass
 
 
-def test_a_lock_that_was_never_finished_is_taken_over(tmp_path):
-    (tmp_path / ".lock").write_text("")
-    with write_lock(tmp_path):
-        pass
-
-
 def test_a_folder_that_cannot_be_made(tmp_path):
     (tmp_path / "file").write_text("")
     with pytest.raises(WriteError, match="--out"), write_lock(tmp_path / "file" / "run"):
         pass
 
 
-def test_a_number_that_another_process_has_by_now_holds_nothing(tmp_path):
+def test_a_lock_that_was_never_finished_or_whose_number_another_process_has_by_now_holds_nothing(tmp_path):
     """A container that is started again gives the same numbers to its processes, this one's own among them."""
-    for pid in (os.getpid(), os.getppid()):
-        (tmp_path / ".lock").write_text(json.dumps({"pid": pid, "host": socket.gethostname()}))
-        with write_lock(tmp_path):
-            pass
+    numbers = (json.dumps({"pid": pid, "host": socket.gethostname()}) for pid in (os.getpid(), os.getppid()))
+    for text in ("", *numbers):
+        (tmp_path / ".lock").write_text(text)
+        taken(tmp_path)
 
 
 def test_of_many_that_start_at_once_one_gets_the_folder_until_it_is_killed(tmp_path):

@@ -5,12 +5,13 @@ from __future__ import annotations
 import re
 from collections.abc import Mapping, Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING
 
 import numpy as np
 import pandas as pd
-from further import Result, write_page
-from log_axis import decades
+from further import Result, decades, write_page
+from matplotlib.artist import Artist
+from matplotlib.axes import Axes
+from matplotlib.patches import Patch, Rectangle
 from numpy.typing import NDArray
 
 from gaitdisc.report.figure import Figure
@@ -22,10 +23,6 @@ from gaitdisc.words import unit_text
 from .cell import FORECAST, ORACLE, PART_WORDS, PARTS, RECONSTRUCTION, DiscrepancyCell, PartAccuracy, cells_table
 from .recommend import measured_cells
 from .record import System
-
-if TYPE_CHECKING:
-    from matplotlib.artist import Artist
-    from matplotlib.axes import Axes
 
 METHOD_WORDS = {
     "sindy": "SINDy",
@@ -264,8 +261,6 @@ def field_figure(found: PartAccuracy, places: Sequence[float], name: str, source
 
 
 def _patches(looks: dict[str, Look]) -> list[Artist]:
-    from matplotlib.patches import Patch
-
     return [Patch(color=look.colour, label=words) for words, look in looks.items()]
 
 
@@ -382,8 +377,6 @@ def _answers(found: pd.DataFrame) -> str:
 @in_style
 def naming_figure(table: pd.DataFrame, name: str) -> Figure:
     """A row a case, a column a tool and noise; the tile shows the answer, and the forecast."""
-    from matplotlib.patches import Patch
-
     rows = []
     for tool in TOOL_WORDS:
         for (case, noise), found in table[table["tool"] == tool].groupby(["case", "noise"], sort=False):
@@ -414,8 +407,6 @@ def naming_figure(table: pd.DataFrame, name: str) -> Figure:
 
 
 def _draw_tiles(axes: Axes, tiles: pd.DataFrame, cases: list[str], noises: list[float]) -> None:
-    from matplotlib.patches import Rectangle
-
     for case, _, noise, kind, share, forecast in tiles.itertuples(index=False):
         down, across = cases.index(str(case)), noises.index(noise)
         colour, letter, _ = LOOKS[kind]

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import tomllib
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import replace
 from itertools import product
 from pathlib import Path
@@ -11,7 +12,8 @@ from typing import Any, NamedTuple
 import numpy as np
 import pandas as pd
 from command_line import SHARED
-from log_axis import decades
+from further import decades
+from numpy.typing import NDArray
 
 import gaitdisc as gd
 from gaitdisc.channel import vocabulary
@@ -21,10 +23,23 @@ from gaitdisc.ingest.study_file import load_study
 from gaitdisc.reconstruction.page import NOT_MSE
 from gaitdisc.reconstruction.reconstruct_study import ReconstructionSettings, reconstruct_study
 from gaitdisc.reconstruction.reconstruction import CALIBRATED, mean_over_people
-from gaitdisc.reconstruction.window_model import KINDS, OF_TEXT, WITHOUT_NETWORK
+from gaitdisc.reconstruction.sensed_walks import read_walks
+from gaitdisc.reconstruction.state_errors import angle_columns
+from gaitdisc.reconstruction.window_model import (
+    KINDS,
+    MASKED,
+    OF_TEXT,
+    WITHOUT_NETWORK,
+    Sensing,
+    WindowModel,
+    fit_reconstructor,
+    sensing,
+)
+from gaitdisc.reconstruction.windows import Parts, fill_readings, split_within, with_missing
 from gaitdisc.report.figure import Figure
-from gaitdisc.report.panels import RECONSTRUCTED, Room, draw_box, in_style, legend, panels
-from gaitdisc.report.table import Table
+from gaitdisc.report.page import Block
+from gaitdisc.report.panels import RECONSTRUCTED, Room, draw_box, in_style, legend, legend_lines, panels
+from gaitdisc.report.table import Table, save_table
 from gaitdisc.words import counted, listing, number, unit_text
 
 SENSORS = {
@@ -55,6 +70,11 @@ LESS_THAN_NOTHING = (
     "does not say how time was split or how long the history was: no claim of better or worse is made."
 )
 STEP, PITCH = 0.23, 1.4  # from one box to the next, and from one sensor set to the next
+NOISES = (0.0, 0.01, 0.02, 0.05, 0.10)
+SHARES = (0.0, 0.1, 0.2, 0.3, 0.4, 0.5)
+DISTURBED = ("disturbance", "level", "model", "rmse_deg")
+Walks = Sequence[tuple[gd.Recording, NDArray[np.float64]]]  # of one person, with the place in the stride (time,) [%]
+AXES = {"noise": "noise of the sensors [% of their standard deviation]", "missing": "missing readings [%]"}
 
 
 class Wanted(NamedTuple):
@@ -211,8 +231,6 @@ def sensor_sets_figure(errors: pd.DataFrame, data: str, name: str, rule: str) ->
 
     errors: `errors` of reconstructions, with a column `sensors`
     """
-    from matplotlib.lines import Line2D
-
     shown = errors[errors["model"].isin(list(RECONSTRUCTED))]
     units = [unit for unit in ("deg", "m") if (shown["unit"] == unit).any()]
     models = [model for model in RECONSTRUCTED if (shown["model"] == model).any()]
@@ -227,7 +245,7 @@ def sensor_sets_figure(errors: pd.DataFrame, data: str, name: str, rule: str) ->
         axes.set_xticks([PITCH * place for place in range(len(sets))], sets)
         axes.set_xlim(-PITCH / 2, PITCH * (len(sets) - 0.5))
         axes.set_ylabel(f"RMSE of a state [{unit_text(unit)}]")
-    legend(drawn, [Line2D([], [], color=RECONSTRUCTED[model].colour, label=model) for model in models])
+    legend(drawn, legend_lines({model: {"color": RECONSTRUCTED[model].colour} for model in models}))
     people = shown["participant"].nunique()
     caption = (
         f"{data}, n = {counted(people, 'participant')}: RMSE of every state that no sensor measures, by sensor set and "
@@ -237,3 +255,107 @@ def sensor_sets_figure(errors: pd.DataFrame, data: str, name: str, rule: str) ->
     alt = f"Boxes of the error of {listing(models)} for {counted(shown['sensors'].nunique(), 'sensor set')}."
     kept = ["sensors", "participant", "model", "state", "unit", "rmse"]
     return Figure(name, caption, alt, shown[kept], drawn)
+
+
+def disturbed(study: Study, folder: Path, quick: bool) -> Block:
+    """Noise and missing readings, for the first person of the cohort."""
+    file, person = folder / "disturbed.csv", study.participants[0].id
+    if not file.exists():
+        kinds = WITHOUT_NETWORK if quick else tuple(KINDS)
+        walks = read_walks(study, SENSORS[SAGITTAL], "nominal")
+        names = tuple(channel.name for channel in walks.channels)
+        what = sensing(names, SENSORS[SAGITTAL], ReconstructionSettings().lags(walks.rate_hz), walks.rate_hz)
+        channels = [channel for channel in walks.channels if channel.name in what.states]
+        own = [(walk.recording, walk.phi) for walk in walks.people[person]]
+        masked = (MASKED,) if "shred" in kinds else ()
+        missing = against_missing(own, what, channels, (*kinds, *masked))
+        rows = [*against_noise(own, what, channels, kinds), *missing]
+        save_table(pd.DataFrame(rows, columns=pd.Index(DISTURBED)), file)
+    figure = disturbance_figure(pd.read_csv(file), f"{person}, {SAGITTAL} sensors")
+    return Block("disturbed", "Noise and missing readings", (), (figure,))
+
+
+def noisy(recording: gd.Recording, sensors: Sequence[str], share: float, seed: int) -> gd.Recording:
+    """Add white noise to the readings of the sensors, and to nothing else.
+
+    share: standard deviation of the noise, by that of the sensor in this trial
+    """
+    rng = np.random.default_rng(seed)
+    values = recording.values.copy()
+    for name in sensors:
+        column = recording.index(name)
+        values[:, column] += share * np.nanstd(values[:, column]) * rng.standard_normal(len(values))
+    return recording.with_values(values)
+
+
+def against_noise(walks: Walks, what: Sensing, channels: Sequence[gd.Channel], kinds: Sequence[str]) -> Iterator[tuple]:
+    """RMSE of every kind of model against noise, temporal split; fitted to and tested on the same noise.
+
+    returns: disturbance (`noise`), level [share of the sensor's standard deviation], model, rmse_deg (angles)
+    """
+    for level in NOISES:
+        parts = _disturbed_parts(walks, what, lambda walk, k, level=level: noisy(walk, what.sensors, level, k))
+        for kind in kinds:
+            done = fit_reconstructor(kind, what, parts.fitted(), parts.checked(), 0)
+            yield "noise", level, kind, _rmse(done, parts.tested(), channels)
+
+
+def against_missing(
+    walks: Walks, what: Sensing, channels: Sequence[gd.Channel], kinds: Sequence[str]
+) -> Iterator[tuple]:
+    """RMSE of every kind of model against missing readings, temporal split; fitted to walks that lack none.
+
+    Readings are lost one by one, each sensor by itself. The sensor's last known reading stands in their place; the
+    masked SHRED alone is given which are missing.
+
+    returns: disturbance (`missing`), level [share of the readings], model, rmse_deg (angles)
+    """
+    parts = _disturbed_parts(walks, what, lambda walk, _: walk)
+    fitted = {kind: fit_reconstructor(kind, what, parts.fitted(), parts.checked(), 0) for kind in kinds}
+    for level in SHARES:
+        for kind, done in fitted.items():
+
+            def lost(walk: gd.Recording, k: int, done: WindowModel = done, level: float = level) -> gd.Recording:
+                holed = with_missing(walk, what.sensors, level, 0.0, k)
+                return holed if done.kind == MASKED else fill_readings(holed, what.sensors, "last", done.sensor_means)
+
+            test = _disturbed_parts(walks, what, lost).tested()
+            yield "missing", level, kind, _rmse(done, test, channels)
+
+
+def _disturbed_parts(walks: Walks, what: Sensing, disturbed: Callable[[gd.Recording, int], gd.Recording]) -> Parts:
+    windows = [what.windows(disturbed(walk, k), phi, missing=True) for k, (walk, phi) in enumerate(walks)]
+    return split_within(windows, "temporal", what.reach_s)
+
+
+def _rmse(done: WindowModel, test: gd.Samples, channels: Sequence[gd.Channel]) -> float:
+    return float(np.sqrt(np.mean((done(test) - test.y)[:, angle_columns(channels)] ** 2)))
+
+
+@in_style
+def disturbance_figure(found: pd.DataFrame, whose: str) -> Figure:
+    """One panel a disturbance, one line a model.
+
+    found: disturbance, level, model, rmse_deg
+    """
+    kinds = [word for word in AXES if (found["disturbance"] == word).any()]
+    models = list(dict.fromkeys(found["model"]))
+    drawn, grid = panels(1, len(kinds), 2.1, Room(left=0.6, across=0.6))
+    for axes, kind in zip(grid[0], kinds, strict=True):
+        for model, rows in found[found["disturbance"] == kind].groupby("model", sort=False):
+            axes.plot(100 * rows["level"], rows["rmse_deg"], linewidth=1.1, **_look(str(model)))
+        axes.set(xlabel=AXES[kind], ylabel="RMSE [deg]")
+        decades(axes)
+    legend(drawn, legend_lines({model: _look(model) for model in models}))
+    caption = (
+        f"{whose}: RMSE of the angles that no sensor measures, temporal split. Left: white noise on the sensors, in "
+        f"the fitted and the test part alike. Right: readings lost one by one in the test part; models were "
+        f"fitted to walks that lack none, the last known reading stands for a lost one, and masked shred is "
+        f"given which are lost."
+    )
+    return Figure("disturbed", caption, f"Error of {listing(models)} against noise and missing readings.", found, drawn)
+
+
+def _look(model: str) -> dict[str, Any]:
+    look = RECONSTRUCTED[model]
+    return {"color": look.colour, "linestyle": look.line, "marker": look.mark, "markersize": 3}

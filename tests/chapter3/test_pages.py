@@ -1,9 +1,12 @@
 from dataclasses import replace
+from functools import partial
 
 import numpy as np
 from chapter3.cell import PARTS, DiscrepancyCell, PartAccuracy
 from chapter3.pages import (
     accuracy_figure,
+    answered,
+    blocks_of,
     cost_figure,
     error_figure,
     field_figure,
@@ -16,6 +19,15 @@ from texts import says
 
 TIME = np.arange(301) / 10
 TRUTH = np.column_stack([np.sin(TIME), np.cos(TIME)])
+SINE = TRUTH[:, :1]
+LOST = np.where(TIME[:, None] > 3, np.nan, SINE)
+
+
+def cell(augmented, diverged=None, seed=0, **others):
+    """Of one channel, known to 0.2."""
+    parts = dict.fromkeys(PARTS, PartAccuracy(TIME, SINE, SINE + 0.2, augmented, diverged))
+    plain = DiscrepancyCell("s", "gp", "state", "right", 0.1, seed, ("x",), parts, 1.0, 0.0)
+    return replace(plain, **others)
 
 
 def cells():
@@ -45,20 +57,11 @@ def test_each_figure_carries_the_numbers_drawn():
 
 
 def test_a_run_that_diverged_is_said_in_its_title():
-    values = np.where(TIME[:, None] > 3, np.nan, TRUTH)
-    names = dict.fromkeys(PARTS, PartAccuracy(TIME, TRUTH, TRUTH + 0.2, values, 3.0))
-    cell = DiscrepancyCell("s", "gp", "state", "right", 0.0, 0, ("x", "y"), names, 1.0, 0.1)
-    assert says(error_figure([cell], "a", "Fig. 3.4").drawn.axes[0].get_title(), "diverged", "3.00 s")
+    assert says(error_figure([cell(LOST, 3.0)], "a", "Fig. 3.4").drawn.axes[0].get_title(), "diverged", "3.00 s")
 
 
 def test_bars_of_seeds_of_which_one_diverged_are_a_cross_and_no_number():
-    values = np.where(TIME[:, None] > 3, np.nan, TRUTH)
-    parts = [PartAccuracy(TIME, TRUTH, TRUTH + 0.2, v, d) for v, d in ((values, 3.0), (TRUTH + 0.1, None))]
-    some = [
-        DiscrepancyCell("s", "gp", "state", "right", 0.0, seed, ("x", "y"), dict.fromkeys(PARTS, part), 1.0, 0.1)
-        for seed, part in enumerate(parts)
-    ]
-    figure = accuracy_figure(some, "b", "Fig. 3.4")
+    figure = accuracy_figure([cell(LOST, 3.0), cell(SINE + 0.1, seed=1)], "b", "Fig. 3.4")
     assert figure.numbers["median"].isna().all()
     assert figure.numbers["diverged_s"].tolist() == [3.0, 3.0, 3.0]
     assert [len(line.get_xdata()) for line in figure.drawn.axes[0].lines if line.get_marker() == "x"] == [1]
@@ -124,22 +127,13 @@ def test_every_panel_of_the_other_figures_has_a_quantity_and_a_unit():
     assert cost_figure([cell], "d", "Fig. 3.11").drawn.axes[0].get_ylabel() == "processor time [s]"
 
 
-TRUTH_TABLES = np.sin(TIME)[:, None]
-
-
-def cell(augmented, diverged, seed=0):
-    names = dict.fromkeys(PARTS, PartAccuracy(TIME, TRUTH_TABLES, TRUTH_TABLES + 0.2, augmented, diverged))
-    return DiscrepancyCell("s", "gp", "state", "right", 0.1, seed, ("x",), names, 1.0, 0.1)
-
-
 def test_a_cell_that_diverged_is_a_time_and_never_a_number():
-    lost = np.where(TIME[:, None] > 3, np.nan, TRUTH_TABLES)
-    table = grid_table([cell(lost, 3.0), cell(TRUTH_TABLES + 0.1, None, seed=1)], "t")
+    table = grid_table([cell(LOST, 3.0), cell(SINE + 0.1, seed=1)], "t")
     assert says(table.rows[0][6], "diverged", "3.00 s", "1 of 2 seeds")
 
 
 def test_a_cell_is_its_accuracy_and_a_table_is_markdown():
-    table = grid_table([cell(TRUTH_TABLES + 0.1, None)], "t")
+    table = grid_table([cell(SINE + 0.1, None)], "t")
     assert table.rows[0][6] == "50.0"
     assert as_markdown(table).count("\n") == 2
 
@@ -152,7 +146,7 @@ def test_what_was_refused_says_so():
 
 
 def test_seeds_are_stated_as_median_and_range_and_their_terms_are_counted():
-    cells = [replace(cell(TRUTH_TABLES + off, None, k), terms=terms) for k, (off, terms) in enumerate(
+    cells = [replace(cell(SINE + off, None, k), terms=terms) for k, (off, terms) in enumerate(
         [(0.1, "x: -0.01*x**3"), (0.05, "x: -0.0101*x**3"), (0.15, "x: 1e-05*1")])]  # fmt: skip
     row = grid_table(cells, "t").rows[0]
     assert (row[4], row[6]) == ("3", "50.0 [25.0, 75.0]")
@@ -160,12 +154,36 @@ def test_seeds_are_stated_as_median_and_range_and_their_terms_are_counted():
 
 
 def test_what_some_seeds_refused_is_counted():
-    refused = replace(cell(TRUTH_TABLES, None, 1), parts={}, refused="40 too few")
-    row = grid_table([cell(TRUTH_TABLES + 0.1, None), refused], "t").rows[0]
+    refused = replace(cell(SINE, None, 1), parts={}, refused="40 too few")
+    row = grid_table([cell(SINE + 0.1, None), refused], "t").rows[0]
     assert row[6] == "50.0 (1 of 2 seeds)"
     assert says(row[-1], "40 too few", "1 of 2 seeds")
 
 
 def test_an_error_of_many_times_the_known_one_is_no_number_to_four_digits():
-    cells = [cell(TRUTH_TABLES + off, None, k) for k, off in enumerate((0.1, 0.05, 2.1, 2.3, 9e3))]  # known: 0.2
+    cells = [cell(SINE + off, None, k) for k, off in enumerate((0.1, 0.05, 2.1, 2.3, 9e3))]  # known: 0.2
     assert grid_table(cells, "t").rows[0][6] == "-950.0 [below -1000, 75.0]"
+
+
+of_rates = partial(cell, approach="dynamics", noise=0.0)
+
+
+def test_a_statement_without_cells_is_not_answered():
+    assert answered({"text": ()}, "dynamics", 0.0) == "not computed"
+
+
+def test_seeds_are_median_and_range_and_one_that_diverged_is_a_time():
+    quiet = [of_rates(SINE + off, seed=seed) for seed, off in enumerate((0.1, 0.05))]
+    assert "62.5 [50.0, 75.0]" in answered({"text": tuple(quiet)}, "dynamics", 0.0)
+    said = answered({"text": (quiet[0], of_rates(LOST, 3.0, 1))}, "dynamics", 0.0)
+    assert says(said, "diverged", "3.00 s", "1 of 2 seeds")
+    assert "50.0" not in said
+
+
+def test_captions_are_answered_with_cost_and_horizon():
+    cells = {"text": (of_rates(SINE + 0.1, fit_s=5.0), of_rates(SINE + 0.05, method="sindy"))}
+    figures = {"cost": "Fig. 3.11", "horizon": "Fig. 3.9", "system": "Fig. 3.2", "noise": "Fig. 3.10"}
+    said = blocks_of(cells, figures, ())[0].tables[0].rows
+    assert [where for where, _, _ in said] == ["Fig. 3.2", "Fig. 3.9", "Fig. 3.11"]
+    assert says(said[2][2], "SINDy 1.0 s", "Gaussian process 5.0 s")
+    assert "Gaussian process 50/50/50/50" in said[1][2]

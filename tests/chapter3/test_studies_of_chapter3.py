@@ -6,8 +6,8 @@ import ch3_who_names
 import numpy as np
 import pytest
 from chapter3 import pages
-from chapter3.biased_sensor import FILTERS, filtered
-from chapter3.cell import PARTS, DiscrepancyCell, PartAccuracy, cell_of
+from chapter3.cell import cell_of
+from chapter3.further_numbers import FILTERS, filtered
 from chapter3.record import Conditions, recorded
 from texts import says
 
@@ -100,34 +100,3 @@ def test_the_quick_study_names_the_cubic_of_the_text(tmp_path):
     table = ch3_who_names.run(quick=True, folder=tmp_path).tables[0]
     assert table.rows[0][4].startswith("named")
     assert (tmp_path / "figures" / "names.svg").exists()
-
-
-TIME = np.arange(301) / 10
-TRUTH = np.sin(TIME)[:, None]
-
-
-def cell(augmented, diverged=None, seed=0, method="gp", seconds=1.0):
-    names = dict.fromkeys(PARTS, PartAccuracy(TIME, TRUTH, TRUTH + 0.2, augmented, diverged))
-    return DiscrepancyCell("s", method, "dynamics", "right", 0.0, seed, ("x",), names, seconds, 0.0)
-
-
-def test_a_statement_without_cells_is_not_answered():
-    assert pages.answered({"text": ()}, "dynamics", 0.0) == "not computed"
-
-
-def test_seeds_are_median_and_range_and_one_that_diverged_is_a_time():
-    quiet = [cell(TRUTH + off, seed=seed) for seed, off in enumerate((0.1, 0.05))]
-    assert "62.5 [50.0, 75.0]" in pages.answered({"text": tuple(quiet)}, "dynamics", 0.0)
-    lost = cell(np.where(TIME[:, None] > 3, np.nan, TRUTH), 3.0, 1)
-    said = pages.answered({"text": (quiet[0], lost)}, "dynamics", 0.0)
-    assert says(said, "diverged", "3.00 s", "1 of 2 seeds")
-    assert "50.0" not in said
-
-
-def test_captions_are_answered_with_cost_and_horizon():
-    cells = {"text": (cell(TRUTH + 0.1, seconds=5.0), cell(TRUTH + 0.05, method="sindy"))}
-    figures = {"cost": "Fig. 3.11", "horizon": "Fig. 3.9", "system": "Fig. 3.2", "noise": "Fig. 3.10"}
-    said = pages.blocks_of(cells, figures, ())[0].tables[0].rows
-    assert [where for where, _, _ in said] == ["Fig. 3.2", "Fig. 3.9", "Fig. 3.11"]
-    assert says(said[2][2], "SINDy 1.0 s", "Gaussian process 5.0 s")
-    assert "Gaussian process 50/50/50/50" in said[1][2]

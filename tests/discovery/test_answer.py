@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 from hidden_in_a_function import tank, write_record
 from hidden_in_a_mass import MASS, Experiment, mass, record, with_load
+from hidden_in_a_mass import ONE_SIDED as ABOVE
 from texts import says
 
 from gaitdisc.discovery.answer import (
@@ -29,9 +30,6 @@ from gaitdisc.simulation.parts import Input, Parameter
 from gaitdisc.simulation.running import compile_simulation
 from gaitdisc.simulation.simulation_file import parse_simulation
 
-ABOVE = Candidate(
-    "missing_physics", "port", "load", "one_sided_spring", ("max(0, x - _x0)",), {"x0": "quantiles of x"}, "x"
-)
 BELOW = replace(ABOVE, pieces=("max(0, _x0 - x)",))
 SLACK = replace(
     ABOVE, name="dead_zone_spring", pieces=("max(0, x - _d) - max(0, -x - _d)",), constants={"d": "half widths of x"}

@@ -2,7 +2,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from hidden_in_a_mass import MASS, mass, two_rods
+from hidden_in_a_mass import MASS, ONE_SIDED, mass, two_rods
 
 from gaitdisc.discovery.candidate import BENT, FLEXIBLE, Candidate, list_candidates, list_unnamed_terms, saturations
 from gaitdisc.discovery.catalogue import Shape, read_shapes
@@ -12,9 +12,6 @@ from gaitdisc.discovery.scored_model import Part, with_parts
 from gaitdisc.simulation.running import compile_simulation
 from gaitdisc.simulation.simulation_file import parse_simulation
 
-SPRING = Candidate(
-    "missing_physics", "port", "load", "one_sided_spring", ("max(0, x - _x0)",), {"x0": "quantiles of x"}, "x"
-)
 WAVE = Candidate("missing_physics", "port", "load", "wave", ("sin(_w*t)", "cos(_w*t)"), {"w": "frequencies"}, "x")
 
 
@@ -28,20 +25,20 @@ def _pieces(simulation, label):
 
 
 def test_each_piece_has_a_factor_and_each_constant_a_slot():
-    assert SPRING.slots == ("factor", "x0")
+    assert ONE_SIDED.slots == ("factor", "x0")
     assert WAVE.slots == ("factor", "factor_1", "w")
     assert WAVE.idle == {"factor": 0.0, "factor_1": 0.0}
 
 
 def test_a_term_is_written_with_its_numbers():
-    assert SPRING.term({"factor": "-30", "x0": "-0.2"}) == "-30*(max(0, x - (-0.2)))"
+    assert ONE_SIDED.term({"factor": "-30", "x0": "-0.2"}) == "-30*(max(0, x - (-0.2)))"
     assert WAVE.term({"factor": "1", "factor_1": "2", "w": "3"}) == "1*(sin(3*t)) + 2*(cos(3*t))"
     assert Candidate("missing_physics", "port", "load", "constant_load", ("1",)).term({"factor": "4"}) == "4"
 
 
 def test_numbers_become_parameters_of_the_fit():
-    simulation, names = SPRING.in_fit(mass(), "part0", {"factor": -30.0, "x0": 0.2})
-    assert names == SPRING.named("part0") == {"factor": "part0_factor", "x0": "part0_x0"}
+    simulation, names = ONE_SIDED.in_fit(mass(), "part0", {"factor": -30.0, "x0": 0.2})
+    assert names == ONE_SIDED.named("part0") == {"factor": "part0_factor", "x0": "part0_x0"}
     assert simulation.values()["part0_factor"] == -30.0
     assert simulation.effects[-1].term == "part0_factor*(max(0, x - part0_x0))"
 

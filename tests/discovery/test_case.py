@@ -18,22 +18,6 @@ from gaitdisc.simulation.parts import Sensor
 from gaitdisc.simulation.running import compile_simulation
 from gaitdisc.simulation.simulation_file import parse_simulation
 
-FALLING = """
-[states.x]
-unit = "m"
-[states.v]
-unit = "m/s"
-[inputs.push]
-unit = "N"
-[ports.load]
-unit = "N"
-[equations]
-x = "v"
-v = "60*x + push + load"
-[observations]
-x = "x"
-"""
-
 
 @pytest.mark.parametrize(("trials", "held"), [(2, (1,)), (4, (3,)), (8, (6, 7))])
 def test_of_four_trials_one_is_held_out(trials, held):
@@ -88,7 +72,7 @@ def test_runs_are_about_a_period_long(case):
 
 
 def test_runs_are_shorter_where_a_change_of_the_start_grows_fast():
-    unstable = parse_simulation(FALLING, "falling.toml")
+    unstable = mass().with_equation("v", "60*x + push + load")
     calm = set_up_case(mass(), record(mass(), 0, Experiment(4, 6.0)))
     wild = set_up_case(unstable, record(mass(), 0, Experiment(4, 6.0)))
     assert calm.predictable_periods() == 1.0

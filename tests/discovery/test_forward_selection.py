@@ -1,13 +1,11 @@
 import pytest
-from hidden_in_a_mass import Experiment, mass, record, with_load
+from hidden_in_a_mass import DAMPER, Experiment, mass, record, with_load
 
 from gaitdisc.discovery.candidate import Candidate
 from gaitdisc.discovery.case import set_up_case
 from gaitdisc.discovery.criteria import CRITERIA
 from gaitdisc.discovery.forward_selection import beside_others, exchange, prune, select_forward, settle
 from gaitdisc.discovery.scored_model import Part, ranked
-
-DAMPER = Candidate("missing_physics", "port", "load", "viscous_damping", ("v",), None, "x")
 
 
 def test_what_is_hidden_is_let_in_alone(named):

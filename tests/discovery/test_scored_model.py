@@ -2,6 +2,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from hidden_in_a_mass import DAMPER, ONE_SIDED
 
 from gaitdisc.discovery.candidate import Candidate
 from gaitdisc.discovery.criteria import CRITERIA
@@ -76,13 +77,9 @@ def test_under_anothers_noise_what_was_gained_stays(case, as_read, with_cubic):
     assert (moved.gained, moved.noise) == (7.0, own.noise)
 
 
-SPRING = Candidate(
-    "missing_physics", "port", "load", "one_sided_spring", ("max(0, x - _x0)",), {"x0": "quantiles of x"}, "x"
-)
-DAMPER = Candidate("missing_physics", "port", "load", "viscous_damping", ("v",), None, "x")
 NUMBER = Candidate("wrong_parameter", "parameter", "c", "wrong_parameter")
 SENSOR = Candidate("sensor_error", "observation", "x", "sensor_gain")
-OPEN = (SPRING, DAMPER, NUMBER, SENSOR)
+OPEN = (ONE_SIDED, DAMPER, NUMBER, SENSOR)
 
 
 def _judged(as_read, candidate, bic, size):
@@ -94,12 +91,12 @@ def _judged(as_read, candidate, bic, size):
 
 
 def test_the_better_explanation_stands_first(as_read):
-    better, worse = _judged(as_read, DAMPER, 5e3, 1), _judged(as_read, SPRING, 6e3, 1)
+    better, worse = _judged(as_read, DAMPER, 5e3, 1), _judged(as_read, ONE_SIDED, 6e3, 1)
     assert ranked([worse, better], OPEN) == [better, worse]
 
 
 def test_a_simpler_statement_stands_before_one_that_is_hardly_better(as_read):
-    simple, wordy = _judged(as_read, DAMPER, 5e3 + CRITERIA.margin / 2, 1), _judged(as_read, SPRING, 5e3, 2)
+    simple, wordy = _judged(as_read, DAMPER, 5e3 + CRITERIA.margin / 2, 1), _judged(as_read, ONE_SIDED, 5e3, 2)
     assert ranked([wordy, simple], OPEN)[0] is simple
     far = _judged(as_read, DAMPER, 5e3 + 2 * CRITERIA.margin, 1)
     assert ranked([wordy, far], OPEN)[0] is wordy
@@ -116,5 +113,5 @@ def test_accounts_that_failed_are_not_ranked(as_read):
 
 
 def test_accounts_that_are_all_hopeless_are_ranked_as_well(as_read):
-    hopeless = [_judged(as_read, one, 1e20, 1) for one in (DAMPER, SPRING)]
+    hopeless = [_judged(as_read, one, 1e20, 1) for one in (DAMPER, ONE_SIDED)]
     assert len(ranked(hopeless, OPEN)) == 2

@@ -1,7 +1,7 @@
 from dataclasses import replace
 
 import pytest
-from hidden_in_a_mass import Experiment, mass, record
+from hidden_in_a_mass import DAMPER, ONE_SIDED, Experiment, mass, record
 
 from gaitdisc.discovery.candidate import Candidate, saturations
 from gaitdisc.discovery.case import set_up_case
@@ -9,9 +9,6 @@ from gaitdisc.discovery.catalogue import ALL
 from gaitdisc.discovery.scored_model import Part
 from gaitdisc.discovery.search import is_certain
 
-SPRING = Candidate(
-    "missing_physics", "port", "load", "one_sided_spring", ("max(0, x - _x0)",), {"x0": "quantiles of x"}, "x"
-)
 SLACK = Candidate("missing_physics", "port", "load", "slack", ("max(0, x - _d)",), {"d": "half widths of x"}, "x")
 LATE = Candidate("missing_physics", "port", "load", "late", ("delay(x, _d)",), {"d": "delays"}, "x")
 DELAY = Candidate("input_error", "input", "push", "input_delay")
@@ -20,7 +17,6 @@ FRICTION = Candidate("missing_physics", "port", "load", "coulomb_friction", ("si
 FORCING = Candidate(
     "missing_physics", "port", "load", "periodic_forcing", ("sin(_w*t)", "cos(_w*t)"), {"w": "frequencies"}, "x"
 )
-DAMPER = Candidate("missing_physics", "port", "load", "viscous_damping", ("v",), None, "x")
 
 
 def _with(model, candidate, **values):
@@ -30,9 +26,9 @@ def _with(model, candidate, **values):
 @pytest.mark.parametrize(
     ("candidate", "values", "sensible"),
     [
-        (SPRING, {"factor": -9.0, "x0": 0.1}, True),
-        (SPRING, {"factor": -9.0, "x0": 40.0}, False),
-        (SPRING, {"factor": -9.0, "x0": -40.0}, False),
+        (ONE_SIDED, {"factor": -9.0, "x0": 0.1}, True),
+        (ONE_SIDED, {"factor": -9.0, "x0": 40.0}, False),
+        (ONE_SIDED, {"factor": -9.0, "x0": -40.0}, False),
         (SLACK, {"factor": -9.0, "d": 0.2}, True),
         (SLACK, {"factor": -9.0, "d": -0.2}, False),
         (LATE, {"factor": -9.0, "d": 0.05}, True),

@@ -6,7 +6,7 @@ import matplotlib as mpl
 import numpy as np
 import pandas as pd
 import pytest
-from log_axis import decades
+from further import decades
 from matplotlib.figure import Figure as Drawing
 
 from gaitdisc.report.figure import Figure, file_names, save_figure

@@ -5,6 +5,7 @@ from importlib.util import find_spec
 from pathlib import Path
 
 import pytest
+from saved_folders import TRACKED
 from texts import says
 from typer.testing import CliRunner
 
@@ -16,15 +17,6 @@ pytestmark = [
     pytest.mark.skipif(find_spec("opensim") is None, reason="OpenSim is not installed: gaitdisc[opensim]"),
     pytest.mark.skipif(not DATA.is_dir(), reason="the recorded walk is not here"),
 ]
-MAPPING = """model = "subject01_metabolics.osim"
-
-[tracked]
-external_loads = "data/ExperimentalData/subject01_walk_grf.xml"
-actuators = "data/gait10dof_Reserve_Actuators.xml"
-forces = "data/CMC/{results}/walk_subject_Actuation_force.sto"
-speeds = "data/CMC/{results}/walk_subject_Kinematics_u.sto"
-accelerations = "data/CMC/{results}/walk_subject_Kinematics_dudt.sto"
-"""
 
 
 @pytest.fixture
@@ -37,7 +29,7 @@ def lab(tmp_path):
 def searched(lab, results, model="subject01_metabolics.osim"):
     mapping = (lab / model).with_suffix(".toml")
     if not mapping.is_file():
-        mapping.write_text(MAPPING.format(results=results))
+        mapping.write_text(TRACKED.replace("results_spring", results))
     kinematics = DATA / "CMC" / results / "walk_subject_Kinematics_q.sto"
     words = ["discover", str(lab / model), str(kinematics), "--out", str(lab / "found"), "-q", "--no-report"]
     return CliRunner().invoke(app, words)
@@ -70,7 +62,7 @@ def test_the_spring_is_named_from_other_kinematics_than_the_forces_were_computed
     """The angles are those of the markers; the forces belong to a motion that residual reduction had altered."""
     from gaitdisc import load
 
-    mapping = MAPPING.format(results="results_spring").splitlines()
+    mapping = TRACKED.splitlines()
     rates = ("speeds", "accelerations")
     (lab / "subject01_metabolics.toml").write_text("\n".join(line for line in mapping if not line.startswith(rates)))
     kinematics = DATA / "IK/subject01_walk_IK.mot"
@@ -115,7 +107,7 @@ def test_forces_that_balance_another_motion_are_refused(lab):
     for row in rows[1:]:
         row[column] = f"{float(row[column]) + 200:.5f}"
     (lab / "forces.sto").write_text(f"{head}endheader\n" + "\n".join("\t".join(row) for row in rows) + "\n")
-    mapping = MAPPING.format(results="results_no_spring")
+    mapping = TRACKED.replace("results_spring", "results_no_spring")
     kept = mapping.replace("data/CMC/results_no_spring/walk_subject_Actuation_force.sto", "forces.sto")
     (lab / "subject01_metabolics.toml").write_text(kept)
     done = searched(lab, "results_no_spring")

@@ -4,8 +4,7 @@ import ch5_gait
 import numpy as np
 import pandas as pd
 import pytest
-from chapter5.disturbances import disturbance_figure
-from chapter5.gait import MEASURES, Wanted, sensor_sets_figure, sensor_sets_table
+from chapter5.gait import MEASURES, Wanted, disturbance_figure, sensor_sets_figure, sensor_sets_table
 from texts import says
 
 from gaitdisc.reconstruction.page import search_sentences, search_table
