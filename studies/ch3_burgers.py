@@ -83,7 +83,8 @@ def artefact(record: Record) -> str:
     learned = learned_model(record, "dmd", "dynamics", SETTINGS)
     time = record.time[record.split - 1 :]
     words = []
-    for name, start in (("pulse anew at the forecast", system.start), ("field goes on (oracle)", record.start(forecast=True))):
+    starts = {"pulse anew at the forecast": system.start, "field goes on (oracle)": record.start(forecast=True)}
+    for name, start in starts.items():
         truth, known = (rates.run(start[None], dt, len(time) - 1)[0] for rates in (system.true, system.known))
         augmented = with_learned_rates(system.known, learned, start, time).values
         mean = [float(np.mean(np.abs(np.mean(truth - each, axis=1)))) for each in (known, augmented)]
