@@ -81,8 +81,7 @@ def artefact(record: Record) -> str:
     """Forecast improvement by the published way and metric, then each put right; every run begins at the true state."""
     system, dt = record.system, record.conditions.dt_s
     learned = learned_model(record, "dmd", "dynamics", SETTINGS)
-    time = record.time[record.split - 1 :]
-    words = []
+    time, words = record.time[record.split - 1 :], []
     starts = {"pulse anew at the forecast": system.start, "field goes on (oracle)": record.start(forecast=True)}
     for name, start in starts.items():
         truth, known = (rates.run(start[None], dt, len(time) - 1)[0] for rates in (system.true, system.known))
