@@ -156,8 +156,7 @@ class MujocoModel:
         driven = driven.reshape(len(given), driven.shape[1] * steps, given.shape[2])
         driven[:, :, :nu] = np.clip(driven[:, :, :nu], *self.control_ranges.T)
         found = np.empty((len(controls), driven.shape[1] + 1, model.nq + model.nv))
-        begun = np.hstack(to_positions(balls, start.q, start.v))
-        found[:, 0] = begun
+        found[:, 0] = begun = np.hstack(to_positions(balls, start.q, start.v))
         halted = np.ones(len(controls), bool)
         if self.pushes is None and driven.shape[1]:  # all at once, each halted where MuJoCo warns
             whole = np.array([self._begin(*one) for one in zip(begun, start.u, strict=True)])

@@ -45,8 +45,9 @@ class Ready:
             model.addForce(force)
         if profiles is not None:  # controls along time, linear between samples
             controller = osim.PrescribedController()
-            lines = _follow(osim.PiecewiseLinearFunction, *profiles)
-            for name, line in zip([*self.actuators, *(PORT + one for one in free)], lines, strict=False):
+            lines = [*_follow(osim.PiecewiseLinearFunction, *profiles)]
+            ports = [PORT + one for one in free] if len(lines) > len(self.actuators) else []
+            for name, line in zip([*self.actuators, *ports], lines, strict=True):
                 controller.addActuator(model.getActuators().get(name))
                 controller.prescribeControlForActuator(name, line)
             model.addController(controller)
