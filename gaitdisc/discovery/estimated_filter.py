@@ -45,12 +45,12 @@ def find_record_filter(
         beside = [one.cutoff_hz for k, one in seen.items() if units[k] == units[number] and one.signal <= ROUGH]
         if beside and (found := find_filter(_trials(measured, number), measured.rate, at_hz=geometric_mean(beside))):
             seen[number] = found
+    felt = any(one.signal > FELT for one in seen.values())
     if guess is None:  # channels of one unit are taken to be recorded alike
         sure = {number: one for number, one in seen.items() if one.signal <= ROUGH}
         alike = {number: [one for k, one in sure.items() if units[k] == units[number]] for number in unknown}
         seen = {number: sure.get(number, some[0]) for number, some in alike.items() if some}
-    inputs = guess is not None and bool(seen) and _inputs_are_filtered(simulation, measured)
-    if guess is not None and (inputs or any(one.signal > FELT for one in seen.values())):
+    elif (inputs := bool(seen) and _inputs_are_filtered(simulation, measured)) or felt:
         length = min(max(int(period * measured.rate), FEWEST_SAMPLES), int(measured.samples.min()) // 2)
         runs = cut_segments(measured.samples, tuple(range(len(measured.trials))), length, length // OVERLAP)
         size = np.nanstd(measured.observed, axis=(0, 1))
