@@ -13,7 +13,8 @@ if TYPE_CHECKING:
     from gaitdisc.discovery.result import Discovery as Discovery
     from gaitdisc.errors import GaitdiscError as GaitdiscError
     from gaitdisc.ingest.c3d import C3DReader as C3DReader
-    from gaitdisc.ingest.reading import read_trial, write_recording
+    from gaitdisc.ingest.reading import read_trial as read
+    from gaitdisc.ingest.reading import write_recording as write
     from gaitdisc.library import plot as plot
     from gaitdisc.library.comparing import compare as compare
     from gaitdisc.library.comparing import paired_tests as paired_tests
@@ -51,14 +52,12 @@ if TYPE_CHECKING:
     from gaitdisc.simulation.functions import simulation_from_function as simulation_from_function
     from gaitdisc.simulation.parts import Term as Term
     from gaitdisc.simulation.simulation import Simulation as Simulation
-    from gaitdisc.simulation.simulation_file import bundled
+    from gaitdisc.simulation.simulation_file import bundled as bundled_simulation
     from gaitdisc.simulation.simulation_file import read_simulation as read_simulation
     from gaitdisc.simulation.writing import write_simulation as write_simulation
     from gaitdisc.statistics.holm_sidak import holm_sidak as holm_sidak
     from gaitdisc.statistics.r2 import r2 as r2
     from gaitdisc.statistics.signed_rank import signed_rank as signed_rank
-
-    bundled_simulation, read, write = bundled, read_trial, write_recording
 
 # name -> module, and the name there; in the order of the reference
 _HOME = {
@@ -113,7 +112,8 @@ _HOME = {
     "load": ("library.loading", "load"),
     "plot": ("library.plot", ""),
 }
-__all__ = list(_HOME)  # pyright: ignore[reportUnsupportedDunderAll]
+__all__ = ["bundled_simulation", "read", "write"]  # by name: for a type checker an import is public only as `X as X`
+__all__ += [name for name in _HOME if name not in __all__]
 
 
 if not TYPE_CHECKING:  # or a type checker takes every misspelt name for one of ours
