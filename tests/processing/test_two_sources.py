@@ -101,7 +101,7 @@ def test_moments_of_a_thousandth_are_left_out(plug_in_gait, tables):
         small = planted(trial, lambda moment: moment / 1000, *legs, stream="moments")
         (finding,), gone = said_of(small)
         assert set(legs) <= gone
-        assert says(finding.what, f"{unit}", "at least", "another unit")
+        assert says(finding.what, f"{unit}", "at least", "the unit is wrong")
         one = planted(trial, lambda moment: moment / 1000, "knee_angle_l_moment", stream="moments")
         (finding,), gone = said_of(one)
         assert gone == {finding.channel} == {"knee_angle_l_moment"}
