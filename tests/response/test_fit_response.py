@@ -301,7 +301,7 @@ def test_what_is_left_away_is_counted_with_its_reason(nominal):
     samples, excluded = gait_samples(replace(nominal, usable=usable, phi=phi), (ANKLE,))
     assert len(samples) == 5750
     assert np.isfinite(samples.phi).all()
-    assert says(excluded.line(), "P01", "left", "excluded samples: 250 of 6000", "200 outside", "50", "knee_angle_r not")
+    assert says(excluded.line(), "P01", "excluded samples: 250 of 6000", "200 outside", "50", "knee_angle_r not")
     usable[:3000] = False
     assert gait_samples(replace(nominal, usable=usable), (ANKLE,))[1].severity == "warning"
 
