@@ -12,11 +12,10 @@ from gaitdisc.clinic.clinical_reference import ClinicalReading, Contrast
 from gaitdisc.processing.leg_curves import FEET, KINEMATICS, NORMAL, VARIABLES, ClinicalVariable
 from gaitdisc.processing.pooled_cycles import PooledCycles
 from gaitdisc.recording import PERCENT
-from gaitdisc.report.curve_panels import SHORT, Line, Panel, in_rows
+from gaitdisc.report.curve_panels import MOST_SINGLE, SHORT, Line, Panel, in_rows
 from gaitdisc.words import label, number, sideless
 
 AMPLIFIED_V = 0.005  # surface EMG is below 5 mV on the skin
-MOST_SINGLE = 12  # cycles of a leg that are drawn one by one
 
 
 def sheet(reading: ClinicalReading, *kinds: str) -> list[Panel]:

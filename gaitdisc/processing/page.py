@@ -22,7 +22,7 @@ from gaitdisc.processing.tables import (
     spatiotemporal_table,
     tabulate_left_out,
 )
-from gaitdisc.report.curve_panels import Line, Panel, draw_rows
+from gaitdisc.report.curve_panels import MOST_SINGLE, Line, Panel, draw_rows
 from gaitdisc.report.figure import Figure, SavedFigure, file_names, inline_drawing, largest_inline, save_figures
 from gaitdisc.report.page import Block, save_block, write_page
 from gaitdisc.report.panels import sheets
@@ -54,7 +54,6 @@ COMPUTED = (
     "pressure, heel and toes on the plate."
 )
 MOST_PANELS = 21
-MOST_FAINT = 12  # cycles that are drawn one by one
 
 
 def write_cycles_page(run: StudyRun, folder: Path) -> Path:
@@ -185,23 +184,20 @@ def _figure(pooled: PooledCycles, numbers: pd.DataFrame, joints: list[str], name
         every = curves[of_side[word], :, columns.index(str(channel))]
         every = every[np.isfinite(every).any(axis=1)]
         mean, sd = curve["mean"].to_numpy(), curve["sd"].to_numpy() if len(every) > 2 else None
-        lines = (*(Line(word, cycle, "single") for cycle in every[:MOST_FAINT]), Line(word, mean, sd=sd))
+        lines = (*(Line(word, cycle, "single") for cycle in every[:MOST_SINGLE]), Line(word, mean, sd=sd))
         empty = Panel(joint, label(joint), unit_text(str(unit)), upwards(str(channel)), "", "", (), foot_off=offs)
         known = panels.get(joint, empty)
         panels[joint] = replace(known, lines=(*known.lines, *lines))
-    alt = f"Mean cycles of {pooled.subject}, {pooled.where}: {range_words(shown)}."
-    return Figure(name, _caption(pooled), alt, shown, draw_rows([panels[joint] for joint in joints]))
-
-
-def _caption(pooled: PooledCycles) -> str:
     counts = " and ".join(f"{counted(pooled.counted(side), 'cycle')} {SIDE_WORDS[side]}" for side in FEET)
     kinetic = pooled.kept[pooled.kept["kinetic"].astype(bool)]
     plates = ", ".join(f"{int((kinetic['side'] == side).sum())} {SIDE_WORDS[side]}" for side in FEET)
     moments = f" Moments are shown only for cycles in which the channel's own foot was alone on a plate: {plates}."
     filters = dict.fromkeys(finding.what for finding in pooled.findings if finding.kind == "filter")
-    return (
+    caption = (
         f"{pooled.subject}, {pooled.where}: {counts}, pooled over {counted(pooled.trials, 'trial')}; mean ± standard "
-        f"deviation (of three or more cycles) and single cycles (the first {MOST_FAINT}); left red, right blue. 0 "
-        f"%: initial contact of the channel's own foot; short marks: mean foot off.{moments if len(kinetic) else ''}"
+        f"deviation (of three or more cycles) and single cycles (the first {MOST_SINGLE}); left red, right blue. 0 %: "
+        f"initial contact of the channel's own foot; short marks: mean foot off.{moments if len(kinetic) else ''}"
         + "".join(f" Filters: {words}." for words in filters)
     )
+    alt = f"Mean cycles of {pooled.subject}, {pooled.where}: {range_words(shown)}."
+    return Figure(name, caption, alt, shown, draw_rows([panels[joint] for joint in joints]))

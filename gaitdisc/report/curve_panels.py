@@ -20,6 +20,7 @@ WIDTH, HEIGHT, GAP = 300, 160, 12  # of a third of a sheet, and between two
 LEFT, MARGIN, TOP, BOTTOM = 34, 4, 15, 138  # of the axes
 DASHES = {"l": "", "r": "5 1.6", "": ""}  # so that left and right differ in grey print too
 ROW, DOWN = 3 * WIDTH + 2 * GAP, HEIGHT + 20  # of one drawing of many panels: its width, and from row to row
+MOST_SINGLE = 12  # cycles of a leg that are drawn one by one
 BAR = 5  # height of a bar below the curves
 STRIP = 30  # height of a raw trace below a panel, of one leg
 BINS = 500  # of a raw trace, each drawn from its smallest to its largest sample
@@ -245,7 +246,7 @@ def draw_rows(panels: Sequence[Panel]) -> str:
     ]
     for place, panel in enumerate(panels):
         x, y = place % 3 * (WIDTH + GAP), place // 3 * DOWN
-        about = escape(f"[{panel.unit}] {panel.note}")
+        about = escape(f"[{panel.unit}] {panel.note}".strip())
         parts.append(f'<text x="{x}" y="{y + 11}"><tspan class="title">{escape(panel.title)}</tspan> {about}</text>')
         parts.append(svg(panel).replace("<svg", f'<svg x="{x}" y="{y + 14}" width="{WIDTH}" height="{HEIGHT}"', 1))
     return "".join((*parts, "</svg>\n"))
