@@ -8,7 +8,7 @@ from gaitdisc.commands.options import REFUSED
 
 
 def doctor() -> None:
-    """Check versions, fonts and browser, and the readers with test files; nothing is changed."""
+    """Check versions, fonts and browser, and test the readers with example files; nothing is changed."""
     import shutil
 
     from gaitdisc.report.panels import fonts_found
@@ -23,6 +23,6 @@ def doctor() -> None:
         typer.echo(f"{one.state:7}{one.what:14}{one.words}")
     wrong = [one.what for one in found if one.state == "wrong"]
     if wrong:
-        typer.echo(f"wrong: {', '.join(wrong)}. Install gaitdisc again in a separate environment.", err=True)
+        typer.echo(f"Not working: {', '.join(wrong)}. Install gaitdisc again in a separate environment.", err=True)
         raise typer.Exit(REFUSED)
     typer.echo("This installation works.")

@@ -60,8 +60,7 @@ def export(
     if not labels:
         together, count = with_public_labels(together)
         if count:
-            what = "label is" if count == 1 else "labels are"
-            LOG.info(f"{count} {what} not in the vocabulary and numbered; --labels keeps them.")
+            LOG.info(f"Labels outside the vocabulary were numbered ({count}); --labels keeps them.")
     write_recording(together, out)
     typer.echo(f"{out}: {len(together.names)} channels, {len(together.time)} samples at {together.rate_hz:g} Hz")
 
