@@ -18,7 +18,7 @@ NEARLY = 0.97  # of the time that a part is expected to take, as far as the bar 
 def chapter(
     number: Annotated[int, typer.Argument(metavar="3|4|5", help="Number of the chapter: 3, 4 or 5.")],
     out: Annotated[Path, typer.Argument(help="Folder to write, with one folder for each part.")],
-    part: Annotated[str, typer.Option(help="Compute only this part.")] = "",
+    part: Annotated[str, typer.Option(help="Compute only this part of the chapter.")] = "",
     quick: Annotated[bool, typer.Option("--quick", help="Compute only a small part of each study as a check.")] = False,
     data: Annotated[
         Path | None, typer.Option(help="Folder of recordings with gait/ and fields/; by default GAITDISC_DATA.")

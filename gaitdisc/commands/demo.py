@@ -14,7 +14,7 @@ from gaitdisc.errors import LOG
 
 def demo(  # noqa: PLR0913, PLR0917 these are the options of a command
     folder: Annotated[Path, typer.Argument(help="Folder to create.")] = Path("demo"),
-    seconds: Annotated[float, typer.Option(min=30.0, help="Length of each walk [s]; 240 in the dissertation.")] = 60.0,
+    seconds: Annotated[float, typer.Option(min=30.0, help="Length of each walk [s]; dissertation: 240 s.")] = 60.0,
     people: Annotated[int, typer.Option(min=1, max=12, help="Number of participants, at most twelve.")] = 12,
     hide: Annotated[
         str, typer.Option(help="Difference of the walks, such as spring, weak plantarflexor or stiff knee.")

@@ -55,7 +55,7 @@ def discover(  # noqa: PLR0913, PLR0917 these are the options of a command
     plan: Annotated[
         bool, typer.Option("--plan", help="Before a measurement: report how large --effects must be to be found.")
     ] = False,
-    draw: Annotated[bool, typer.Option("--report/--no-report", help="Write report.html as well.")] = True,
+    draw: Annotated[bool, typer.Option("--report/--no-report", help="Also write report.html.")] = True,
     quiet: Quiet = False,
 ) -> None:
     """Identify the effect that the simulation lacks, add it, and report the error on held-out data."""

@@ -16,7 +16,7 @@ def doctor() -> None:
 
     found = list(checks())
     fonts = fonts_found()
-    found.append(Check("fonts", "ok" if fonts else "wrong", ", ".join(fonts) or "no font of the figures is installed"))
+    found.append(Check("fonts", "ok" if fonts else "wrong", ", ".join(fonts) or "no font for figures is installed"))
     browser = next(filter(None, map(shutil.which, ("chromium", "google-chrome", "firefox", "msedge"))), None)
     found.append(Check("browser", "ok" if browser else "absent", "found" if browser else "pages open in any browser"))
     for one in found:

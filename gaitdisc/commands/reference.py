@@ -55,7 +55,7 @@ def reference(
     path = save_reference(found, out)
     for word in found.legs:
         count = found.people(word)
-        few = f"; fewer than {FEWEST}: bands are drawn, but no deviation is reported" if count < FEWEST else ""
+        few = f"; fewer than {FEWEST} people: bands are drawn, but no deviation is reported" if count < FEWEST else ""
         typer.echo(f"  {word}: {count} people, {len(found.of(word))} legs{few}")
         for own in list_groups(found.of(word)):
             typer.echo(f"    group: {described(own)}")
@@ -82,7 +82,7 @@ def _keep_normal_data(file: Path, out: Path, people: int) -> None:
     if angles.median() < PEOPLE_DEG:
         words = f"  the median standard deviation of the angles is {angles.median():.1f} deg, but people differ by"
         typer.echo(f"{words} more than {PEOPLE_DEG:g} deg: the data may be cycles of one person")
-    typer.echo("  bands and profile scores are computed, but no deviation is reported, because limits need single legs")
+    typer.echo("  bands and profile scores are computed, but no deviations: limits need data of single legs")
     typer.echo(f"reference: {path}. Its first line is printed on each page; state in it who these people are.")
 
 
