@@ -2,11 +2,10 @@
 
     python benchmarks/clinic_people.py [--people 6 20 100] [--controls 6] [--files 3000]
 
-Controls of the demonstration (`gaitdisc demo --clinic`: 16 s, angles, belts, EMG) are written and made a reference.
-As many people as are wanted have linked files of these controls, for people that differ would cost the same. Timed,
-each in a fresh process on one thread: `gaitdisc run` with all pages, once more after one new trial of one person, and
-once more with nothing new; `gaitdisc new` on so many C3D files. Processor time is that of the command and of all
-processes that it starts, peak memory that of the largest of them.
+Controls of the demonstration (`gaitdisc demo --clinic`: 16 s, angles, belts, EMG) are written and made a reference, and
+as many other people as are wanted walk once each. Timed, each in a fresh process on one thread: `gaitdisc run` with all
+pages, once more after one new trial of one person, and once more with nothing new; `gaitdisc new` on so many C3D files.
+Processor time is that of the command and of all processes that it starts, peak memory that of the largest of them.
 """
 
 from __future__ import annotations
@@ -49,10 +48,10 @@ def main() -> None:
     print(f"load {os.getloadavg()[0]:.1f} on {os.cpu_count()} cores")
     with tempfile.TemporaryDirectory() as place:
         folder = Path(place)
-        controls = write_controls(folder / "controls")
+        controls = write_people(folder / "controls", GIVEN.controls, 0)
         say(f"{GIVEN.controls} controls", ["reference", str(controls.folder), "--out", str(folder / "reference")])
         for count in GIVEN.people:
-            study = write_people(controls, folder / f"people{count}", count)
+            study = write_people(folder / f"people{count}", count, GIVEN.controls)
             run = ["run", str(study.folder), "--quiet"]
             say(f"{count} people", [*run, "--reference", str(folder / "reference")])
             add_trial(study)
@@ -70,11 +69,11 @@ def say(what: str, words: list[str]) -> None:
     print(f"{what:20} {timed([*GAITDISC, *words])[0]}", flush=True)
 
 
-def write_controls(folder: Path) -> Study:
-    """Study of people who walk once."""
+def write_people(folder: Path, count: int, first: int) -> Study:
+    """Study of so many people who walk once, drawn from a number on."""
     people = []
-    for number in range(GIVEN.controls):
-        visit = Visit(f"C{number:02d}", number)
+    for number in range(first, first + count):
+        visit = Visit(f"P{number:03d}", number)
         person = draw_person(visit, CONTROLS_SEED)
         files = write_trial(make_walk(visit, CONTROLS_SEED), folder, f"raw/{visit.name}/walking")
         trial = PlannedTrial(condition=CONDITION, files=files, speed_m_per_s=person.speed_m_per_s)
@@ -89,24 +88,11 @@ def link(source: Path, place: Path) -> None:
     os.link(source, place)
 
 
-def write_people(controls: Study, folder: Path, count: int) -> Study:
-    """Study of so many people, each with the files of a control."""
-    people = []
-    for number in range(count):
-        control = controls.participants[number % len(controls.participants)]
-        trial = control.trials[0]
-        files = tuple(f"raw/P{number:03d}/{Path(file).name}" for file in trial.files)
-        for source, file in zip(trial.files, files, strict=True):
-            link(controls.path_of(source), folder / file)
-        own = trial.model_copy(update={"files": files})
-        people.append(control.model_copy(update={"id": f"P{number:03d}", "trials": (own,)}))
-    return save(controls, folder, tuple(people))
-
-
 def add_trial(study: Study) -> None:
     """A second trial of the first of them."""
     first, *others = study.participants
-    files = write_trial(make_walk(Visit("again", 0, session="again"), CONTROLS_SEED), study.folder, "raw/P000/again")
+    walk = make_walk(Visit("again", GIVEN.controls, session="again"), CONTROLS_SEED)
+    files = write_trial(walk, study.folder, f"raw/{first.id}/again")
     trial = PlannedTrial(condition=CONDITION, files=files, speed_m_per_s=first.trials[0].speed_m_per_s)
     save(study, study.folder, (first.model_copy(update={"trials": (*first.trials, trial)}), *others))
 

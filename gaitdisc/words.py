@@ -97,9 +97,9 @@ def p_cell(p: float) -> str:
     """Write a p as it stands in a table.
 
     >>> p_cell(0.0004), p_cell(0.0312), p_cell(float("nan"))
-    ('< .001', '0.031', '–')
+    ('< 0.001', '0.031', '–')
     """
-    return NONE if not math.isfinite(p) else "< .001" if p < 0.001 else f"{p:.3f}"
+    return NONE if not math.isfinite(p) else "< 0.001" if p < 0.001 else f"{p:.3f}"
 
 
 def counted(count: int, noun: str) -> str:
@@ -137,9 +137,9 @@ def p_words(p: float) -> str:
     """A p as it is printed.
 
     >>> p_words(0.0004), p_words(0.0312)
-    ('p < .001', 'p = .031')
+    ('p < 0.001', 'p = 0.031')
     """
-    return "p < .001" if p < 0.001 else f"p = {p:.3f}".replace("0.", ".", 1)
+    return "p < 0.001" if p < 0.001 else f"p = {p:.3f}"
 
 
 def direction_words(name: str, gap: float, unit: str) -> str:

@@ -34,7 +34,7 @@ def test_upwards_is_the_sign_word_without_its_footnote():
 
 
 def test_a_p_of_one_in_a_thousand_is_printed():
-    assert [p_words(p) for p in (0.00099, 0.001, 0.00105)] == ["p < .001", "p = .001", "p = .001"]
+    assert [p_words(p) for p in (0.00099, 0.001, 0.00105)] == ["p < 0.001", "p = 0.001", "p = 0.001"]
 
 
 @pytest.mark.parametrize(

@@ -15,6 +15,7 @@ from gaitdisc.errors import SchemaError
 from gaitdisc.processing.leg_curves import BY_NAME, LegCurves
 from gaitdisc.processing.pooled_cycles import PooledCycles
 from gaitdisc.recording import PERCENT
+from gaitdisc.report.curve_panels import Band
 from gaitdisc.saved.unit_folder import read_sealed, seal_text
 from gaitdisc.spreadsheet import read_csv
 from gaitdisc.whole_file import write_whole
@@ -236,16 +237,6 @@ class Profile:
     variables: Mapping[tuple[str, str], Score]
     legs: Mapping[str, Score]  # side -> gait profile score of the leg [deg]
     both: Score | None  # gait profile score over fifteen curves; None where a leg or a curve is missing
-
-
-@dataclass(frozen=True, eq=False)
-class Band:
-    """Mean and standard deviation of a curve over the legs of a reference."""
-
-    mean: NDArray[np.float64]
-    sd: NDArray[np.float64]
-    people: int
-    at_speed: bool = False  # whether both are those at the person's speed, as the limits of single values are
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)

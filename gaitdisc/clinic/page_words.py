@@ -9,18 +9,15 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 from functools import cache
 from pathlib import Path
-from typing import TYPE_CHECKING
 
 from gaitdisc.clinic.laboratory import Laboratory
 from gaitdisc.clinic.rules import SCORE, SCORE_WORDS, rules
 from gaitdisc.errors import SchemaError
 from gaitdisc.processing.leg_curves import VARIABLES
 from gaitdisc.processing.tables import VALUES
+from gaitdisc.report.curve_panels import TEMPLATES, Panel
 from gaitdisc.report.table import Table
 from gaitdisc.whole_file import write_whole
-
-if TYPE_CHECKING:
-    from gaitdisc.clinic.panels import Panel
 
 TIERS = {
     2: "Outside the prediction limits for a healthy person (95 % over all values on this page)",
@@ -31,7 +28,6 @@ NEAREST = {
     "speed": "those nearest in walking speed",
     "age and speed": "those nearest in age and walking speed",
 }
-TEMPLATES = Path(__file__).parents[1] / "report" / "templates"
 WITH_WORDS = ("person.html.j2", "people.html.j2", "person.typ")
 TABLES = (  # headings and cells of tables, and the words between numbers in a sentence of what stands out
     "value", "left", "right", "reference", "asymmetry", "value of", "side", "limits", "people", "cycles", "stands out",

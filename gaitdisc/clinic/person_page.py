@@ -12,17 +12,8 @@ from markupsafe import Markup
 
 from gaitdisc._version import __version__
 from gaitdisc.clinic.clinical_reference import ClinicalReading, ClinicalReference, Contrast, PersonSession
-from gaitdisc.clinic.page_words import ENGLISH, TEMPLATES, TIERS, PageWords
-from gaitdisc.clinic.panels import (
-    MOST_SINGLE,
-    Panel,
-    contrast_sheet,
-    emg_sheet,
-    panel_numbers,
-    raw_numbers,
-    sheet,
-    svg,
-)
+from gaitdisc.clinic.page_words import ENGLISH, TIERS, PageWords
+from gaitdisc.clinic.panels import contrast_sheet, emg_sheet, panel_numbers, raw_numbers, sheet
 from gaitdisc.clinic.person_pdf import write_person_pdf
 from gaitdisc.clinic.sentences import (
     contrast_heading,
@@ -43,6 +34,7 @@ from gaitdisc.clinic.values import (
     values_table,
 )
 from gaitdisc.processing.leg_curves import FORCES, KINEMATICS, MOMENTS, POWERS
+from gaitdisc.report.curve_panels import MOST_SINGLE, TEMPLATES, Panel, svg
 from gaitdisc.report.figure import file_names
 from gaitdisc.report.page import page_text
 from gaitdisc.report.table import Table, save_table, save_tables, words_table

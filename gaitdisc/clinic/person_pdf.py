@@ -8,9 +8,9 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
-from gaitdisc.clinic.page_words import TEMPLATES, PageWords
-from gaitdisc.clinic.panels import Panel
+from gaitdisc.clinic.page_words import PageWords
 from gaitdisc.errors import SchemaError
+from gaitdisc.report.curve_panels import TEMPLATES, Panel
 from gaitdisc.report.table import Table
 from gaitdisc.whole_file import write_whole
 

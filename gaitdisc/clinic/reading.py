@@ -10,7 +10,6 @@ from numpy.typing import NDArray
 
 from gaitdisc.clinic.clinical_reference import (
     FEW,
-    Band,
     ClinicalReading,
     ClinicalReference,
     Contrast,
@@ -26,6 +25,7 @@ from gaitdisc.errors import ComparisonError
 from gaitdisc.processing.leg_curves import BY_NAME, FEET, KINEMATICS, PELVIS, PROFILE, TURNED_DEG, LegCurves, make_legs
 from gaitdisc.processing.pooled_cycles import PooledCycles
 from gaitdisc.recording import Finding
+from gaitdisc.report.curve_panels import Band
 from gaitdisc.statistics.cluster_test import PermutationPlan, two_sample_test
 from gaitdisc.words import SIDE_WORDS, label
 

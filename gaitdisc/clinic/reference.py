@@ -8,11 +8,12 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from gaitdisc.clinic.clinical_reference import SPEED, Band, ClinicalReference, Limits, ReferenceLeg
+from gaitdisc.clinic.clinical_reference import SPEED, ClinicalReference, Limits, ReferenceLeg
 from gaitdisc.errors import SchemaError
 from gaitdisc.processing.leg_curves import make_legs
 from gaitdisc.processing.pooled_cycles import PooledCycles
 from gaitdisc.recording.arrays import mean_where_known
+from gaitdisc.report.curve_panels import Band
 from gaitdisc.saved.provenance import Provenance
 
 FEWEST = 5  # people below whom no limit is drawn

@@ -10,9 +10,9 @@ import pandas as pd
 from numpy.typing import NDArray
 
 from gaitdisc.clinic.clinical_reference import FEW, SCORE_LEAST, ClinicalReading, Contrast, Profile, Score
-from gaitdisc.clinic.panels import ticks
 from gaitdisc.processing.leg_curves import BY_NAME, FEET, PROFILE
 from gaitdisc.processing.tables import VALUES, mean_cell
+from gaitdisc.report.curve_panels import ticks
 from gaitdisc.report.panels import SIDES
 from gaitdisc.report.table import Table
 from gaitdisc.words import NONE, SIDE_WORDS, number, unit_text

@@ -13,7 +13,7 @@ from gaitdisc.commands.run_report import claim_run, report_on
 def ablate(
     study: StudyPlace,
     out: RunPlace = None,
-    length: Annotated[list[float] | None, typer.Option(help="Training length [s]; may be repeated.")] = None,
+    length: Annotated[list[float] | None, typer.Option(help="Length of training data [s]; may be repeated.")] = None,
     part: Annotated[str, typer.Option(help="Part of the training data to use: first or last.")] = "first",
     jobs: Jobs = 1,
     cluster: Cluster = "",

@@ -16,13 +16,13 @@ def angles(
         typer.Option("--static", help="Static trial of the same person (.c3d, .trc); not needed for segments."),
     ] = None,
     marker_set: Annotated[
-        str, typer.Option(help="Marker set: plug_in_gait, ..., or a .toml file; by default recognised by the labels.")
+        str, typer.Option(help="Marker set such as plug_in_gait, or a .toml file; by default recognised by the labels.")
     ] = "",
     joints: Annotated[
         str, typer.Option(help="Joints: free, held (at joint centres) or planar; by default those of the marker set.")
     ] = "",
     forward: Annotated[
-        tuple[float, float, float] | None, typer.Option(help="Direction of walking in the axes of the laboratory.")
+        tuple[float, float, float] | None, typer.Option(help="Walking direction x y z; by default the pelvis's path.")
     ] = None,
     widths: Annotated[
         tuple[float, float, float, float] | None,

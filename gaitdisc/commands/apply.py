@@ -18,7 +18,7 @@ def apply(
     ] = None,
     missing: Annotated[str, typer.Option(help="Replacement of a missing reading: none, mean or last.")] = "none",
     out: Annotated[
-        Path | None, typer.Option(help="File to write; by default RECORDING_reconstructed.mot in this folder.")
+        Path | None, typer.Option(help="File to write; by default RECORDING_reconstructed.mot in the current folder.")
     ] = None,
 ) -> None:
     """Reconstruct the states of a recording with a saved model; report errors if the states were recorded."""

@@ -17,8 +17,8 @@ NEARLY = 0.97  # of the time that a part is expected to take, as far as the bar 
 
 def chapter(
     number: Annotated[int, typer.Argument(metavar="3|4|5", help="Number of the chapter: 3, 4 or 5.")],
-    out: Annotated[Path, typer.Argument(help="Folder to write; each part has its own folder inside.")],
-    part: Annotated[str, typer.Option(help="Compute only this part.")] = "",
+    out: Annotated[Path, typer.Argument(help="Folder to write, with one folder for each part.")],
+    part: Annotated[str, typer.Option(help="Compute only this part of the chapter.")] = "",
     quick: Annotated[bool, typer.Option("--quick", help="Compute only a small part of each study as a check.")] = False,
     data: Annotated[
         Path | None, typer.Option(help="Folder of recordings with gait/ and fields/; by default GAITDISC_DATA.")
@@ -38,7 +38,7 @@ def chapter(
         for place, one in enumerate(possible, 1):
             before, words = sum(seconds.values()) - left, f"{one.name}, {place} of {len(possible)}"
             if not quiet:
-                LOG.info(f"{words}: about {left / 60:.1f} min of one core remain in total")
+                LOG.info(f"{words}: about {left / 60:.1f} min on one core remain in total")
             left -= seconds[one]
 
             def ticked(spent: float, one: Part = one, before: float = before, words: str = words) -> None:
@@ -53,10 +53,10 @@ def chapter(
         raise typer.Exit(SOME_REFUSED)
 
 
-chapter.__doc__ = f"""Compute the tables and figures of chapter 3, 4 or 5 again, with the studies behind the pages.
+chapter.__doc__ = f"""Compute the tables, figures and studies of chapter 3, 4 or 5 again.
 
 Finished parts are kept; the same command continues after an interruption. Each part writes its page or tables, and its
-output to `printed.md`. Times are approximate minutes of one core; those in brackets with --quick.
+output to `printed.md`. Times are approximate minutes on one core, and in brackets with --quick.
 
 \b
 {costs()}

@@ -12,9 +12,9 @@ from gaitdisc.errors import LOG, SchemaError
 
 
 def compare(  # noqa: PLR0913, PLR0917 these are the options of a command
-    first: Annotated[Path, typer.Argument(metavar="SIM", help="File of a simulated walk or condition, or a study.")],
+    first: Annotated[Path, typer.Argument(metavar="SIM", help="File of the first (simulated) walk, or a study.")],
     second: Annotated[
-        Path | None, typer.Argument(metavar="MEASURED", help="File of the measured walk or other condition.")
+        Path | None, typer.Argument(metavar="MEASURED", help="File of the second (measured) walk.")
     ] = None,
     out: Annotated[
         Path | None, typer.Option(help="Folder of the report; by default ./compare, or STUDY/compare.")
@@ -26,7 +26,7 @@ def compare(  # noqa: PLR0913, PLR0917 these are the options of a command
     channel: Annotated[list[str] | None, typer.Option(help="Compare only this channel; may be repeated.")] = None,
     cutoff: Annotated[float, typer.Option(min=1.0, help="For two files: low-pass of angles and moments [Hz].")] = 6.0,
     detector: Annotated[
-        str, typer.Option(help="For two files: detector of contacts (auto, force, events, markers or angles).")
+        str, typer.Option(help="For two files: detector of initial contact (auto, force, events, markers or angles).")
     ] = "auto",
     smallest_angle: Annotated[float, typer.Option(min=0.0, help="Smallest angle difference to name [deg].")] = 2.0,
     smallest_moment: Annotated[float, typer.Option(min=0.0, help="Smallest moment difference to name [N m/kg].")] = 0.1,
@@ -34,7 +34,7 @@ def compare(  # noqa: PLR0913, PLR0917 these are the options of a command
         float, typer.Option(min=0.0, help="Smallest other difference to name, as a fraction of the curve's range.")
     ] = 0.05,
     body_weight: Annotated[
-        float | None, typer.Option(min=1.0, help="Body weight [N]; the fraction for forces refers to it.")
+        float | None, typer.Option(min=1.0, help="Body weight [N], to which the fraction for forces refers.")
     ] = None,
 ) -> None:
     """Compare two walks over the stride: where they differ, by how much, and whether significantly."""

@@ -14,10 +14,10 @@ from gaitdisc.errors import LOG
 
 def demo(  # noqa: PLR0913, PLR0917 these are the options of a command
     folder: Annotated[Path, typer.Argument(help="Folder to create.")] = Path("demo"),
-    seconds: Annotated[float, typer.Option(min=30.0, help="Length of each walk [s]; 240 in the dissertation.")] = 60.0,
+    seconds: Annotated[float, typer.Option(min=30.0, help="Length of each walk [s]; dissertation: 240 s.")] = 60.0,
     people: Annotated[int, typer.Option(min=1, max=12, help="Number of participants, at most twelve.")] = 12,
     hide: Annotated[
-        str, typer.Option(help="Difference between the walks: spring, weak plantarflexor, stiff knee, drop foot, ...")
+        str, typer.Option(help="Difference of the walks, such as spring, weak plantarflexor or stiff knee.")
     ] = "spring",
     clinic: Annotated[
         bool, typer.Option("--clinic", help="Simulate a week of a clinic instead, with a page for each person.")
@@ -42,7 +42,7 @@ def demo(  # noqa: PLR0913, PLR0917 these are the options of a command
 
     claim_folder(folder, "study.toml", "raw", "truth")
     claim_run(folder / "run")
-    typer.echo(f"{people} simulated people of the embedded cohort walk {seconds:g} s in each condition.")
+    typer.echo(f"Data of simulated people ({people}) of the embedded cohort, {seconds:g} s in each condition.")
     write_demonstration(folder, seconds, people, hide, lambda who, _: LOG.info(f"  {who}"), laboratory)
     study = load_study(folder)
     try:
@@ -51,7 +51,7 @@ def demo(  # noqa: PLR0913, PLR0917 these are the options of a command
     except typer.Exit as ended:
         if ended.exit_code != SOME_REFUSED:
             raise
-        typer.echo("A participant whose gait changes late is refused on purpose, to demonstrate the refusal.")
+        typer.echo("A participant whose gait changes towards the end is refused on purpose, to show a refusal.")
 
 
 def _clinic(folder: Path, jobs: int) -> None:
@@ -70,7 +70,7 @@ def _clinic(folder: Path, jobs: int) -> None:
     claim_folder(folder, "planted.json", "reference", *parts, *files, "week/clinic.toml")
     for part in parts:
         claim_run(folder / part / "run")
-    typer.echo("20 controls and 8 patients, one of them a child, walk 16 s each (simulated).")
+    typer.echo("Simulating 20 controls and 8 patients (one of them a child), 16 s each.")
     controls, week, planted = write_week(folder, progress=lambda who: LOG.info(f"  {who}"))
     workers = Workers(jobs)
     own = run_study(controls, controls.folder / "run", workers)

@@ -36,12 +36,12 @@ def discover(  # noqa: PLR0913, PLR0917 these are the options of a command
         ),
     ],
     measured: Annotated[
-        Path | None, typer.Argument(metavar="MEASURED", help="Measured trials: CSV or Parquet; .mot for a model.")
+        Path | None, typer.Argument(metavar="MEASURED", help="Measured trials: .csv, .parquet; for a model also .mot.")
     ] = None,
     out: Annotated[Path, typer.Option(help="Folder for the results.")] = Path("found"),
     participant: Annotated[
         str,
-        typer.Option(help="In a study: W01, W01:knee_angle, or all. The walk with the device is searched."),
+        typer.Option(help="Participant of a study (W01 or W01:knee_angle) or all, whose device walk is searched."),
     ] = "",
     catalogue: Annotated[Path | None, typer.Option(help="Your own effects (TOML), added to the included ones.")] = None,
     effects: Annotated[
@@ -53,9 +53,9 @@ def discover(  # noqa: PLR0913, PLR0917 these are the options of a command
         typer.Option(help="Number of records like yours to simulate and search, with and without the effect.", min=0),
     ] = 0,
     plan: Annotated[
-        bool, typer.Option("--plan", help="Before a measurement: report how large the effects must be to be found.")
+        bool, typer.Option("--plan", help="Before a measurement: report how large --effects must be to be found.")
     ] = False,
-    draw: Annotated[bool, typer.Option("--report/--no-report", help="Write report.html as well.")] = True,
+    draw: Annotated[bool, typer.Option("--report/--no-report", help="Also write report.html.")] = True,
     quiet: Quiet = False,
 ) -> None:
     """Identify the effect that the simulation lacks, add it, and report the error on held-out data."""

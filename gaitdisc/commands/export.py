@@ -22,7 +22,7 @@ def export(
         ),
     ],
     rate: Annotated[float, typer.Option(min=1.0, help="Sampling rate of the result [samples per second].")] = 100.0,
-    stream: Annotated[list[str] | None, typer.Option(help="Export only this stream; may be repeated.")] = None,
+    stream: Annotated[list[str] | None, typer.Option(help="Only this stream, such as emg; may be repeated.")] = None,
     labels: Annotated[
         bool, typer.Option("--labels", help="Keep labels that are not in the vocabulary; by default they are numbered.")
     ] = False,
@@ -60,8 +60,7 @@ def export(
     if not labels:
         together, count = with_public_labels(together)
         if count:
-            what = "label is" if count == 1 else "labels are"
-            LOG.info(f"{count} {what} not in the vocabulary and numbered; --labels keeps them.")
+            LOG.info(f"Labels outside the vocabulary were numbered ({count}); --labels keeps them.")
     write_recording(together, out)
     typer.echo(f"{out}: {len(together.names)} channels, {len(together.time)} samples at {together.rate_hz:g} Hz")
 

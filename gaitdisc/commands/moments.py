@@ -15,7 +15,7 @@ def moments(
     mass: Annotated[float | None, typer.Option(help="Body mass [kg], if the static C3D has none.")] = None,
     sex: Annotated[str, typer.Option(help="Sex for the segments' inertia, f or m; by default the mean of both.")] = "",
     marker_set: Annotated[
-        str, typer.Option(help="Marker set: plug_in_gait, ..., or a .toml file; by default recognised by the labels.")
+        str, typer.Option(help="Marker set such as plug_in_gait, or a .toml file; by default recognised by the labels.")
     ] = "",
     force_hz: Annotated[
         float, typer.Option(help="Low-pass cut-off of the ground force [Hz]; that of the markers is 6 Hz.")
@@ -45,5 +45,5 @@ def moments(
     for finding in dict.fromkeys((*stood.findings, *weighed, *walk.findings, *moved.findings, *found.findings)):
         typer.echo(finding.line())
     for step in (one for one in found.steps if one.clean):
-        typer.echo(f"side {step.side} alone on {step.platform} from {step.start:.2f} to {step.end:.2f} s")
+        typer.echo(f"foot {step.side} was alone on {step.platform} from {step.start:.2f} to {step.end:.2f} s")
     typer.echo(f"{out}: {len(found.moments.names)} channels, {len(found.moments.time)} samples")

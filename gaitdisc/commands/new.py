@@ -23,7 +23,7 @@ def new(
         Path | None,
         typer.Option(help="For an .osim model: recorded ground forces (.xml, ExternalLoads)."),
     ] = None,
-    forces: Annotated[Path | None, typer.Option(help="For an .osim model: forces or net moments (.sto).")] = None,
+    forces: Annotated[Path | None, typer.Option(help="For an .osim model: muscle forces, net moments (.sto).")] = None,
     actuators: Annotated[
         Path | None, typer.Option(help="For an .osim model: reserve and residual actuators of the forces (.xml).")
     ] = None,
@@ -92,4 +92,4 @@ def _write_tracked(file: Path, model: Path, loads: Path | None, forces: Path | N
         f"Read it, then run: gaitdisc discover {file} KINEMATICS.mot"
     )
     if not tracked.forces:
-        typer.echo("Without --forces (static optimisation, computed muscle control), only residuals can be reported.")
+        typer.echo("Without muscle forces or net moments (--forces), only residuals can be reported.")

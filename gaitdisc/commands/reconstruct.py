@@ -15,12 +15,12 @@ from gaitdisc.errors import LOG
 def reconstruct(  # noqa: PLR0913, PLR0917 these are the options of a command
     study: Annotated[Path, typer.Argument(help="The study file or its folder.")],
     sensors: Annotated[
-        list[str] | None, typer.Option("--sensors", "-s", help="Channels used as sensors: a,b,c, or one per option.")
+        list[str] | None, typer.Option("--sensors", "-s", help="Sensor channels, comma-separated; may be repeated.")
     ] = None,
     search: Annotated[
         int,
         typer.Option(
-            help="Search the best sets of up to this many sensors; without --sensors, use the smallest sufficient set."
+            help="Find the best sets of up to this many sensors; without --sensors, use the smallest sufficient set."
         ),
     ] = 0,
     split: Annotated[

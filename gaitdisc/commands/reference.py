@@ -21,7 +21,7 @@ def reference(
     controls: Annotated[Path, typer.Argument(help="Study of controls, its run, or normal data (.gcd, .xlsx).")],
     out: Annotated[Path, typer.Option("--out", help="Folder for reference.json.")],
     group: Annotated[str, typer.Option(help="Use only this group of the study, such as control.")] = "",
-    people: Annotated[int, typer.Option(min=0, help="Number of people in normal data.")] = 0,
+    people: Annotated[int, typer.Option(min=0, help="Number of people in the normal data (.gcd, .xlsx).")] = 0,
     jobs: Jobs = 1,
 ) -> None:
     """Process the controls as a study, and save the mean cycles of their legs for `--reference`."""
@@ -55,7 +55,7 @@ def reference(
     path = save_reference(found, out)
     for word in found.legs:
         count = found.people(word)
-        few = f"; fewer than {FEWEST}: bands are drawn, but no deviation is reported" if count < FEWEST else ""
+        few = f"; fewer than {FEWEST} people: bands are drawn, but no deviation is reported" if count < FEWEST else ""
         typer.echo(f"  {word}: {count} people, {len(found.of(word))} legs{few}")
         for own in list_groups(found.of(word)):
             typer.echo(f"    group: {described(own)}")
@@ -80,10 +80,10 @@ def _keep_normal_data(file: Path, out: Path, people: int) -> None:
     typer.echo(f"  curves: {', '.join(table['variable'].unique()).replace('_', ' ')}")
     angles = table.loc[table["variable"].isin(PROFILE), "sd"]
     if angles.median() < PEOPLE_DEG:
-        words = f"  the standard deviation of the angles is {angles.median():.1f} deg in the median; people differ by"
-        typer.echo(f"{words} more than {PEOPLE_DEG:g}: these may be cycles of one person")
-    typer.echo("  bands and profile scores are computed, but no deviation is reported, because limits need single legs")
-    typer.echo(f"reference: {path}. Its first line is printed on each page: write there who these people are.")
+        words = f"  the median standard deviation of the angles is {angles.median():.1f} deg, but people differ by"
+        typer.echo(f"{words} more than {PEOPLE_DEG:g} deg: the data may be cycles of one person")
+    typer.echo("  bands and profile scores are computed, but no deviations: limits need data of single legs")
+    typer.echo(f"reference: {path}. Its first line is printed on each page; state in it who these people are.")
 
 
 def _find_run(controls: Path, jobs: int) -> StudyRun:

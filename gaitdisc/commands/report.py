@@ -17,7 +17,7 @@ def report(
     person: Annotated[str, typer.Option(help="In a clinic's run: write only the page of this person.")] = "",
     before: Annotated[str, typer.Option(help="Session or condition of the person, to compare with --after.")] = "",
     after: Annotated[str, typer.Option(help="Session or condition that is compared with --before.")] = "",
-    pdf: Annotated[bool, typer.Option("--pdf", help="Write pages of people as PDF as well.")] = False,
+    pdf: Annotated[bool, typer.Option("--pdf", help="Also write the pages of people as PDF.")] = False,
     reference: Annotated[Path | None, typer.Option(help="Folder of `gaitdisc reference` for bands and scores.")] = None,
     language: Annotated[
         str,
@@ -39,7 +39,7 @@ def report(
         typer.echo(f"words: {write_words(Path(language))}. Fill in the second column and run the command again.")
         return
     if language and (lacking := keep_words(language, place)):
-        typer.echo(f"{len(lacking)} words remain in English: {'; '.join(lacking)}")
+        typer.echo(f"Words without translation ({len(lacking)}) remain in English: {'; '.join(lacking)}")
     named = bool(person or before or after or reference or pdf)
     if named or (place / "cycles").is_dir():
         _people(place, named, person, before, after, reference=reference, pdf=pdf)

@@ -13,9 +13,9 @@ import numpy as np
 from gaitdisc.channel import find_side, hint_nearest
 from gaitdisc.errors import ChannelError, ShapeError
 from gaitdisc.library.walks import make_recording
-from gaitdisc.recording import Recording, Strides
+from gaitdisc.recording import PERCENT, Recording, Strides
 from gaitdisc.recording.arrays import finite_rows
-from gaitdisc.report.panels import axes_or_new
+from gaitdisc.report.panels import SIDES, axes_or_new
 from gaitdisc.words import label, unit_text
 
 if TYPE_CHECKING:
@@ -30,6 +30,7 @@ if TYPE_CHECKING:
     from gaitdisc.response.participant_response import ResponseRun
 
 STRIDE = "stride [%]"
+MOST_SINGLE = 25  # cycles that are drawn one by one
 __all__ = ["curves", "cycles", "discovery", "latent", "mismatch", "r2", "reconstruction", "recording"]
 
 
@@ -102,15 +103,21 @@ def cycles(recording: Recording | pd.DataFrame, strides: Strides, channel: str, 
     >>> gd.plot.cycles(walk.stream("kinematics"), gd.cycles(walk), "knee_angle_r").get_xlabel()
     'stride [%]'
     """
-    from gaitdisc.processing.page import draw_cycles
+    from matplotlib.collections import LineCollection
 
     _refuse_other(strides, "Strides", "gaitdisc.cycles")
     one = make_recording(recording).selected([channel])
     every = finite_rows(strides.normalised(one)[:, :, 0])
     axes = axes_or_new(ax)
     if len(every):
-        sd = every.std(axis=0, ddof=1) if len(every) > 1 else np.zeros(every.shape[1])
-        draw_cycles(axes, every, every.mean(axis=0), sd, find_side(channel))
+        colour, mean = SIDES[find_side(channel)].colour, every.mean(axis=0)
+        axes.axhline(0.0, color="#cccccc", linewidth=0.6, zorder=0)
+        single = [np.column_stack([PERCENT, cycle]) for cycle in every[:MOST_SINGLE]]
+        axes.add_collection(LineCollection(single, colors=colour, linewidths=0.4, alpha=0.35, zorder=1))
+        if len(every) > 2:
+            sd = every.std(axis=0, ddof=1)
+            axes.fill_between(PERCENT, mean - sd, mean + sd, color=colour, alpha=0.18, linewidth=0, zorder=1)
+        axes.plot(PERCENT, mean, color=colour, linewidth=1.2, zorder=2)
     _stride_axis(axes, channel, one.channels[0].unit)
     return axes
 
@@ -144,7 +151,6 @@ def curves(run: ResponseRun, channel: str, participant: str | None = None, ax: A
     >>> gd.plot.curves(gd.load("run"), "ankle_angle_r")  # doctest: +SKIP
     """
     from gaitdisc.processing.curves_figure import curve_numbers, draw_walks, walks_key
-    from gaitdisc.report.panels import SIDES
 
     _refuse_other(run, "ResponseRun", "gaitdisc.fit_response")
     numbers = curve_numbers(run, participant or next(iter(run.reported), ""))
@@ -260,7 +266,6 @@ def mismatch(found: Mismatch, channel: str, gap: bool = False, ax: Axes | None =
     >>> gd.plot.mismatch(gd.load("compare"), "ankle_angle_r", gap=True)  # doctest: +SKIP
     """
     from gaitdisc.comparison.page import draw_both, draw_gap, mismatch_key, mismatch_numbers
-    from gaitdisc.report.panels import SIDES
 
     _refuse_other(found, "Mismatch", "gaitdisc.compare")
     numbers = mismatch_numbers(found, [_check_known(channel, found.names)])

@@ -80,14 +80,6 @@ def sides_together(names: list[str]) -> list[str]:
     return [name for group in (*pairs, *singles) for name in group]
 
 
-def label_curve(axes: Axes, channel: str, unit: str) -> None:
-    """Name unit and positive direction of a channel, if the words are short; the stride goes from 0 to 100 %."""
-    up = upwards(channel)
-    axes.set_ylabel(f"[{unit_text(unit)}]" + (f" ↑ {up}" if up and len(up) < 18 else ""), fontsize=6.8, labelpad=1)
-    axes.set_xlim(0, 100)
-    axes.set_xticks([0, 50, 100])
-
-
 def draw_walks(axes: Axes, curves: pd.DataFrame, colour: str) -> None:
     """Draw mean and spread of both walks of one channel over the stride, from its rows of `curve_numbers`."""
     axes.axhline(0.0, color="#cccccc", linewidth=0.6, zorder=0)
@@ -110,7 +102,10 @@ def _figure(run: StudyRun, participant: str, numbers: pd.DataFrame, name: str) -
         colour = SIDES[find_side(str(channel))].colour
         draw_walks(axes, curves, colour)
         axes.set_title(label(str(channel)).replace("EMG ", ""), color=colour, fontsize=7.4)
-        label_curve(axes, str(channel), str(curves["unit"].iloc[0]))
+        up, unit = upwards(str(channel)), unit_text(str(curves["unit"].iloc[0]))
+        axes.set_ylabel(f"[{unit}]" + (f" ↑ {up}" if up and len(up) < 18 else ""), fontsize=6.8, labelpad=1)
+        axes.set_xlim(0, 100)
+        axes.set_xticks([0, 50, 100])
         key = sideless(str(channel))
         axes.set_ylim(*((low[key] - room[key], high[key] + room[key]) if np.isfinite(low[key]) else (0.0, 1.0)))
     for axes in cells[-4:]:

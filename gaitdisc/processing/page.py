@@ -2,16 +2,14 @@
 
 from __future__ import annotations
 
-import base64
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import asdict, replace
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
 
 import numpy as np
 import pandas as pd
 
-from gaitdisc.processing.curves_figure import label_curve, range_words, sides_together
+from gaitdisc.processing.curves_figure import range_words, sides_together
 from gaitdisc.processing.kept_parts import hash_content, keep_part, read_part
 from gaitdisc.processing.leg_curves import FEET
 from gaitdisc.processing.pooled_cycles import CYCLES, PooledCycles
@@ -24,20 +22,15 @@ from gaitdisc.processing.tables import (
     spatiotemporal_table,
     tabulate_left_out,
 )
-from gaitdisc.recording import PERCENT
-from gaitdisc.recording.arrays import Values
-from gaitdisc.report.figure import Figure, SavedFigure, file_names, largest_inline, save_figures
-from gaitdisc.report.page import Block, draw_side_by_side, save_block, write_page
-from gaitdisc.report.panels import SIDES, Room, in_style, legend, legend_lines, panels_for, sheets
+from gaitdisc.report.curve_panels import MOST_SINGLE, Line, Panel, draw_rows
+from gaitdisc.report.figure import Figure, SavedFigure, file_names, inline_drawing, largest_inline, save_figures
+from gaitdisc.report.page import Block, save_block, write_page
+from gaitdisc.report.panels import sheets
 from gaitdisc.report.table import findings_table, provenance_tables, refusals_table, save_table, save_tables
 from gaitdisc.saved.provenance import Provenance
 from gaitdisc.saved.study_run import StudyRun
-from gaitdisc.words import SIDE_WORDS, counted, label, listing, sideless
+from gaitdisc.words import SIDE_WORDS, counted, label, listing, sideless, unit_text, upwards
 
-if TYPE_CHECKING:
-    from matplotlib.axes import Axes
-
-MOST_HERE = 2  # people whose figures are drawn one after the other
 FEW = 3  # cycles of a foot below which no spread is spoken of
 METHOD = (
     "Contacts come from the file's events, otherwise from force, markers (heel farthest in front of the pelvis, each "
@@ -60,8 +53,7 @@ COMPUTED = (
     "powers of these trials are shown for cycles whose stance is a complete step of the channel's own foot, with "
     "centre of pressure, heel and toes on the plate."
 )
-COLUMNS, MOST_PANELS = 4, 20
-MOST_FAINT = 25  # cycles that are drawn one by one
+MOST_PANELS = 21
 
 
 def write_cycles_page(run: StudyRun, folder: Path) -> Path:
@@ -131,11 +123,8 @@ def save_cycle_blocks(run: StudyRun, folder: Path) -> list[Block[SavedFigure]]:
     people = list(dict.fromkeys(pooled.subject for pooled in run.of(CYCLES)))
     names, count = file_names(people), len(run.of(CYCLES))
     sets = {who: [pooled for pooled in run.of(CYCLES) if pooled.subject == who] for who in people}
-    parts = [(own, names[who], hash_content(own, names[who]), folder, count) for who, own in sets.items()]
-    new = [part for part in parts if read_part(folder, f"cycles-{part[1]}", part[2]) is None]
-    if len(new) > MOST_HERE:
-        draw_side_by_side(_save, new, MOST_HERE)
-    return [save_block(first, folder), *(_save(*part) for part in parts)]  # all stand by now
+    parts = (_save(own, names[who], folder, largest_inline(count)) for who, own in sets.items())
+    return [save_block(first, folder), *parts]
 
 
 def person_block(sets: Sequence[PooledCycles], name: str, drawn: bool = True) -> Block:
@@ -155,27 +144,21 @@ def person_block(sets: Sequence[PooledCycles], name: str, drawn: bool = True) ->
     return Block(f"cycles-{name}", sets[0].subject, (f"{'; '.join(parts)}.",), tuple(figures), tuple(tables))
 
 
-def _save(sets: Sequence[PooledCycles], name: str, key: str, folder: Path, count: int) -> Block[SavedFigure]:
-    part = f"cycles-{name}"
-    block = person_block(sets, name, (kept := read_part(folder, part, key)) is None)
+def _save(sets: Sequence[PooledCycles], name: str, folder: Path, most: int) -> Block[SavedFigure]:
+    part, key, here = f"cycles-{name}", hash_content(sets, name), folder / "figures"
+    kept = read_part(folder, part, key)
+    block = person_block(sets, name, kept is None)
     save_tables(block.tables, folder)
-    here, most = folder / "figures", largest_inline(count)
-    figures = [figure_again(shown, here, most) for shown in kept or ()] or save_figures(block.figures, folder, most)
     if kept is None:
-        files = [here / f"{figure.name}.{ending}" for figure in figures for ending in ("svg", "png", "csv")]
+        figures = save_figures(block.figures, folder, most)
+        files = [here / f"{figure.name}.{ending}" for figure in figures for ending in ("svg", "csv")]
         keep_part(folder, part, key, [asdict(replace(figure, data="")) for figure in figures], files)
+    else:  # in a page that may have grown
+        drawn = {one["name"]: (here / f"{one['name']}.svg").read_text(encoding="utf-8") for one in kept}
+        figures = [SavedFigure(**{**one, "data": inline_drawing(drawn[one["name"]], most)}) for one in kept]
     return Block(block.anchor, block.heading, block.sentences, tuple(figures), block.tables)
 
 
-def figure_again(shown: Mapping[str, Any], folder: Path, inline_bytes: int) -> SavedFigure:
-    """Figure that stands in a folder, as data in a page that may have grown; chosen as `save_figure` does."""
-    svg, png = ((folder / f"{shown['name']}.{ending}").read_bytes() for ending in ("svg", "png"))
-    kind, content = ("svg+xml", svg) if len(svg) <= max(inline_bytes, len(png)) else ("png", png)
-    data = f"data:image/{kind};base64,{base64.b64encode(content).decode('ascii')}"
-    return SavedFigure(**{**shown, "data": data})
-
-
-@in_style
 def cycles_figures(pooled: PooledCycles, name: str) -> list[Figure]:
     """Curves of one person, session and condition, a panel for each channel with left and right over each other."""
     numbers = pooled.mean_curves()
@@ -191,54 +174,30 @@ def cycles_figures(pooled: PooledCycles, name: str) -> list[Figure]:
 
 def _figure(pooled: PooledCycles, numbers: pd.DataFrame, joints: list[str], name: str) -> Figure:
     columns, curves = [channel.name for channel in pooled.channels], pooled.curves  # read from the disk once
-    drawn, cells = panels_for(len(joints), COLUMNS, 1.15, Room(left=0.6, across=0.64, down=0.46))
-    stems = {channel: sideless(channel) for channel in numbers["channel"].unique()}
-    shown = numbers[numbers["channel"].map(stems).isin(joints)].reset_index(drop=True)
+    shown = numbers[numbers["channel"].map(sideless).isin(joints)].reset_index(drop=True)
     of_side = {side: (pooled.kept["side"] == side).to_numpy() for side in FEET}
-    offs = {side: float(pooled.kept.loc[rows, "stance_percent"].mean()) for side, rows in of_side.items()}
-    panels = dict(zip(joints, cells, strict=True))
+    means = {side: float(pooled.kept.loc[rows, "stance_percent"].mean()) for side, rows in of_side.items()}
+    offs = tuple((side, percent) for side, percent in means.items() if np.isfinite(percent))
+    panels = {}
     for (channel, unit, side), curve in shown.groupby(["channel", "unit", "side"], sort=False):
-        axes, word = panels[stems[channel]], str(side)
-        if not axes.get_title():
-            axes.set_title(label(stems[channel]), fontsize=7.4)
-            label_curve(axes, str(channel), str(unit))
+        word, joint = str(side), sideless(str(channel))
         every = curves[of_side[word], :, columns.index(str(channel))]
         every = every[np.isfinite(every).any(axis=1)]
-        draw_cycles(axes, every, curve["mean"].to_numpy(), curve["sd"].to_numpy(), word)
-        if np.isfinite(offs[word]):
-            axes.axvline(offs[word], color=SIDES[word].colour, linewidth=0.7, linestyle=(0, (1.5, 1.5)), zorder=0)
-    for axes in cells[-COLUMNS:]:
-        axes.set_xlabel("cycle [%]", labelpad=1)
-    cycle = {"color": "#666666", "linewidth": 0.5}
-    foot_off = {"color": "#666666", "linestyle": (0, (1.5, 1.5)), "linewidth": 0.9}
-    sides = {SIDE_WORDS[side]: SIDES[side] for side in FEET}
-    legend(drawn, legend_lines({**sides, "single cycles": cycle, "foot off": foot_off}))
-    alt = f"Mean cycles of {pooled.subject}, {pooled.where}: {range_words(shown)}."
-    return Figure(name, _caption(pooled), alt, shown, drawn)
-
-
-def draw_cycles(axes: Axes, every: Values, mean: Values, sd: Values, side: str) -> None:
-    """Draw every cycle (cycle, phase) faint, and their mean (phase,); from three cycles on its spread."""
-    from matplotlib.collections import LineCollection
-
-    look = SIDES[side]
-    axes.axhline(0.0, color="#cccccc", linewidth=0.6, zorder=0)
-    lines = [np.column_stack([PERCENT, cycle]) for cycle in every[:MOST_FAINT]]
-    axes.add_collection(LineCollection(lines, colors=look.colour, linewidths=0.4, alpha=0.35, zorder=1))
-    if len(every) > 2:
-        axes.fill_between(PERCENT, mean - sd, mean + sd, color=look.colour, alpha=0.18, linewidth=0, zorder=1)
-    axes.plot(PERCENT, mean, color=look.colour, linewidth=1.2, zorder=2)
-
-
-def _caption(pooled: PooledCycles) -> str:
+        mean, sd = curve["mean"].to_numpy(), curve["sd"].to_numpy() if len(every) > 2 else None
+        lines = (*(Line(word, cycle, "single") for cycle in every[:MOST_SINGLE]), Line(word, mean, sd=sd))
+        empty = Panel(joint, label(joint), unit_text(str(unit)), upwards(str(channel)), "", "", (), foot_off=offs)
+        known = panels.get(joint, empty)
+        panels[joint] = replace(known, lines=(*known.lines, *lines))
     counts = " and ".join(f"{counted(pooled.counted(side), 'cycle')} {SIDE_WORDS[side]}" for side in FEET)
     kinetic = pooled.kept[pooled.kept["kinetic"].astype(bool)]
     plates = ", ".join(f"{int((kinetic['side'] == side).sum())} {SIDE_WORDS[side]}" for side in FEET)
     moments = f" Moments are shown only for cycles in which the channel's own foot was alone on a plate: {plates}."
     filters = dict.fromkeys(finding.what for finding in pooled.findings if finding.kind == "filter")
-    return (
+    caption = (
         f"{pooled.subject}, {pooled.where}: {counts}, pooled over {counted(pooled.trials, 'trial')}; mean ± standard "
-        f"deviation (of three or more cycles) and single cycles (the first {MOST_FAINT}); left red, right blue. 0 %: "
-        f"initial contact of the channel's own foot; dotted: mean foot off.{moments if len(kinetic) else ''}"
+        f"deviation (of three or more cycles) and single cycles (the first {MOST_SINGLE}); left red, right blue. 0 %: "
+        f"initial contact of the channel's own foot; short marks: mean foot off.{moments if len(kinetic) else ''}"
         + "".join(f" Filters: {words}." for words in filters)
     )
+    alt = f"Mean cycles of {pooled.subject}, {pooled.where}: {range_words(shown)}."
+    return Figure(name, caption, alt, shown, draw_rows([panels[joint] for joint in joints]))

@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING
 
 import pandas as pd
 
+from gaitdisc.report.curve_panels import ROW
 from gaitdisc.report.panels import in_style
 from gaitdisc.report.table import save_table
 from gaitdisc.whole_file import write_whole
@@ -33,7 +34,7 @@ class Figure:
     caption: str  # what is seen, with n, unit and split
     alt: str  # what is seen, for those who cannot see it
     numbers: pd.DataFrame  # the very numbers drawn
-    drawn: matplotlib.figure.Figure
+    drawn: matplotlib.figure.Figure | str  # as SVG where no PNG is written beside
 
 
 @dataclass(frozen=True)
@@ -53,6 +54,10 @@ def save_figure(figure: Figure, folder: Path, inline_bytes: int = LARGEST_INLINE
     figure: what to save; its drawing is closed for further use
     inline_bytes: largest SVG that is shown in the page; beyond it the smaller of SVG and PNG is
     """
+    if isinstance(figure.drawn, str):
+        write_whole(folder / f"{figure.name}.svg", figure.drawn)
+        save_table(figure.numbers, folder / f"{figure.name}.csv")
+        return SavedFigure(figure.name, figure.caption, figure.alt, inline_drawing(figure.drawn, inline_bytes), ROW)
     # each axis measures its ticks to place its label, even one without words
     for axes in figure.drawn.axes:
         for axis in (axes.xaxis, axes.yaxis):
@@ -65,6 +70,12 @@ def save_figure(figure: Figure, folder: Path, inline_bytes: int = LARGEST_INLINE
     kind, content = ("svg+xml", svg) if len(svg) <= max(inline_bytes, len(png)) else ("png", png)
     data = f"data:image/{kind};base64,{base64.b64encode(content).decode('ascii')}"
     return SavedFigure(figure.name, figure.caption, figure.alt, data, 96 * figure.drawn.get_figwidth())
+
+
+def inline_drawing(svg: str, inline_bytes: int) -> str:
+    """Drawing of panels as data in a page; where that would be too large, without single cycles."""
+    small = svg if len(svg) <= inline_bytes else re.sub(r'<path class="single"[^>]*/>', "", svg)
+    return f"data:image/svg+xml;base64,{base64.b64encode(small.encode()).decode('ascii')}"
 
 
 def largest_inline(figures: int) -> int:

@@ -1,10 +1,11 @@
+from base64 import b64decode
+from collections import Counter
 from dataclasses import replace
+from xml.etree import ElementTree
 
-import numpy as np
 import pandas as pd
 import pytest
 from made_cycles import made_cycles
-from matplotlib.collections import LineCollection
 from texts import says
 
 from gaitdisc.processing.page import (
@@ -15,10 +16,13 @@ from gaitdisc.processing.page import (
     write_cycles_page,
 )
 from gaitdisc.recording import Finding
+from gaitdisc.report.curve_panels import LEFT, MARGIN, WIDTH
+from gaitdisc.report.figure import inline_drawing
 from gaitdisc.response.page import write_report
 from gaitdisc.response.participant_response import ResponseRun
 from gaitdisc.saved.provenance import Refusal, provenance_now
 
+SVG = "{http://www.w3.org/2000/svg}"
 pytestmark = pytest.mark.usefixtures("unpainted")
 
 
@@ -80,14 +84,16 @@ def test_one_part_a_person_with_a_figure_for_each_session_and_condition(tmp_path
 
 def test_both_feet_lie_over_each_other_with_every_cycle_and_foot_off():
     (figure,) = cycles_figures(made_cycles(each=4), "P01-walk")
-    shown = [axes for axes in figure.drawn.axes if axes.get_visible()]
-    titles = [axes.get_title() for axes in shown]
-    assert titles[0] == "knee angle" and titles[-1].startswith("EMG")
-    knee = shown[0]
-    means = [line for line in knee.lines if len(line.get_xdata()) == 101]
-    cycles = [line for own in knee.collections if isinstance(own, LineCollection) for line in own.get_segments()]
-    assert len(means) == 2 and len(cycles) == 2 * 4 and {len(line) for line in cycles} == {101}
-    assert any(np.allclose(line.get_xdata(), 60.0) for line in knee.lines if len(line.get_xdata()) == 2)
+    drawing = ElementTree.fromstring(figure.drawn)
+    titles, panels = drawing.findall(f"{SVG}text"), drawing.findall(f"{SVG}svg")
+    assert "".join(titles[0].itertext()) == "knee angle [deg]" and titles[-1][0].text.startswith("EMG")
+    knee = [(path.get("class"), path.get("data-side"), path.get("d")) for path in panels[0].iter(f"{SVG}path")]
+    kinds = Counter(kind for kind, _, _ in knee)
+    assert (kinds["mean"], kinds["single"], kinds["spread"]) == (2, 8, 2)
+    assert Counter(side for kind, side, _ in knee if kind == "single") == {"l": 4, "r": 4}
+    off = next(line for kind, _, line in knee if kind == "off")
+    assert float(off[1:].split()[0]) == pytest.approx(LEFT + 0.6 * (WIDTH - LEFT - MARGIN), abs=0.06)
+    assert b'class="single"' not in b64decode(inline_drawing(figure.drawn, 100).partition(",")[2])
     assert says(figure.caption, "4 cycles left", "4 cycles right", "2 trials")
     assert "one plate" not in figure.caption and says(figure.caption, "1 left, 1 right")
     assert figure.alt.startswith("Mean cycles of P01, walk: ")

@@ -111,7 +111,7 @@ def test_the_first_sentence_is_the_answer():
     first, *rest = mismatch_sentences(compare_walks(walk("model", 0, gap=-8.0), walk("measured", 1)))
     assert re.match(r"In measured.*right ankle.* [78]\.\d deg", first)
     assert says(first, "more", "model", "12", "55 %")
-    assert says(first, "stride-to-stride SD", "p < .001); 3.")
+    assert says(first, "stride-to-stride SD", "p < 0.001); 3.")
     assert says(first, "the entire curve")
     assert says(rest[-1], "right", "95 %")
 

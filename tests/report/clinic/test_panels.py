@@ -6,26 +6,17 @@ import pytest
 from made_clinic import made_controls, made_person
 from texts import says
 
-from gaitdisc.clinic.clinical_reference import Band
 from gaitdisc.clinic.page_words import PageWords
 from gaitdisc.clinic.panels import (
-    BOTTOM,
-    LEFT,
-    MARGIN,
-    TOP,
-    Line,
-    Panel,
     contrast_sheet,
     emg_sheet,
-    in_rows,
     panel_numbers,
     raw_numbers,
     sheet,
-    svg,
-    ticks,
 )
 from gaitdisc.clinic.reading import contrast, read_beside
 from gaitdisc.processing.leg_curves import KINEMATICS, POWERS
+from gaitdisc.report.curve_panels import BOTTOM, LEFT, MARGIN, TOP, Band, Line, Panel, in_rows, svg, ticks
 
 
 def _panel(**fields):
