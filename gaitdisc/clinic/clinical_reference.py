@@ -142,7 +142,7 @@ def load_reference(place: Path) -> ClinicalReference:
         raise SchemaError(
             f"a reference must be a folder with {FILE}",
             f"{place} has no such file",
-            "Make a reference from the recordings of controls: gaitdisc reference CONTROLS --out FOLDER.",
+            "Make a reference: gaitdisc reference CONTROLS --out FOLDER.",
         )
     data = read_sealed(path)
     if data.get("format") != FORMAT:

@@ -113,7 +113,7 @@ class ArrayFile:
             return self._element(node, int(part), path)
         if len(node.held) == 1:
             return node.held[0]
-        remedy = f'Write part = "1" (up to "{len(node.held)}") next to the trial\'s files, or path{{1}}.'
+        remedy = f'Write part = "1" (up to "{len(node.held)}") in the trial, or name an element: path{{1}}.'
         raise self._refuse(path, f"it holds {len(node.held)} elements", remedy)
 
     def _column(self, node: Any, columns: re.Match[str] | None, path: str) -> Values:

@@ -134,7 +134,7 @@ def _samples_per_frame(recordings: Sequence[Recording], frame_hz: float, file: s
     first = recordings[0]
     for other in recordings[1:]:
         if not np.array_equal(other.time, first.time):
-            found = f"{first.names[0]} has {len(first.time)} samples at {first.rate_hz:g} Hz, {other.names[0]} has "
+            found = f"{first.names[0]} has {len(first.time)} samples at {first.rate_hz:g} Hz, and {other.names[0]} has "
             found += f"{len(other.time)} at {other.rate_hz:g} Hz"
             raise SamplingError(needed, found, "Resample the channels to one time base.")
     samples = round(first.rate_hz / frame_hz)

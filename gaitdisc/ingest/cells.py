@@ -54,7 +54,7 @@ def parse_cells(lines: Sequence[str], labels: Sequence[str], first_line: int, fo
     rows = [line for line in lines if line.strip()]
     if not rows:
         raise ReadError(
-            f"{form.file} must contain rows of numbers", f"none follow line {first_line - 1}", "Export the whole trial."
+            f"{form.file} must contain rows of numbers", f"none follow line {first_line - 1}", "Export all rows."
         )
     rows = _even_rows(rows, labels, numbers, form)
     values = _numbers(rows, form)
@@ -188,7 +188,7 @@ def even_time(time: Values, digit_s: float, file: str, lines: NDArray[np.intp] |
 
     if len(time) < 2:
         raise SamplingError(
-            f"{file}: a recording must have at least two samples", f"it has {len(time)}", "Export the whole trial."
+            f"{file}: a recording must have at least two samples", f"it has {len(time)}", "Export the entire trial."
         )
     if not np.isfinite(time).all():
         row = int(np.argmax(~np.isfinite(time)))

@@ -152,7 +152,7 @@ def platforms(trial: Trial) -> list[Platform]:
             raise UnitError(
                 f"the force of the ground on the foot must be positive upwards on {platform.name}",
                 f"{forces.source.file or trial.name} has {found_n}",
-                "The sign is reversed. Export the force of the ground on the foot.",
+                "Its sign is wrong. Export the force of the ground on the foot.",
             )
     return found
 

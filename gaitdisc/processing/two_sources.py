@@ -141,7 +141,7 @@ def _against_markers(angles: Recording, markers: Recording) -> Contradictions:
         moved, r = (_range(own), _range(line)), _correlation(own, line)
         what = f"{name} varies by {moved[0]:.3g} deg, the lines between its markers by {moved[1]:.3g} deg (r = {r:.2f})"
         if moved[1] >= MOVES_DEG and r < -AGAINST:
-            yield [name], f"{what}: its sign is reversed, or two of the markers are exchanged"
+            yield [name], f"{what}: its sign is wrong, or two of the markers are exchanged"
         elif (
             moved[1] >= MOVES_DEG
             and r > ALIKE
@@ -171,10 +171,10 @@ def _find_turned_hips(angles: Recording) -> Contradictions:
     if together > AGAINST and together - _correlation(*knees) > AGAINST:
         name = names[int(np.argmin(swings))]
         what = f"{name} flexes with the other hip (r = {together:.2f}), unlike the knees, and extends while its knee"
-        yield [name], f"{what} swings: its sign is reversed"
+        yield [name], f"{what} swings: its sign is wrong"
     elif together < -AGAINST and max(swings) < -AGAINST and max(np.nanmean(right), np.nanmean(left)) < 0:
         what = f"both hips extend while their knees swing (r = {max(swings):.2f})"
-        yield names[:2], f"{what}, and are extended on average: their sign is reversed"
+        yield names[:2], f"{what}, and are extended on average: their sign is wrong"
 
 
 def _moment_sizes(moments: Recording) -> Contradictions:
@@ -227,7 +227,7 @@ def _find_turned_moments(moments: Recording, source: Recording) -> Contradiction
         r = _correlation(own, other)
         if r > AGAINST and _range(other) >= MOVES_DEG and (beside.startswith("hip") or np.nanmean(own) > 0):
             what = f"{moment} correlates with {beside} (r = {r:.2f}), although the two oppose each other in walking"
-            yield [moment], f"{what}: its sign is reversed"
+            yield [moment], f"{what}: its sign is wrong"
 
 
 def _range(values: Values) -> float:
