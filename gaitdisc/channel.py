@@ -206,7 +206,7 @@ def vocabulary() -> Vocabulary:
                 raise ChannelError(
                     "an alias in channels.csv must belong to one channel only",
                     f"{label!r} is an alias of {owner!r} and of {row['name']!r}",
-                    "Remove it from one of them.",
+                    "Remove the alias from one channel.",
                 )
     channels = tuple(Channel(r["name"], r["quantity"], r["unit"], r["side"]) for r in rows)
     return Vocabulary(channels, {r["name"]: r["positive"] for r in rows}, aliases)

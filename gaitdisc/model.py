@@ -44,7 +44,7 @@ class Augmented:
                 apart = sorted(set(one) ^ set(other)) or ["their order"]
                 raise ShapeError(
                     f"models that are added must have the same {what}",
-                    f"they have {len(one)} and {len(other)}; they differ in {', '.join(apart[:3])}",
+                    f"they have {len(one)} and {len(other)}, and differ in {', '.join(apart[:3])}",
                     "Fit both models on the same channels.",
                 )
 

@@ -87,7 +87,7 @@ class Guard:
         place = max(inside, key=lambda one: len(one.folder.parts))
         other = [name for name in KINDS if name != path.name and (path.parent / name).is_file()]
         if path.name in KINDS and other:
-            raise _refusal(path.parent, f"already holds another kind of result ({other[0]})")
+            raise _refusal(path.parent, f"already contains another kind of result ({other[0]})")
         if not os.path.lexists(path) or (place.known and place.mends(path)):
             return place
         if os.path.exists(path):  # noqa: PTH110 never raises

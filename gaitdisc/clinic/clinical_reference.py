@@ -70,7 +70,7 @@ def _group(name: str, rows: pd.DataFrame, file: str) -> PublishedGroup:
         if not (whole and at[0] <= PERCENT[0] + 2.5 and at[-1] >= PERCENT[-1] - 2.5):
             raise SchemaError(
                 f"{where}: a curve must have {FEWEST_POINTS} points or more from 0 to 100 %, each with mean and sd",
-                f"found {len(at)} from {at.min():g} to {at.max():g} %",
+                f"found {len(at)} points from {at.min():g} to {at.max():g} %",
                 "Correct the table.",
             )
         bands[str(variable)] = Band(
@@ -119,7 +119,7 @@ class ClinicalReference:
 def save_reference(reference: ClinicalReference, folder: Path) -> Path:
     """Save a reference as `reference.json`, whole, with a hash of its own."""
     if reference.published:
-        raise SchemaError("a reference without single legs cannot be saved", reference.title, "Use the table itself.")
+        raise SchemaError("a saved reference must contain single legs", f"{reference.title} has none", "Use the table.")
     data = {
         "format": FORMAT,
         "title": reference.title,
@@ -142,7 +142,7 @@ def load_reference(place: Path) -> ClinicalReference:
         raise SchemaError(
             f"a reference must be a folder with {FILE}",
             f"{place} has no such file",
-            "Make it from the controls' recordings: gaitdisc reference CONTROLS --out FOLDER.",
+            "Make a reference: gaitdisc reference CONTROLS --out FOLDER.",
         )
     data = read_sealed(path)
     if data.get("format") != FORMAT:

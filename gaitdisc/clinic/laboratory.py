@@ -63,7 +63,7 @@ def load_laboratory(run_folder: Path) -> Laboratory:
     try:
         data = parse_toml(path.read_text(encoding="utf-8"))
     except (ValueError, OSError) as error:
-        raise SchemaError(f"{FILE} must be a TOML file", f"found: {str(error)[:200]}", "Correct it.") from error
+        raise SchemaError(f"{FILE} must be a TOML file", f"found: {str(error)[:200]}", "Correct the file.") from error
     for key, value in data.items():
         if key not in KINDS or not isinstance(value, KINDS[key]):
             raise _refusal(f"{key} = {str(value)[:60]!r}")
@@ -99,7 +99,7 @@ def _picture(path: Path) -> str:
         raise SchemaError(
             f"a logo must be a PNG or JPEG file in the folder of {FILE}, of at most {LARGEST_LOGO // 1024} KiB",
             f"{path.name} is missing, larger, or of another format",
-            "Save it again.",
+            "Save the logo again.",
         )
     return f"data:{kind};base64,{base64.b64encode(content).decode()}"
 

@@ -45,8 +45,8 @@ from gaitdisc.words import NONE, counted, number
 
 MOMENT_SIGNS = (
     "Moments are internal (of the muscles), per kg of body mass, and named after the movement that they produce. Power "
-    "is positive when it is generated. Forces are those of the ground on the foot. Only cycles in which this foot "
-    "alone was on one plate for the entire stance are shown."
+    "is positive when it is generated. Forces are those of the ground on the foot. Only cycles in which the "
+    "leg's own foot was alone on one plate for the entire stance are shown."
 )
 EMG = (
     "Envelopes are in percent of the peak of the leg's mean envelope. Dark bars show roughly when the muscle is active "
@@ -115,7 +115,7 @@ def list_sheets(reading: ClinicalReading) -> dict[str, tuple[list[Panel], str]]:
         at_speed = " at this person's speed" if any(band.at_speed for band in reading.bands.values()) else ""
         bands = (
             f"Bands: mean ± 1 (dark) and ± 2 (light) standard deviations over the legs{at_speed} (controls: {count}). "
-            "A curve may leave them without a sentence: rules take single values of it and omit small differences."
+            "A curve outside the bands may have no sentence: rules use single values and omit small differences."
         )
     muscles = emg_sheet(reading.pooled)
     return {
@@ -193,17 +193,16 @@ def _method(person: PersonSession) -> list[str]:
         pooled, where = reading.pooled, name_walk(reading.pooled)
         by = ", ".join(f"{name} ({counted(count, 'trial')})" for name, count in pooled.detectors.items())
         moved = pooled.contact_offset_s
-        words = f", shifted by {1000 * moved:+.0f} ms to match {pooled.offset_steps} steps on a plate" if moved else ""
-        found.append(f"{where}: contacts by {by or 'nothing'}{words}.")
+        words = f", shifted by {1000 * moved:+.0f} ms (steps on a plate: {pooled.offset_steps})" if moved else ""
+        found.append(f"{where}: contacts from {by or 'no detector'}{words}.")
         filters = dict.fromkeys(finding.what for finding in pooled.findings if finding.kind == "filter")
         found += [f"{where}: {words}; Butterworth filters, run forwards and backwards." for words in filters]
         found += dict.fromkeys(f"Angles by {one.what}." for one in pooled.findings if one.kind == "marker set")
-    found.append("Pelvic obliquity is positive if the side of the leg is up, and pelvic rotation if it is forwards.")
+    found.append("Pelvic obliquity is positive if the leg's side is up, and pelvic rotation if that side is forward.")
     found.append(
-        "What stands out: each rule takes one value of a leg's mean cycle. □: outside mean ± 2 standard deviations of "
-        "the reference. ■: outside the prediction limits, which contain all values of a healthy person with "
-        "probability 0.95 (t · sd · √(1 + 1/n), n people). With at least 10 controls, mean, limits "
-        "and bands are those at this person's speed."
+        "Each rule takes one value of a leg's mean cycle. □: outside mean ± 2 standard deviations of the reference. "
+        "■: outside the prediction limits, which contain all values of a healthy person with probability 0.95 (t · sd"
+        " · √(1 + 1/n), n people). With 10 controls or more, mean, limits and bands are those at this person's speed."
     )
     return found
 

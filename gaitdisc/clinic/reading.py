@@ -294,7 +294,7 @@ def _spans(first: LegCurves, second: LegCurves) -> tuple[list[DifferingSpan], in
     ]
     if not names:
         raise ComparisonError(
-            "a test needs an angle in all cycles of both sets", "found none", "Record the same angles in both sets."
+            "both sets must have an angle in all cycles", "found none", "Record the same angles in both sets."
         )
     before, after = (np.stack([leg.cycles[name] for name in names], axis=2) for leg in (first, second))
     tested = two_sample_test(before, after, PLAN)

@@ -41,7 +41,7 @@ def make_reference(cycles: Sequence[PooledCycles], title: str, provenance: Prove
             legs.setdefault(pooled.condition, []).append(ReferenceLeg(number, leg.side, *own))
     if not legs:
         raise SchemaError(
-            "a reference needs kept cycles of controls",
+            "a reference must have kept cycles of controls",
             f"found none in {len(cycles)} sessions and conditions",
             "Look at “Left out” on the page of the run.",
         )

@@ -126,7 +126,7 @@ def write_person(
     own = {title: cycles for title, cycles in people.items() if cycles[0].subject == person}
     if not own:
         known = ", ".join(dict.fromkeys(cycles[0].subject for cycles in people.values())) or "nobody"
-        raise SchemaError("the person must be in the run", f"{person!r} is not; known: {known}", "Name one of them.")
+        raise SchemaError("the person must be in the run", f"{person!r} is not", f"Name one of: {known}.")
     names = file_names(list(people))
     found = []
     for title, cycles in own.items():

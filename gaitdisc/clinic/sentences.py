@@ -108,7 +108,8 @@ def quality_sentence(reading: ClinicalReading) -> str:
     out += f", {counted(gone, 'trial')} left out" if gone else ""
     ground = "over ground" if pooled.over_ground else "on a treadmill"
     why = f" Why {reading.light}: {'; '.join(reading.reasons)}." if reading.reasons and reading.legs else ""
-    return f"{counts} cycles of {counted(pooled.trials, 'trial')} {ground}{plates}{out}.{why}"
+    what = f"{counts} cycles of {counted(pooled.trials, 'trial')} {ground}" if pooled.trials else "no trial was kept"
+    return f"{what}{plates}{out}.{why}"
 
 
 def score_words(score: Score) -> str:
@@ -188,7 +189,7 @@ def contrast_sentences(contrast: Contrast) -> list[str]:
             f"{sides.capitalize()}: no part of the cycle differs by 5 deg or more between ‘{first}’ and ‘{second}’."
         )
     if small:
-        found.append(f"In {counted(small, 'part')} of the cycle the walks differ by less than 5 deg.")
+        found.append(f"In {counted(small, 'part')} of the cycle the walks differ, but by less than 5 deg.")
     return found
 
 

@@ -45,7 +45,7 @@ def values_table(reading: ClinicalReading) -> Table:
     known = f"reference mean ± standard deviation over legs (people: {people})" if people else "no reference"
     caption = (
         f"Mean ± standard deviation (number of cycles), if at least {FEW} cycles are kept; {known}; asymmetry: left "
-        "minus right, divided by the mean of both."
+        "minus right, divided by the mean of the two."
     )
     columns = ("value", "left", "right", "reference", "asymmetry")
     return Table("spatiotemporal", caption, columns, tuple(rows), pd.DataFrame(records))
@@ -78,8 +78,8 @@ def numbers_table(reading: ClinicalReading) -> Table:
             "people": limits.people, "cycles": one.cycles, "tier": one.tier,
         })  # fmt: skip
     caption = (
-        f"All values that the rules use, n = {len(rows)}; {len(reading.noted)} stand out: □ outside 2 standard "
-        "deviations, ■ outside the prediction limits, which contain all values of a healthy person with probability "
+        f"All values that the rules use, n = {len(rows)} (standing out: {len(reading.noted)}). □: outside 2 standard "
+        "deviations, ■: outside the prediction limits, which contain all values of a healthy person with probability "
         "0.95. In brackets: number of cycles or controls. Reference: at this speed, if the value depends on it."
     )
     columns = ("value of", "side", "value", "limits", "reference", "stands out")

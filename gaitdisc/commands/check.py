@@ -76,17 +76,17 @@ def _print_inspections(seen: list[Inspection], notes: bool) -> None:
     console = Console()
     table = Table("light", "who", "trial", "channels", "strides", "warnings", box=box.SIMPLE)
     for inspection in seen:
-        light = LIGHTS[inspection.light]
         rows = [f"{side} {n}" + (f" ({out} dropped)" if out else "") for side, (n, out) in inspection.strides.items()]
         warnings = sum(finding.severity != "note" for finding in inspection.findings)
         name = "\n".join(part for part in (inspection.condition, inspection.name) if part)
         streams = "\n".join(f"{key} {words}" for key, words in inspection.streams.items())
         cells = (inspection.participant, name, streams, "\n".join(rows), str(warnings or ""))
-        table.add_row(plain(inspection.light, light), *map(plain, cells))
+        table.add_row(plain(inspection.light, LIGHTS[inspection.light]), *map(plain, cells))
     console.print(table)
     for inspection in seen:
-        if inspection.refusal:
-            console.print(plain(f"refused: {inspection.name or inspection.participant}: {inspection.refusal}"))
+        if said := inspection.refusal:
+            who = inspection.name or inspection.participant
+            console.print(plain(f"refused: {said if said.startswith(who) else f'{who}: {said}'}"))
         for line in inspection.grouped(notes):
             console.print(plain(line))
 

@@ -57,7 +57,7 @@ def compare(  # noqa: PLR0913, PLR0917 these are the options of a command
         mismatch = compare_files(first, second, channels, cutoff, detector, smallest)
     elif first.is_file() and first.suffix.lower() != ".toml":
         raise SchemaError(
-            "a comparison needs two recordings, or a study",
+            "a comparison must have two recordings, or a study",
             f"{first.name} is one recording",
             "Name the measured walk after it: gaitdisc compare SIM MEASURED.",
         )

@@ -46,7 +46,7 @@ def export(
         from gaitdisc.reconstruction.onnx_file import write_onnx
 
         if len(files) != 1:
-            raise SchemaError("an .onnx file must contain one model", f"found {len(files)}", "Name one folder.")
+            raise SchemaError("an .onnx file must contain one model", f"found {len(files)}", "Name one model folder.")
         model = load_model(files[0])
         write_onnx(model, out)
         what = model.reconstructor.sensing
@@ -76,9 +76,9 @@ def _cycles(run_folder: Path, out: Path, parquet: bool, mot: bool) -> None:
     run = load_run(run_folder)
     if not run.cycles:
         raise SchemaError(
-            "tables of cycles need a run with pooled cycles",
+            "tables of cycles must come from a run with pooled cycles",
             f"{run_folder.name} contains walks with fitted models",
-            "The tables of these walks are in report/tables.",
+            "Use the tables of these walks in report/tables.",
         )
     tables = {
         "cycles": all_cycles(run.cycles),

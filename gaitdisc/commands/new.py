@@ -61,7 +61,7 @@ def _claim_mapping(file: Path, model: Path) -> None:
         raise SchemaError(
             "the mapping of a model must be a file that ends in .toml",
             f"{file.name} does not",
-            f"Call it {model.with_suffix('.toml').name}: next to the model it is found automatically.",
+            f"Name it {model.with_suffix('.toml').name}: next to the model, this file is found automatically.",
         )
     claim_file(file)
 

@@ -39,7 +39,7 @@ def reference(
         raise SchemaError(
             "controls must be a study, its run, or normal data (.gcd, .xlsx)",
             f"{controls.name} ends in {controls.suffix!r}",
-            "Save a workbook as .xlsx. A published table (.csv) is given as it is: gaitdisc run STUDY --reference.",
+            "Save a workbook as .xlsx. Give a published table (.csv) directly: gaitdisc run STUDY --reference.",
         )
     claim_folder(out, FILE)
     run = _find_run(controls, jobs)
@@ -47,7 +47,7 @@ def reference(
     if not cycles:
         groups = ", ".join(sorted({one.group or "no group" for one in run.of(CYCLES)})) or "no cycles"
         raise SchemaError(
-            f"a reference needs controls{f' of group {group!r}' if group else ''} with pooled cycles",
+            f"a reference must have controls{f' of group {group!r}' if group else ''} with pooled cycles",
             f"{controls} has {groups}",
             "Name a group of the study, or record walks of several trials.",
         )

@@ -46,7 +46,7 @@ def report(
         return
     if (folder / "model.json").is_file():
         raise SchemaError(
-            "a page needs a result",
+            "a page must be made from a result",
             f"{folder.name} contains a saved model, which has no page",
             "Name the folder above its `models`, or use the model: gaitdisc apply MODEL RECORDING.",
         )
@@ -65,11 +65,11 @@ def _people(
 
     run = load_run(run_folder)
     if named and not run.cycles:
-        raise SchemaError("pages of people need a run with pooled cycles", f"{run_folder} has none", "Name such a run.")
+        raise SchemaError("pages of people must have pooled cycles", f"{run_folder} has none", "Name another run.")
     keep_reference(reference, run_folder)
     if (before or after) and not (person and before and after):
         raise SchemaError(
-            "a comparison needs --person, --before and --after",
+            "a comparison must have --person, --before and --after",
             f"found person {person!r}, before {before!r}, after {after!r}",
             "Name all three.",
         )

@@ -101,8 +101,8 @@ class ArrayFile:
         if not isinstance(node, Cells):
             raise self._refuse(path, f"element {number} follows {_what(node)}", _REMEDY)
         if not 1 <= number <= len(node.held):
-            found = f"it has {len(node.held)} elements and no element {number}"
-            raise self._refuse(path, found, "Elements are counted from 1.")
+            found = f"it has no element {number} (number of elements: {len(node.held)})"
+            raise self._refuse(path, found, f"Give a number from 1 to {len(node.held)}.")
         return node.held[number - 1]
 
     def _chosen(self, node: Any, path: str, part: str) -> Any:
@@ -113,7 +113,7 @@ class ArrayFile:
             return self._element(node, int(part), path)
         if len(node.held) == 1:
             return node.held[0]
-        remedy = f'Write part = "1" (up to "{len(node.held)}") next to the trial\'s files, or path{{1}}.'
+        remedy = f'Write part = "1" (up to "{len(node.held)}") in the trial, or name an element: path{{1}}.'
         raise self._refuse(path, f"it holds {len(node.held)} elements", remedy)
 
     def _column(self, node: Any, columns: re.Match[str] | None, path: str) -> Values:
@@ -129,7 +129,7 @@ class ArrayFile:
         fits = len(wanted) == values.ndim and wanted.count(":") == 1
         fits = fits and all(w == ":" or 1 <= int(w) <= n for w, n in zip(wanted, values.shape, strict=True))
         if not fits:
-            remedy = "Columns are counted from 1, and one ':' stands for the time, as in (:,2)."
+            remedy = "Give a column, counted from 1, and ':' for the time, as in (:,2)."
             raise self._refuse(path, f"it is {_shape(values)}", remedy)
         return values[tuple(slice(None) if one == ":" else int(one) - 1 for one in wanted)]
 
@@ -211,7 +211,7 @@ def _hdf5_node(file: Any, name: str, path: Path) -> Any:
         raise
     except Exception as error:  # its errors have no common ancestor
         said = " ".join(str(error).split())[:160] or type(error).__name__
-        raise ReadError(f"{path.name} must be a .mat file", f"{name!r}: {said}", "Save it again.") from error
+        raise ReadError(f"{path.name} must be a .mat file", f"{name!r} fails: {said}", "Save it again.") from error
     marks = attributes(file, name, path, ("MATLAB_class", "MATLAB_empty"))
     kind = marks.get("MATLAB_class", b"")
     word = kind.decode("ascii", "replace") if isinstance(kind, bytes) else str(kind)
@@ -269,7 +269,7 @@ def read_arrays(
     if not wanted:
         raise ReadError(
             f"the study's [channels] must state the channel, unit and rate of each variable of {file.raw.name}",
-            f"none is mapped; {file.raw.name} holds {list_names(file.names, _SHOWN)}",
+            f"no variable is mapped (the file contains {list_names(file.names, _SHOWN)})",
             'Write for example "knee(:,1)" = "knee_angle_r [deg] @ 100 Hz"; see docs/sessions.md.',
         )
     bases: list[tuple[Values, list[Values], list[Column]]] = []
@@ -342,6 +342,6 @@ def _time(file: ArrayFile, label: str, clock: str, samples: int, part: str) -> V
         raise SamplingError(
             f"{file.raw.name}: {label!r} must have a rate between 0.01 Hz and 1 MHz, and at least two samples",
             f"{clock!r} gives {rate_hz:g} Hz, and there are {samples} samples",
-            "Correct the rate in [channels].",
+            "Correct the rate or the variable in [channels].",
         )
     return np.arange(samples) / rate_hz

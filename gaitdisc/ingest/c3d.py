@@ -142,9 +142,9 @@ class C3DReader:
         failure = " ".join(answer["said"].replace(str(path), path.name).split())[:200].rstrip(".")
         if not counts_agree(header, parameters, layout):
             raise ReadError(
-                f"{header.file} states {layout.frames} frames, {layout.points} points and {layout.channels} analog "
-                "channels, which no reader finds",
-                f"ezc3d: {failure}; the header and the parameters contradict each other",
+                "the header and the parameters of a C3D file must agree",
+                f"those of {header.file} contradict each other ({layout.frames} frames, {layout.points} points and "
+                f"{layout.channels} analog channels are most likely), and ezc3d reports: {failure}",
                 "Export the trial again, or repair it in the software that wrote it.",
             )
         what = f"the file was decoded without ezc3d, which failed: {failure}"
@@ -166,7 +166,7 @@ def glance_at_c3d(path: Path) -> Trial:
     check_common_scales(header, parameters)
     layout, findings = find_layout(header, parameters)
     if not counts_agree(header, parameters, layout):  # reading all of it may refuse it
-        raise ReadError("header and parameters must agree", f"{header.file}: they do not", "Read the whole file.")
+        raise ReadError("header and parameters must agree", f"those of {header.file} do not", "Read the entire file.")
     rate_hz, _ = _rate(header, parameters, layout)
     step = max(layout.frames // GLANCES, 1)
     points, _ = read_frames(path, header, parameters, layout, step)
@@ -209,7 +209,7 @@ def _rate(header: C3DHeader, parameters: C3DParameters, layout: C3DLayout) -> tu
     rates = [rate for rate in (stated, header.rate_hz, of_analog) if rate is not None and 0.01 < rate < 1e6]
     if not rates:
         raise SamplingError(
-            "a trial must have a rate",
+            "a trial must have a frame rate",
             f"{header.file} gives POINT:RATE {stated} Hz, header {header.rate_hz:g} Hz, ANALOG:RATE {analog} Hz",
             "Set POINT:RATE in the file.",
         )
@@ -233,5 +233,5 @@ def _make_finite(values: Values, what: str, file: str) -> list[Finding]:
     if not infinite.any():
         return []
     values[infinite] = np.nan
-    words = f"{int(infinite.sum())} {what} are infinite and are treated as missing"
+    words = f"infinite {what}, treated as missing: {int(infinite.sum())}"
     return [Finding("warning", "infinite values", file, words, what)]

@@ -15,6 +15,7 @@ from gaitdisc.ingest.columns import find_stream, name_channel, split_unit
 from gaitdisc.recording import Finding
 from gaitdisc.recording.arrays import Values
 from gaitdisc.units import convert, inner_unit, parse_unit
+from gaitdisc.words import counted
 
 # What devices put before the name that the laboratory typed: `Voltage.L Rect`, `EMG: R TA`.
 _NO_NAME = ("voltage", "analog", "raw", "signal", "emg")
@@ -152,10 +153,8 @@ def _doubts(emg: list[AnalogLabel], others: list[AnalogLabel], file: str) -> lis
     findings = []
     unknown = [signal for signal in (*emg, *others) if parse_unit(signal.unit) is None]
     if unknown:
-        what = (
-            f"{len(unknown)} analog channels have no known unit ({_list_labels(unknown)}); their values are unchanged"
-        )
-        findings.append(Finding("note", "unit", file, what, "these channels' amplitudes; correct ANALOG:UNITS"))
+        what = f"{counted(len(unknown), 'analog channel')} without a known unit ({_list_labels(unknown)}), unchanged"
+        findings.append(Finding("note", "unit", file, what, "the amplitudes of these channels; correct ANALOG:UNITS"))
     muscles = [signal.muscle.name for signal in emg if signal.muscle is not None]
     doubled = sorted({name for name in muscles if muscles.count(name) > 1})
     if doubled:
@@ -163,11 +162,11 @@ def _doubts(emg: list[AnalogLabel], others: list[AnalogLabel], file: str) -> lis
         findings.append(Finding("warning", "equal muscles", file, what, "these muscles; name them in [channels]"))
     nameless = [signal for signal in emg if signal.muscle is None]
     if nameless:
-        what = f"{len(nameless)} EMG channels do not name a known muscle ({_list_labels(nameless)})"
+        what = f"{counted(len(nameless), 'EMG channel')} without the name of a known muscle ({_list_labels(nameless)})"
         findings.append(Finding("note", "nameless EMG", file, what, "nothing; name them in [channels] as '#<n>'"))
     voltages = [signal for signal in others if (parse_unit(signal.unit) or "") in ("V", "mV", "uV")]
     if voltages:
-        what = f"{len(voltages)} voltages are not recognised as EMG and remain signals ({_list_labels(voltages)})"
+        what = f"{counted(len(voltages), 'voltage')} not recognised as EMG, read as signals ({_list_labels(voltages)})"
         findings.append(Finding("note", "voltages", file, what, "nothing unless they are EMG; map them in [channels]"))
     return findings
 

@@ -63,16 +63,16 @@ def house_kinetics(
     wrong = [c.name for c in channels if c.unit in _PER_KG]
     if wrong and shown.per_kg and joints.per_kg is not False:
         count = len(wrong)
-        mass = f", {shown.mass_kg:.1f} kg" if shown.mass_kg else ""
+        mass = f" (body mass {shown.mass_kg:.1f} kg)" if shown.mass_kg else ""
         what = (
-            f"{shown.words}; {count} forces, moments and powers are therefore per kg of body mass{mass}, contrary to "
-            "the unit in the file, and are given in N/kg, N m/kg and W/kg"
+            f"{shown.words}; forces, moments and powers (channels: {count}) are therefore read in N/kg, N m/kg and W/kg"
+            f"{mass}, contrary to the units in the file"
         )
         spoils = "" if shown.certain else "joint moments and powers if this is wrong; state the unit in the file"
         findings.append(Finding("note" if shown.certain else "warning", "per body mass", file, what, spoils))
         channels = tuple(replace(c, unit=_PER_KG.get(c.unit, c.unit)) for c in channels)
     elif wrong and (reaction.per_kg, joints.per_kg) in ((True, False), (False, True)):
-        what = f"{reaction.words}, but {joints.words} N m; the units are those of the file"
+        what = f"{reaction.words}, but {joints.words} N m; the units of the file are used"
         findings.append(Finding("warning", "per body mass", file, what, "forces, moments and powers; correct the file"))
     if shown.mass_kg and mass_kg and abs(shown.mass_kg / mass_kg - 1) > AGREES:
         what = f"the plates show a body mass of {shown.mass_kg:.1f} kg, but the file states {mass_kg:.1f} kg"
@@ -80,7 +80,7 @@ def house_kinetics(
     of_weight = [c.name for c in channels if _NORMALISED.fullmatch(c.name) and c.unit != "%"]
     if of_weight:
         channels = tuple(replace(c, unit="%") if c.name in of_weight else c for c in channels)
-        what = f"{', '.join(of_weight[:2])}{', ...' * (len(of_weight) > 2)} are in percent of body weight"
+        what = f"read in percent of body weight: {', '.join(of_weight[:2])}{', ...' * (len(of_weight) > 2)}"
         findings.append(Finding("note", "per body mass", file, what, ""))
     kinetics, more = _internal((values, channels), file)
     return kinetics, findings + more
@@ -130,7 +130,7 @@ def _internal(kinetics: Kinetics, file: str) -> tuple[Kinetics, list[Finding]]:
     ankles = [i for i in joints if _ANKLE.fullmatch(channels[i].name) and channels[i].unit in PUSH_OFF]
     moments = finite_values(values[:, ankles])
     how = "joint moments are internal (of the muscles), positive in the angle's positive direction"
-    words, why = "no ankle moment shows the sign", "; the sign is assumed to be that of Plug-in Gait"
+    words, why = "no ankle moment shows the sign", ", which is assumed to be that of Plug-in Gait"
     spoils = "the sign of joint moments if the file comes from another model"
     if moments.size:
         unit = channels[ankles[0]].unit
@@ -146,5 +146,5 @@ def _internal(kinetics: Kinetics, file: str) -> tuple[Kinetics, list[Finding]]:
             words += ", without a push-off"
     signs = np.ones(len(channels))
     signs[joints] = -1.0
-    what = f"{words}{why}; the sign of {len(joints)} joint moments is reversed, so that {how}"
+    what = f"{words}{why}; the sign of the joint moments (channels: {len(joints)}) was reversed, so that {how}"
     return (values * signs, channels), [Finding("note", "moment sign", file, what, spoils)]

@@ -87,7 +87,7 @@ class LabelMap:
                     self._used[key] += 1
                     if self._used[key] > 1:
                         raise ChannelError(
-                            f"{key!r} of the study's [channels] must be the label of one channel",
+                            f"{key!r} of the study's [channels] must be the label of only one channel",
                             f"{self._used[key]} channels of the file have this label",
                             "Use '#<number>' instead: the analog channel's number, counted from 1.",
                         )
@@ -150,7 +150,7 @@ def file_events(
         findings.append(Finding("warning", "event clock", file, what, "the events of the file if this is wrong"))
     inside = _within(on_file, end, margin)
     if not np.all(inside):
-        what = f"{int(np.sum(~inside))} of {count} events lie outside the {frames} frames of the file and are ignored"
+        what = f"events outside the {frames} frames of the file, which are ignored: {int(np.sum(~inside))} of {count}"
         findings.append(Finding("note", "events outside", file, what, ""))
     contexts = (*parameters.texts("EVENT", "CONTEXTS"), *[""] * count)
     people = list_people_names(parameters)

@@ -64,7 +64,7 @@ def find_layout(header: C3DHeader, parameters: C3DParameters) -> tuple[C3DLayout
     layout = (filling or layouts)[0]
     _refuse_impossible(layout, header)
     rotations = parameters.count("ROTATION", "USED")  # their block follows the frames
-    how = "which fills the file to its last block" if layout.fills(header.size) else "for which the file is long enough"
+    how = "fills the file to its last block" if layout.fills(header.size) else "fits the file"
     contradicted = (
         ("frames", frames, layout.frames),
         ("points", points, layout.points),
@@ -76,7 +76,7 @@ def find_layout(header: C3DHeader, parameters: C3DParameters) -> tuple[C3DLayout
             "warning",
             "contradictory header",
             header.file,
-            f"header and parameters give {what} as {' and '.join(map(str, values))}; read as {taken}, {how}",
+            f"header and parameters differ ({what}: {' and '.join(map(str, values))}); {taken} is used, which {how}",
             "the entire trial if this is wrong; compare its length with your notes",
         )
         for what, values, taken in contradicted
@@ -148,7 +148,7 @@ def _refuse_impossible(layout: C3DLayout, header: C3DHeader) -> None:
         raise ReadError(
             f"a C3D file of {layout.frames} frames, {layout.points} points and {layout.channels} analog channels must "
             f"have {layout.end} bytes",
-            f"{header.file} has {header.size} and ends within frame {whole + 1}: it is truncated",
+            f"{header.file} has {header.size} bytes and ends within frame {whole + 1}: it is truncated",
             "Copy it again from the recording computer. Do not use this incomplete copy.",
         )
     if layout.data_block != header.data_block:
@@ -168,7 +168,7 @@ def _refuse_impossible(layout: C3DLayout, header: C3DHeader) -> None:
         room = layout.frames + (header.size - layout.end) // layout.frame_bytes
         raise ReadError(
             "a C3D file of more than 65535 frames must state their number in TRIAL:ACTUAL_END_FIELD",
-            f"{header.file} has room for {room} but states 65535",
+            f"{header.file} has room for {room} frames, but states 65535",
             "Export the trial in parts, or with software that writes the group TRIAL.",
         )
 
@@ -197,7 +197,7 @@ def list_unscaled(parameters: C3DParameters, channels: int) -> tuple[frozenset[i
     if not bad:
         return frozenset(), []
     several = f", and {len(bad) - 4} more channels" if len(bad) > 4 else ""
-    what = f"{'; '.join(list(bad.values())[:4])}{several}; these channels are treated as missing"
+    what = f"{'; '.join(list(bad.values())[:4])}{several}; a channel without a scale or offset is treated as missing"
     doubt = Finding("warning", "scale", parameters.file, what, "these channels; export the trial again")
     return frozenset(bad), [doubt]
 

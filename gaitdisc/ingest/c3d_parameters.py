@@ -84,7 +84,7 @@ def read_c3d_header(path: str | Path) -> C3DHeader:
     if processor is None:
         raise ReadError(
             "a C3D file must have processor type 84 (Intel), 85 (DEC) or 86 (MIPS)",
-            f"{path.name} has {head[start + 3]}",
+            f"{path.name} has type {head[start + 3]}",
             "Export the trial again. This copy is damaged.",
         )
     words = decoded(head[:24], 2, processor).astype(int) & 0xFFFF
@@ -227,7 +227,7 @@ def read_c3d_parameters(path: str | Path, header: C3DHeader) -> C3DParameters:
             entries.append((group, name, _value(name, body, header)))
     values = {(names.get(group, f"#{group}"), name): value for group, name, value in reversed(entries)}
     if not {group for group, _ in values} & {"POINT", "ANALOG"}:
-        raise _broken(header, "it has neither the group POINT nor the group ANALOG")
+        raise _broken(header, "the groups POINT and ANALOG are missing")
     return C3DParameters(values, header.file)
 
 
@@ -247,7 +247,7 @@ def _entries(section: bytes, header: C3DHeader) -> Iterator[tuple[str, int, byte
         offset = int.from_bytes(section[offset_at : offset_at + 2], order)
         end = offset_at + offset if offset else len(section)
         if offset == 1 or end > len(section):
-            raise _broken(header, f"the entry {name[:24]!r} at byte {at} points {offset} bytes ahead, past the section")
+            raise _broken(header, f"the entry {name[:24]!r} at byte {at} points {offset} bytes ahead, past the end")
         yield name, group, section[offset_at + 2 : end]
         if not offset:
             return
@@ -263,7 +263,7 @@ def _value(name: str, body: bytes, header: C3DHeader) -> Value:
     count = math.prod(dimensions)
     raw = body[2 + len(dimensions) :][: count * width]
     if len(raw) < count * width:
-        raise _broken(header, f"{name[:24]!r} has {len(raw)} bytes, but dimensions {dimensions} take {count * width}")
+        raise _broken(header, f"{name[:24]!r} has {len(raw)} bytes; its dimensions {dimensions} need {count * width}")
     if is_text:
         length, texts = dimensions[0] if dimensions else 1, []
         for cell in (raw[at : at + length] for at in range(0, len(raw), length or 1)):
@@ -278,7 +278,7 @@ def _value(name: str, body: bytes, header: C3DHeader) -> Value:
 
 def _broken(header: C3DHeader, found: str) -> ReadError:
     return ReadError(
-        "the entries of a C3D file's parameter section must link to each other",
+        "the parameter section of a C3D file must be complete and consistent",
         f"{header.file}: {found}",
         "Export the trial again, or repair it in the software that wrote it.",
     )

@@ -68,8 +68,8 @@ def length_unit(parameters: C3DParameters, places: Values) -> tuple[str, list[Fi
     if METRES_AT_MOST < far < MILLIMETRES_AT_LEAST:
         raise UnitError(
             "markers must have a unit",
-            f"{file} states none, and a distance of {far:.4g} from the origin can be neither m nor mm",
-            "Set POINT:UNITS in the file.",
+            f"{file} states none; a distance of {far:.4g} from the origin is too large for m and too small for mm",
+            "Set POINT:UNITS in the file, for example to mm.",
         )
     unit = "m" if far <= METRES_AT_MOST else "mm"
     what = f"POINT:UNITS is empty; markers lie up to {far:.4g} from the origin and are read as {unit}"
@@ -88,8 +88,8 @@ def point_streams(rows: Values, parameters: C3DParameters, labels: LabelMap) -> 
     counts = Counter(without_prefix(label) for label in parameters.texts("POINT", "LABELS")[: len(names)])
     doubled = sorted(label for label, count in counts.items() if label and count > 1)
     if doubled:
-        what = f"{len(doubled)} point labels occur more than once ({', '.join(doubled[:3])}); they are numbered"
-        findings.append(Finding("warning", "equal labels", file, what, "these points; give each its own name"))
+        what = f"labels that several points have, now numbered ({len(doubled)} in all): {', '.join(doubled[:3])}"
+        findings.append(Finding("warning", "equal labels", file, what, "these points; give each point its own label"))
     findings += suffixed
     places = [point for point, name in enumerate(names) if name not in kinds]
     markers = rows[:, _columns(places)]
@@ -97,7 +97,7 @@ def point_streams(rows: Values, parameters: C3DParameters, labels: LabelMap) -> 
     unseen = np.all(triples == 0, axis=2)  # some software writes (0, 0, 0) for a marker that it did not see
     triples[unseen] = np.nan
     if unseen.any():
-        what = f"{int(unseen.sum())} marker positions were exactly (0, 0, 0) and are treated as missing"
+        what = f"marker positions at exactly (0, 0, 0), treated as missing: {int(unseen.sum())}"
         findings.append(Finding("note", "zero places", file, what, ""))
     unit, doubts = length_unit(parameters, markers)
     streams: Streams = {}
@@ -147,7 +147,7 @@ def _without_suffix(names: list[str], kinds: Mapping[str, ModelOutput], file: st
     if len(words) != 1:
         return names, []
     (word,) = words
-    what = f"{known[0]} and {len(known) - 1} more model outputs end in {word} and are read as {bases[known[0]]}, ..."
+    what = f"{known[0]} is read as {bases[known[0]]}; number of model outputs that end in {word}: {len(known)}"
     plain = [bases[name] if name in bases and name.endswith(word) else name for name in names]
     return plain, [Finding("note", "model suffix", file, what, "nothing if these are Plug-in Gait outputs")]
 
@@ -179,7 +179,7 @@ def _model_part(
     most = float(np.max(np.abs(values), initial=0.0, where=np.isfinite(values)))
     if kind.group == "ANGLES" and unit == "deg" and 0 < most < 3.2:
         what = f"no angle exceeds {most:.3g} deg, so the angles may be in radians"
-        findings.append(Finding("warning", "unit", file, what, "all angles if in radians; correct POINT:ANGLE_UNITS"))
+        findings.append(Finding("warning", "unit", file, what, "all angles if this is true; correct POINT:ANGLE_UNITS"))
     return (values, tuple(channels)), findings
 
 
@@ -208,7 +208,7 @@ def file_segments(path: Path, header: C3DHeader, parameters: C3DParameters, sour
     if first + size > header.size or not frames:
         raise ReadError(
             f"{header.file} must contain the {frames} frames of {used} segments that ROTATION states",
-            f"only {max(header.size - first, 0)} of {size} bytes follow block {start}",
+            f"only {max(header.size - first, 0)} of {size} bytes are there from block {start} on",
             "Export the trial again. This copy is incomplete.",
         )
     raw = np.memmap(path, np.uint8, "r", first, (size,)).tobytes()

@@ -93,8 +93,8 @@ def _apart(
     """Markers, and the analog recordings without the centres of pressure, which follow from force and moment."""
     markers = [one for one in recordings if all(channel.quantity == "marker" for channel in one.channels)]
     if len(markers) > 1 or any(abs(one.time[0]) > 1e-9 for one in markers):
-        found = f"there are {len(markers)} recordings, and the first begins at {markers[0].time[0]:g} s"
-        raise SamplingError(f"markers of {file} must be one recording from 0 s on", found, "Join or shift them first.")
+        found = f"number of recordings: {len(markers)}; start of the first: {markers[0].time[0]:g} s"
+        raise SamplingError(f"markers of {file} must be one recording from 0 s on", found, "Join or shift the parts.")
     names = {channel.name for recording in recordings for channel in recording.channels}
     absent = [name for surface in surfaces for name in _plate_channels(surface) if name not in names]
     if absent:
@@ -134,11 +134,11 @@ def _samples_per_frame(recordings: Sequence[Recording], frame_hz: float, file: s
     first = recordings[0]
     for other in recordings[1:]:
         if not np.array_equal(other.time, first.time):
-            found = f"{first.names[0]} has {len(first.time)} samples at {first.rate_hz:g} Hz, {other.names[0]} has "
+            found = f"{first.names[0]} has {len(first.time)} samples at {first.rate_hz:g} Hz, and {other.names[0]} has "
             found += f"{len(other.time)} at {other.rate_hz:g} Hz"
-            raise SamplingError(needed, found, "Resample them to one time base first.")
+            raise SamplingError(needed, found, "Resample the channels to one time base.")
     samples = round(first.rate_hz / frame_hz)
     if samples < 1 or abs(samples * frame_hz - first.rate_hz) > 1e-6 * first.rate_hz or abs(first.time[0]) > 1e-9:
         found = f"{first.names[0]} begins at {first.time[0]:g} s and has {first.rate_hz:g} Hz"
-        raise SamplingError(needed, found, "Resample it, or write a table.")
+        raise SamplingError(needed, found, "Resample the channels, or write a table.")
     return samples

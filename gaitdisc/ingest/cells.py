@@ -54,7 +54,7 @@ def parse_cells(lines: Sequence[str], labels: Sequence[str], first_line: int, fo
     rows = [line for line in lines if line.strip()]
     if not rows:
         raise ReadError(
-            f"{form.file} must contain rows of numbers", f"none follow line {first_line - 1}", "Export the whole trial."
+            f"{form.file} must contain rows of numbers", f"none follow line {first_line - 1}", "Export all rows."
         )
     rows = _even_rows(rows, labels, numbers, form)
     values = _numbers(rows, form)
@@ -138,7 +138,7 @@ def check_counts(
     if claimed and there < max(claimed) * (1.0 if lines[-1].strip() else LEAST_ROWS):
         raise ReadError(
             f"{file} must have {max(claimed)} {kind}{' of numbers' * (kind == 'rows')}, as its header says",
-            f"it ends after {there}, at line {cells.lines[-1]}",
+            f"it ends after {there} {kind}, at line {cells.lines[-1]}",
             "The file is incomplete. Copy or export it again.",
         )
     findings = []
@@ -147,7 +147,7 @@ def check_counts(
         if wrong:
             what = f"the header states {' and '.join(map(str, wrong))} {kind}, but the file has {there}"
             findings.append(
-                Finding("warning", "wrong count", file, what, "nothing here; other programs may refuse the file")
+                Finding("warning", "wrong count", file, what, "nothing in gaitdisc; other programs may refuse the file")
             )
     return findings
 
@@ -188,7 +188,7 @@ def even_time(time: Values, digit_s: float, file: str, lines: NDArray[np.intp] |
 
     if len(time) < 2:
         raise SamplingError(
-            f"{file}: a recording must have at least two samples", f"it has {len(time)}", "Export the whole trial."
+            f"{file}: a recording must have at least two samples", f"it has {len(time)}", "Export the entire trial."
         )
     if not np.isfinite(time).all():
         row = int(np.argmax(~np.isfinite(time)))
@@ -214,7 +214,7 @@ def even_time(time: Values, digit_s: float, file: str, lines: NDArray[np.intp] |
             f"{file}: a recording must have a constant rate",
             f"between {place(row)} and {place(row + 1)} the step is {steps[row]:.6g} s (t = {time[row]:.6g} s), the "
             f"usual step is {usual:.6g} s, and times have a resolution of {digit_s:.0e} s",
-            "Samples are missing, or times have too few digits. Export at one rate and with more digits.",
+            "Samples are missing, or times have too few digits. Export the file at one rate and with more digits.",
         )
     # a whole number of samples a second where the digits allow one, else from first to last time
     rate = round(mean_rate(time))

@@ -212,7 +212,7 @@ def sort_trial(
         raise ChannelError(
             "each channel must have its own column",
             f"{source.file} has {doubled!r} in columns {first} and {second}",
-            "Remove one of them, or name them differently in the study's [channels].",
+            "Remove one column, or name the two differently in the study's [channels].",
         )
     _refuse_missing_force(time, values, channels, source.file)
     # too slow to show a step: mostly ms under the name of seconds

@@ -142,7 +142,7 @@ def force_plates(
             if not why:
                 plates.append(plate)
         if why:
-            what = f"force plate {place + 1} {why}; its channels remain signals"
+            what = f"force plate {place + 1} {why}; its channels are read as signals, not as forces"
             findings.append(Finding("warning", "force plate", file, what, "the plate's forces; correct FORCE_PLATFORM"))
     return plates, findings or _report_undescribed(parameters, used, max(len(kinds), len(columns), len(corners)))
 
@@ -154,7 +154,7 @@ def _report_undescribed(parameters: C3DParameters, used: int, described: int) ->
     if used < described:
         what = f"FORCE_PLATFORM:USED is {used}, but the group describes {described} plates"
     elif forces and not used:
-        what = f"no force plate is described, but {len(forces)} channels are forces in N, such as {forces[0].strip()!r}"
+        what = f"no force plate is described, but there are forces in N ({len(forces)}, such as {forces[0].strip()!r})"
     else:
         return []
     spoils = "the excluded ground forces; correct FORCE_PLATFORM"
@@ -209,10 +209,10 @@ def plate_streams(
         ]
     turned = [plate.number for (plate, _, _), sense in zip(wrenches, up, strict=True) if (sense or most) < 0]
     if turned:
-        what = f"plates {', '.join(map(str, turned))} give the force of the foot on the ground; the sign was reversed"
+        what = f"plate {', '.join(map(str, turned))}: the sign of the force of the foot on the ground was reversed"
         findings.append(Finding("note", "force sign", file, what, ""))
     if up and not any(up):
-        what = f"no plate was loaded with {CLEAR_LOAD_N:g} N, so the sign of the forces could not be checked"
+        what = f"no plate was loaded with more than {CLEAR_LOAD_N:g} N, so the sign of the forces could not be checked"
         findings.append(Finding("note", "force sign", file, what, "nothing, because nobody stepped on a plate"))
     streams: Streams = {"forces": (np.hstack(parts), tuple(channels))} if parts else {}
     return streams, {column for plate, _, _ in wrenches for column in plate.columns}, findings
@@ -268,7 +268,7 @@ def _zero(
     offset = values[first:last].mean(axis=0)
     load = float(np.abs(plate.wrench(offset[None], units)[0][0, 2]))
     if load > CLEAR_LOAD_N:
-        what = f"force plate {plate.number} carries {load:.0f} N in its zero samples, {first + 1} to {last}"
+        what = f"force plate {plate.number} carries {load:.0f} N in FORCE_PLATFORM:ZERO (samples {first + 1} to {last})"
         spoils = "the offset of the plate, which is therefore not removed"
         return values, [Finding("note", "plate zero", parameters.file, what, spoils)]
     return values - offset, []
@@ -300,7 +300,7 @@ def _report_exchanged(measured: Sequence[tuple[ForcePlate, Values, tuple[str, ..
         if max(_beside_either(one, others, their_units), _beside_either(other, own, units)) < STRAY:
             what = (
                 f"the channels of force plates {one.number} and {other.number} are swapped: the centre of pressure is "
-                f"outside each plate in {100 * astray:.0f} % of the loaded samples, and inside if they are swapped back"
+                f"outside each plate in {100 * astray:.0f} % of the loaded samples, but on it after an exchange"
             )
             spoils = "the assignment of feet to plates, moments and powers; correct FORCE_PLATFORM:CHANNEL"
             findings.append(Finding("warning", "swapped plates", file, what, spoils))

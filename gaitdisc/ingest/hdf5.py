@@ -27,7 +27,7 @@ def hdf5_file(path: Path) -> Iterator[Any]:
     except ImportError as error:
         raise ReadError(
             f"{path.name} is an HDF5 file, which requires the library h5py",
-            f"it cannot be imported ({error})",
+            f"h5py cannot be imported ({error})",
             "Install the extra: pip install 'gaitdisc[fields]'.",
         ) from error
     try:
@@ -58,7 +58,7 @@ def data_set(file: Any, name: str, path: Path) -> NDArray[Any]:
     if held.nbytes > LARGEST_BYTES:
         raise ReadError(
             f"{path.name}: a data set may have at most {LARGEST_BYTES} bytes",
-            f"{name!r} claims {held.nbytes}",
+            f"{name!r} claims {held.nbytes} bytes",
             "Extract a part of it, or download the file again. It may be damaged.",
         )
     return np.asarray(held[()])

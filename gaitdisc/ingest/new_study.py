@@ -96,7 +96,7 @@ def draft_study(
         files = recording_files(folder)
         endings = Counter(path.suffix.lower() for path in folder.rglob("*.*") if path.is_file())
         unread = [f"{count} {ending}" for ending, count in sorted(endings.items()) if ending not in (*ENDINGS, "")]
-        _note(notes, "not read, because of their ending: ", unread)
+        _note(notes, "files not read because of their ending: ", unread)
     tables = [path for path in files if is_people_table(path)]
     measured = read_people(folder, tables, notes)
     others = [path for path in files if path not in tables]
@@ -104,9 +104,9 @@ def draft_study(
     if not found:
         left_out = f"; {notes[-1].removesuffix('.')}" if notes else ""
         raise ReadError(
-            f"{folder.name} must contain recordings: files that end in {', '.join(ENDINGS)}",
+            f"{folder.name} must contain recordings (files that end in {', '.join(ENDINGS)})",
             f"none of its files can be read{left_out}",
-            "Name the folder that contains them.",
+            "Name the folder that contains the recordings.",
         )
     groups: dict[str, set[str]] = {}
     for trial in found:
@@ -303,7 +303,7 @@ def name_conditions(found: Sequence[FoundTrial], notes: list[str]) -> tuple[Cond
         there = list(dict.fromkeys(trial.word for trial in walks if trial.which == which))
         recognised |= {which: there[0]} if there else {}
         if len(there) > 1:
-            notes.append(f"{', '.join(there)} are all set to {recognised[which]!r}")
+            notes.append(f"the conditions {', '.join(there)} are all read as {recognised[which]!r}")
     counts = Counter(trial.word for trial in walks if not trial.which and trial.word)
     others = sorted(counts, key=lambda word: (-counts[word], word))
     if not recognised and set(others) <= {PLAIN}:
@@ -324,9 +324,9 @@ def name_conditions(found: Sequence[FoundTrial], notes: list[str]) -> tuple[Cond
     called |= {STATIC: STATIC, FUNCTIONAL: FUNCTIONAL, "other": UNKNOWN}
     _note(
         notes,
-        "condition unknown; these trials are listed but not used: ",
+        "trials of unknown condition, which are listed but not used: ",
         (trial.files[0].as_posix() for trial in found if called[trial.word] == UNKNOWN),
-        f'. To set the condition of all, write in [conditions]: unnamed = "{reference}"',
+        f'. To set the condition of all of them, write in [conditions]: unnamed = "{reference}"',
     )
     return Conditions(nominal=reference, device=device, others=rest), called
 
@@ -353,7 +353,7 @@ def _people(found: Sequence[FoundTrial], notes: list[str]) -> dict[Who, str]:
     free = (f"P{number:02d}" for number in range(1, 10_000) if f"P{number:02d}" not in taken)
     ids = {who: who[1] if who[1] in taken else next(free) for who in people}
     renamed = [new for (_, old), new in ids.items() if old and old != new]
-    _note(notes, "folder names that are not pseudonyms became ", renamed, "; the paths still contain the names")
+    _note(notes, "folder names that are not pseudonyms were replaced by ", renamed, "; paths still contain them")
     twice = [f"{new} ({group or 'no group'})" for (group, old), new in ids.items() if named[old.lower()] > 1]
     _note(notes, "names that occur in several groups, taken as different people: ", twice)
     kept = [word for _, word in people if word in taken]
@@ -399,7 +399,7 @@ def _find_shared_emg(found: Sequence[FoundTrial], notes: list[str]) -> tuple[str
     if not streams:
         return ()
     if len(streams) < len(found):
-        notes.append(f"only {len(streams)} of {len(found)} trials have EMG, so EMG is not among the inputs")
+        notes.append(f"EMG is not among the inputs; trials with EMG: {len(streams)} of {len(found)}")
         return ()
     known = vocabulary().by_name
     shared = tuple(n for n in streams[0] if all(n in other for other in streams) and n in known)

@@ -89,7 +89,7 @@ def read_people(folder: Path, files: Iterable[Path], notes: list[str]) -> dict[s
         for word, one in read.items():
             before = found.setdefault(word, one)
             if before != one:
-                notes.append(f"{file.as_posix()}: {word!r} has other values in another table; those are used")
+                notes.append(f"{file.as_posix()}: another table states other values for {word!r}, which are used")
     return found
 
 
@@ -114,8 +114,8 @@ def _read(lines: Sequence[str], file: str, notes: list[str]) -> dict[str, Measur
           for key, names in _LABELS.items()}  # fmt: skip
     if at["id"] is None or all(place is None for key, place in at.items() if key != "id"):
         notes.append(
-            f"{file} has no column that names the person (such as participant_id) together with mass_kg, sex, "
-            f"height_m or age; its columns are {', '.join(labels[:8])}"
+            f"{file} is not used: a table of people must have a column of names (such as participant_id) and a column "
+            f"mass_kg, sex, height_m or age; its columns are {', '.join(labels[:8])}"
         )
         return {}
     stature = labels[at["height"]] if at["height"] is not None else ""
@@ -133,7 +133,7 @@ def _read(lines: Sequence[str], file: str, notes: list[str]) -> dict[str, Measur
             stated = list(dict.fromkeys(getattr(one, name) for one in measures if getattr(one, name) != empty))
             values[name] = stated[0] if len(stated) == 1 else empty
             if len(stated) > 1:
-                notes.append(f"{file}: {name} of {word!r} varies between rows ({stated[0]}, {stated[1]}): none is used")
+                notes.append(f"{file}: {name} of {word!r} differs by row ({stated[0]}, {stated[1]}); no value is used")
         agreed[word] = Measured(**values)
     return agreed
 
@@ -147,7 +147,7 @@ def _read_measures(cells: Mapping[str, str], stature_label: str, notes: list[str
     height = _within(cells["height"], "stature", LENGTHS_M["height_m"], notes, factors, unit)
     sex = _SEX.get(cells["sex"].lower(), "")
     if not sex and cells["sex"].lower() not in _MISSING:
-        notes.append(f"sex {cells['sex']!r} is neither f nor m; the mean of both is used")
+        notes.append(f"sex {cells['sex']!r} is neither f nor m; the mean of women and men is used")
     return Measured(mass, None if height is None else round(height, 4), sex, None if age is None else int(age))
 
 

@@ -195,7 +195,7 @@ def _finding(
         f"s) is outside the possible range, {limits.low:g} to {limits.high:g}{unit}{more}"
     )
     if other_plates and _PLATE.match(channel.name):
-        spoils = "the plate, which is excluded; zero it, or correct the cell or the unit and export again"
+        spoils = "the plate, which is excluded; zero the plate, or correct the value or its unit, and export again"
         return Finding("refused", "out of range", file, where, spoils, channel.name)
     if channel.quantity in ("force", "vertical_force") and channel.unit == "N":
         raise ReadError(
@@ -235,8 +235,8 @@ def with_flexion_positive(streams: Mapping[str, Recording]) -> tuple[dict[str, R
     file, findings = kinematics.source.file, []
     for name in (name for name, sense in senses.items() if sense is None):
         what = (
-            f"{spans[name]}; a knee bends beyond {HYPEREXTENDED_DEG:g} deg in one direction only, so the sign is "
-            "unknown and not changed"
+            f"{spans[name]}; a knee bends beyond {HYPEREXTENDED_DEG:g} deg in one direction only, so the sign of this "
+            "angle is unknown and was not changed"
         )
         spoils = "results that depend on the knee; correct the file, or exclude the damaged part with crop_s"
         findings.append(Finding("warning", "knee sign", file, what, spoils, name))
@@ -245,15 +245,14 @@ def with_flexion_positive(streams: Mapping[str, Recording]) -> tuple[dict[str, R
     moved = {key: _turn(recording, turned) for key, recording in streams.items()}
     for name in turned:
         others = [c for key in moved for c in moved[key][1] if _of_knee(c) == name and c != name]
-        why = ", so flexion is negative in this file" if senses[name] == -1 else " and follows the other knee"
-        also = f", as are the signs of {', '.join(others)}" if others else ""
-        what = f"{name} {spans[name]}{why}; its sign is reversed, so that flexion is positive{also}"
+        why = ", so flexion is negative in this file" if senses[name] == -1 else " and takes the sign of the other knee"
+        also = f"; the same holds for {', '.join(others)}" if others else ""
+        what = f"{name} {spans[name]}{why}; its sign was reversed, so that flexion is positive{also}"
         findings.append(Finding("note", "knee sign", file, what, "", name))
     if proven == {1, -1}:
         kept, other = (", ".join(name for name, sense in senses.items() if sense == way) for way in (1, -1))
         what = (
-            f"flexion is positive in {kept} and negative in {other} of one file; only the sign of the latter was "
-            "reversed"
+            f"flexion is positive in {kept} and negative in {other} of this file; only the sign of {other} was reversed"
         )
         findings.append(Finding("warning", "knee sign", file, what, "knee angles if this is wrong; correct the file"))
     return {key: recording for key, (recording, _) in moved.items()}, findings

@@ -89,8 +89,8 @@ class PublicWords:
             kept[key] = kept[key].selected(names)
         if not left_out:
             return trial
-        what = f"{left_out} channels are left out, because their labels are not in the vocabulary"
-        spoils = "these channels; map them in the study's [channels], or name them"
+        what = f"channels left out because their labels are not in the vocabulary: {left_out}"
+        spoils = "these channels; map them in the study's [channels], or rename them"
         kept = {key: recording for key, recording in kept.items() if recording.names}
         finding = Finding("note", "left out", trial.name, what, spoils)
         return replace(trial, streams=kept, findings=(*trial.findings, finding))

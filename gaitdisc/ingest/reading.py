@@ -97,7 +97,7 @@ def read_trial(
             if key not in streams:
                 streams[key] = recording
             elif key == "signals" and not _one_base(streams[key], recording):
-                what = f"{', '.join(recording.names[:4])} are excluded because their time base differs"
+                what = f"signals excluded because of a different time base: {', '.join(recording.names[:4])}"
                 findings.append(Finding("note", "left out", recording.source.file, what, "these signals"))
             else:
                 streams[key] = _join(streams[key], recording, key)
@@ -137,7 +137,7 @@ def _read(given: object, channels: Mapping[str, str] | None, reader: C3DReader |
         if isinstance(given, pd.DataFrame):
             return read_frame(given, channels)
         raise ReadError(
-            "a walk can be read from files or DataFrames",
+            "a walk must be given as a file or a DataFrame",
             f"found {type(given).__name__}",
             "Give a path, or a DataFrame with a column 'time' [s] and one column per channel.",
         )
@@ -173,14 +173,14 @@ def _join(one: Recording, other: Recording, key: str) -> Recording:
             f"two files that contain {key} must have one time base",
             f"{files} have {len(one.time)} samples from {one.time[0]:.4g} s at {one.rate_hz:g} Hz and "
             f"{len(other.time)} from {other.time[0]:.4g} s at {other.rate_hz:g} Hz",
-            f"Use one file with all {key}, or list them as two trials.",
+            f"Use one file with all {key}, or list the files as two trials.",
         )
     doubled = sorted(set(one.names) & set(other.names))
     if doubled:
         raise ChannelError(
             f"two files of one trial must not contain the same channel of {key}",
             f"{files} both contain {doubled[0]!r} ({len(doubled)} in all)",
-            "Remove one file, or list them as two trials.",
+            "Remove one file, or list the files as two trials.",
         )
     first, second = one.source, other.source
     names, readers = f"{first.file} + {second.file}", f"{first.reader} + {second.reader}"
@@ -203,7 +203,7 @@ def _refuse_events_outside(files: Sequence[object], parts: Sequence[Trial], stre
         if far and not one.streams:
             raise SamplingError(
                 f"{Path(str(file)).name}: events must lie within the recording, from {start:.2f} to {end:.2f} s",
-                f"{len(far)} of {len(one.events)} lie outside, the first at {far[0]:.2f} s",
+                f"events outside: {len(far)} of {len(one.events)} (first: {far[0]:.2f} s)",
                 "Write times on the recording's clock; in a C3D file its first frame is at 0 s.",
             )
 
@@ -214,7 +214,7 @@ def _list_unused(channels: Mapping[str, str] | None, streams: Mapping[str, Recor
     absent = [label for label, said in (channels or {}).items() if split_unit(said)[0] not in there]
     if not absent:
         return []
-    what = f"[channels] names {', '.join(map(repr, absent[:4]))}, but no file of this trial contains them"
+    what = f"in [channels], but in no file of this trial: {', '.join(map(repr, absent[:4]))}"
     return [Finding("note", "not found", name, what, "")]
 
 
@@ -224,8 +224,8 @@ def _crop(trial: Trial, start_s: float, end_s: float) -> Trial:
         if len(recording.time) < 2:
             whole = trial.streams[key]
             raise SamplingError(
-                f"{trial.name}: the crop from {start_s:g} to {end_s:g} s must lie inside the {key}",
-                f"they last from {whole.time[0]:.4g} to {whole.time[-1]:.4g} s on the file's clock",
+                f"{trial.name}: the crop from {start_s:g} to {end_s:g} s must lie inside the stream {key!r}",
+                f"this stream lasts from {whole.time[0]:.4g} to {whole.time[-1]:.4g} s on the file's clock",
                 "Correct crop_s in the study.",
             )
     events = tuple(event for event in trial.events if start_s <= event.time < end_s)

@@ -126,8 +126,8 @@ def refuse_other_unit(unit: str, far: float, file: str, where: str) -> None:
 def per_kg_findings(streams: Mapping[str, Recording]) -> list[Finding]:
     """Say that ground forces or joint moments stated in N or N m are per kg of body mass."""
     found = []
-    steps = "shows steps, where hundreds of N are usual"
-    legs = "is the largest moment of the legs, although tens of N m are usual in walking"
+    steps = "hundreds of N are usual in steps"
+    legs = "tens of N m are usual for the largest moment of the legs in walking"
     stated = ("forces", "vertical_force", "N", FORCE_N, steps), ("moments", "moment", "N m", MOMENT_NM, legs)
     for key, quantity, unit, (low, high), like in stated:
         if key not in streams:
@@ -145,7 +145,7 @@ def per_kg_findings(streams: Mapping[str, Recording]) -> list[Finding]:
             longest = max(((end - start) for start, end in runs(force > SHARE * peak)), default=0) / recording.rate_hz
             walks = np.mean(force < EMPTY * peak) > EMPTY and STANCE_S[0] <= longest <= STANCE_S[1]
         if most and low <= peaks[most] <= high and walks:
-            what = f"peaks at {peaks[most]:.3g} {unit} and {like}: it seems to be in {unit} per kg of body mass"
+            what = f"peaks at {peaks[most]:.3g} {unit}, but {like}: the unit seems to be {unit} per kg of body mass"
             spoils = f"contacts from force, moments and powers; state {unit}/kg, or multiply by body mass"
             found.append(Finding("warning", "per body mass", recording.source.file, what, spoils, most))
     return found

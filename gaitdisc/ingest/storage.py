@@ -77,7 +77,7 @@ def read_storage(path: Path | str, channels: Mapping[str, str] | None = None) ->
         if len(before) == 1 and len(lines[-1]) < width:
             raise ReadError(
                 f"{raw.name}: every line must have {width} characters",
-                f"the last one, line {cells.lines[-1]}, has {len(lines[-1])}",
+                f"line {cells.lines[-1]} (the last line) has {len(lines[-1])}",
                 "The file is incomplete. Copy or export it again.",
             )
     time = even_time(cells.values[:, 0], cells.printed_digit(0), raw.name, cells.lines)
@@ -174,14 +174,15 @@ def parse_header(lines: Sequence[str], file: str) -> StorageHeader:
     labels = [label.strip() for label in (labels_line.split("\t") if separator == "\t" else labels_line.split())]
     if at is None or not labels or labels[0].lower() != "time":
         raise ReadError(
-            f"{file} must have a line of labels after 'endheader', the first of them 'time'",
+            f"{file} must have a line of labels after 'endheader', and the first label must be 'time'",
             f"line {(at or end) + 1} begins with {(labels[0][:40] if labels else '')!r}",
             "Export it again, or write the labels there.",
         )
     names = [split_unit(label)[0] for label in labels]
     if len(labels) < 2 or not all(names):
         blank = f"label {names.index('') + 1} is blank" if "" in names else "time is the only column"
-        raise ReadError(f"{file}: every column must have a label", f"line {at + 1}: {blank}", "Name the column.")
+        needed = f"{file}: time and every other column must have a label"
+        raise ReadError(needed, f"line {at + 1}: {blank}", "Name every column.")
     own = (_OWN_COLUMN.fullmatch(line.strip()) for line in lines[:end])
     return StorageHeader(
         title=next((line.strip() for line in lines[:end] if line.strip()), ""),
@@ -259,7 +260,7 @@ def naming_findings(columns: Sequence[Column], file: str) -> list[Finding]:
         findings.append(Finding("note", "guessed", file, what, "the channels if this is wrong; map them in [channels]"))
     sides = {column.channel.side for column in columns if column.label.lower().startswith("ground_force_v")}
     if sides == {"r"} and any(column.label.startswith("1_ground_force_v") for column in columns):
-        what = "ground_force_ is read as the right foot, 1_ground_force_ as the left, as in OpenSim's own examples"
+        what = "ground_force_ is read as the right foot and 1_ground_force_ as the left foot, as in OpenSim's examples"
         findings.append(Finding("note", "guessed", file, what, "the sides if this is wrong; map them in [channels]"))
     forces = [one for one in columns if "ground_force" in one.label.lower() and one.channel.name != IGNORE]
     if sideless := [one.label for one in forces if not one.channel.side]:
@@ -310,7 +311,7 @@ def _vocabulary_column(label: str, plain: str, title: str, of_emg: bool) -> Colu
 def _guess(label: str, name: str, title: str) -> Column:
     side = find_side(name)
     if name.endswith(("_moment", "_force")):
-        guess = "the generalised force of a copied rotation, read in N m although OpenSim calls it a force"
+        guess = "read in N m, as the generalised force of a coupled rotation, although OpenSim calls it a force"
         channel = name_channel(name)
         return Column(label, channel, channel.unit, guess if name.endswith("_beta_force") else "")
     ground = _GROUND.fullmatch(name)

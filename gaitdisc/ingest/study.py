@@ -51,7 +51,7 @@ class Conditions(StudyPart):
     others: tuple[Word, ...] = Field(default=(), description="further conditions, whose cycles are pooled")
     unnamed: Word | None = Field(
         default=None,
-        description="condition of all trials marked 'unknown', one of the words above; if empty, they are not used",
+        description="condition of the trials marked 'unknown', one of the words above; if empty, they are not used",
     )
 
     @property
@@ -64,9 +64,9 @@ class Conditions(StudyPart):
         """Nominal, then device; a SchemaError where the study has no device."""
         if self.device is None:
             raise SchemaError(
-                "a comparison by models needs two conditions in [conditions], nominal and device",
+                "a comparison by models must have two conditions in [conditions], nominal and device",
                 f"the study has {', '.join(map(repr, self.words))}, but no device",
-                "Add device, or look at the pooled cycles of `gaitdisc run`.",
+                "Add device to [conditions], or look at the pooled cycles of `gaitdisc run`.",
             )
         return self.nominal, self.device
 
@@ -88,7 +88,7 @@ class PlannedTrial(StudyPart):
         default=None, description="start and end of the part to use, on the file's clock [s]"
     )
 
-    leave_out: str = Field(default="", description="reason why this trial is left out; pages show it")
+    leave_out: str = Field(default="", description="reason why this trial is left out; the pages show this reason")
     leave_out_cycles: tuple[str, ...] = Field(
         default=(), description='cycles that are left out: side, start [s] and reason, such as "left 2.31 stumbled"'
     )
@@ -98,7 +98,7 @@ class PlannedTrial(StudyPart):
         for i, said in enumerate(self.leave_out_cycles):
             if not LEFT_OUT_CYCLE.fullmatch(said):
                 remedy = 'Write for example "left 2.31 stumbled"; cycles.csv lists start_s of each cycle.'
-                refuse(("leave_out_cycles", i), "be a side and a start [s]", f"found {said!r}", remedy)
+                refuse(("leave_out_cycles", i), "give a side and a start [s]", f"found {said!r}", remedy)
         if self.crop_s and self.crop_s[0] >= self.crop_s[1]:
             refuse(("crop_s",), "have a start before its end", f"found {list(self.crop_s)}", "Write [start, end] in s.")
         return self
@@ -115,13 +115,13 @@ class Participant(StudyPart):
         default="", description="group of this person, such as control; empty without groups"
     )
     mass_kg: Annotated[float, Field(ge=MASS_KG.least, le=MASS_KG.most)] | None = Field(
-        default=None, description="body mass [kg], if the C3D files state none or a wrong one"
+        default=None, description="body mass [kg], if the C3D files state no mass or a wrong one"
     )
     height_m: Annotated[float, Field(ge=LENGTHS_M["height_m"].least, le=LENGTHS_M["height_m"].most)] | None = Field(
-        default=None, description="stature [m], if the C3D files state none or a wrong one"
+        default=None, description="stature [m], if the C3D files state no stature or a wrong one"
     )
     sex: Literal["", "f", "m"] = Field(
-        default="", description="f or m, for the inertia of the segments; if empty, the mean of both is used"
+        default="", description="f or m, for the inertia of the segments; if empty, the mean of women and men is used"
     )
     age_years: Annotated[int, Field(ge=AGE_YEARS.least, le=AGE_YEARS.most)] | None = Field(
         default=None, description="age in whole years, to choose controls of similar age; never a date of birth"
@@ -259,12 +259,12 @@ def check_conditions(conditions: Conditions) -> None:
     words = conditions.words
     if len(set(words)) < len(words) or UNKNOWN in words:
         found = f"found {' and '.join(map(repr, words))}"
-        needed = "be two different words" if len(words) == 2 else "be different words"
+        needed = "be two different words, neither" if len(words) == 2 else "be different words, none"
         name = "Name the two conditions." if len(words) == 2 else "Name each condition once."
-        refuse(("conditions",), f"{needed}, neither of them {UNKNOWN!r}", found, name)
+        refuse(("conditions",), f"{needed} of them {UNKNOWN!r}", found, name)
     if conditions.unnamed is not None and conditions.unnamed not in words:
         found = f"found {conditions.unnamed!r}"
-        refuse(("conditions", "unnamed"), f"be one of {', '.join(map(repr, words))}", found, "Write one of them.")
+        refuse(("conditions", "unnamed"), f"be one of {', '.join(map(repr, words))}", found, "Use one of these words.")
 
 
 def check_sessions(study: Study) -> None:
@@ -274,7 +274,7 @@ def check_sessions(study: Study) -> None:
             remedy = 'Write words in the order of the dates, such as sessions = ["before", "after"].'
             refuse(("sessions", i), "not be a date, because a date can identify a person", f"found {word!r}", remedy)
         if study.sessions.index(word) != i:
-            refuse(("sessions", i), "list each session once", f"{word!r} occurs twice", "Remove one.")
+            refuse(("sessions", i), "differ from the others", f"{word!r} occurs twice", "Remove one of the two.")
     for i, participant in enumerate(study.participants):
         for j, trial in enumerate(participant.trials):
             if trial.session is not None and trial.session not in study.sessions:
@@ -293,12 +293,12 @@ def check_participants(study: Study) -> None:
         if ids[participant.id.lower()] > 1:
             found = f"{participant.id!r} occurs {ids[participant.id.lower()]} times"
             place = ("participants", i, "id")
-            refuse(place, "be used for one person only", found, "List all trials under one pseudonym.")
+            refuse(place, "be used for one person only", found, "List all trials of a person together.")
         for j, trial in enumerate(participant.trials):
             if trial.condition not in known:
-                remedy = did_you_mean(trial.condition, known, f"Use one of them, or {UNKNOWN!r}.")
+                remedy = did_you_mean(trial.condition, known, f"Use one of these words, or {UNKNOWN!r}.")
                 place = ("participants", i, "trials", j, "condition")
-                refuse(place, " or ".join(map(repr, words)), f"found {trial.condition!r}", remedy)
+                refuse(place, f"be {' or '.join(map(repr, words))}", f"found {trial.condition!r}", remedy)
             for k, file in enumerate(trial.files):
                 if "\0" in file:
                     place = ("participants", i, "trials", j, "files", k)

@@ -46,18 +46,18 @@ _TOP = """\
 _KINDS = {  # kind of a finding of pydantic, or how it begins -> what a value must, and what to do
     "finite_number": ("be a finite number", "Write a number."),
     "too_short": ("not be empty", "Fill it in, or remove the key."),
-    "too_long": ("have fewer entries", "Remove some."),
+    "too_long": ("have fewer entries", "Remove some entries."),
     "string_pattern": (
         "be a pseudonym: letters, digits, _ and -, at most 16",
         "Use for example P01, and keep names out of the study.",
     ),
     "string_too_short": ("not be empty", "Fill it in, or remove the key."),
     "string_too_long": ("be shorter", "Use at most 40 characters."),
-    "float": ("be a number", "Write it without quotes, for example 6.0."),
-    "int": ("be a whole number", "Write it without quotes and without a point, for example 4."),
-    "string": ("be text", 'Write it in quotes: "...".'),
-    "tuple": ("be a list", "Write it in brackets: [...]."),
-    **dict.fromkeys(("model", "dict"), ("be a table", "Write its keys under a header in brackets.")),
+    "float": ("be a number", "Write the number without quotes, for example 6.0."),
+    "int": ("be a whole number", "Write the number without quotes and without a point, for example 4."),
+    "string": ("be text", 'Write the text in quotes: "...".'),
+    "tuple": ("be a list", "Write the list in brackets: [...]."),
+    **dict.fromkeys(("model", "dict"), ("be a table", "Write the keys under a header in brackets.")),
 }
 _LIMITS = {
     "greater_than": ("above", "gt"),

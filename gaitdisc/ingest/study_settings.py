@@ -63,11 +63,11 @@ class Kinematics(StudyPart):
 
     angles: Literal["file", "markers"] | None = Field(
         default=None,
-        description="file: angles of the file; markers: computed angles; by default those of the file, if it has any",
+        description="file: the file's angles; markers: angles computed from markers; by default file, if it has angles",
     )
     marker_set: str = Field(
         default="",
-        description="plug_in_gait, oxford_foot, helen_hayes, rajagopal, gait2354, or a .toml file; if empty, by labels",
+        description="plug_in_gait, oxford_foot, helen_hayes, rajagopal, gait2354 or a .toml file; empty: from labels",
     )
     hip: Literal["davis", "harrington"] | None = Field(
         default=None, description="hip joint centre: davis or harrington; by default that of the marker set"
@@ -94,7 +94,7 @@ class StrideRules(StudyPart):
     def _check(self) -> StrideRules:
         if self.min_s >= self.max_s:
             found = f"min_s is {self.min_s:g}, max_s {self.max_s:g}"
-            refuse(("min_s",), "be shorter than max_s", found, "Exchange the two, or widen the range.")
+            refuse(("min_s",), "be shorter than max_s", found, "Exchange the two numbers, or widen the range.")
         return self
 
 
@@ -121,7 +121,8 @@ class HeldOut(StudyPart):
     def _check(self) -> HeldOut:
         both = self.seconds is not None and self.share is not None and "share" in self.model_fields_set
         if both or (self.seconds is None and self.share is None):
-            refuse(("seconds",), "replace 'share'", "both are there" if both else "none is", "Write one.")
+            found = f"{'both are' if both else 'neither is'} given"
+            refuse(("seconds",), "be given instead of 'share'", found, "Give either seconds or share.")
         return self
 
 

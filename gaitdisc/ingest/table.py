@@ -230,7 +230,7 @@ def _of_frame(frame: pd.DataFrame, name: str, channels: Mapping[str, str] | None
         where = "it has no rows"
         if len(values):
             where = f"column {labels[int(np.argmax(np.isinf(values).any(axis=0)))]!r} contains infinite values"
-        raise ReadError(f"{name} must have rows of finite numbers", where, "Leave cells without a value empty.")
+        raise ReadError(f"{name} must have rows of finite numbers", where, "Export the table again.")
     return labels, values
 
 
@@ -274,7 +274,7 @@ def read_events(lines: Sequence[str], file: str) -> tuple[Event, ...]:
                 cells = [(n, *event_kind(row[named], row[aside] if aside >= 0 else ""), row[timed]) for n, row in whole]
             if named >= 0 > timed and any(label.startswith("frame") for label in labels):
                 needed = f"{file}: events must have a column of times, such as 'time [s]'"
-                remedy = "Write seconds: the frame less the file's first, divided by the frame rate."
+                remedy = "Write times [s]: the frame minus the file's first frame, divided by the frame rate."
                 raise ReadError(needed, f"line {top + 1} is {line.strip()[:60]!r}", remedy)
             if any(kind in STEPS for _, kind, _, _ in cells):
                 unit_s = 1e-3 if timed >= 0 and "ms" in labels[timed] else 1.0
@@ -286,8 +286,8 @@ def read_events(lines: Sequence[str], file: str) -> tuple[Event, ...]:
 def _event(line: int, kind: str, side: str, text: str, unit_s: float, file: str) -> Event:
     where = f"{file}, line {line}"
     if not side:
-        remedy = "Write l or r in a column 'side', or 'Left' before the event."
-        raise ReadError(f"{where}: each {kind} must have a side", "it has none", remedy)
+        remedy = "Write l or r in a column 'side', or 'Left' or 'Right' before the event."
+        raise ReadError(f"{where}: each {kind} must have a side", "this line has none", remedy)
     try:
         return Event(kind, side, unit_s * float(text.replace(",", ".")))
     except ValueError as error:

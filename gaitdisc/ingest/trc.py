@@ -59,7 +59,7 @@ def read_trc(path: Path | str, channels: Mapping[str, str] | None = None) -> Tri
     if abs(step - 1 / header.rate_hz) > allowed:
         raise SamplingError(
             f"{raw.name}: the header's DataRate and the time column must agree",
-            f"DataRate says {header.rate_hz:g} Hz, the times step by {step:.6g} s, which is {1 / step:.6g} Hz",
+            f"DataRate states {header.rate_hz:g} Hz, but the times step by {step:.6g} s ({1 / step:.6g} Hz)",
             "Find out which one is correct and export the file again.",
         )
     positions = cells.values[:, 2:]

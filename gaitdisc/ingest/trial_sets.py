@@ -74,7 +74,7 @@ def why_refused(study: Study, participant: Participant) -> str:
             return f"{_one_walk_each(study, participant)} Correct the conditions in [[participants.trials]]."
     elif not trial_sets(study, participant):
         words = " or ".join(map(repr, study.conditions.words))
-        found = f"{participant.id} has {len(participant.trials) or 'no'} trials of other conditions"
+        found = f"{participant.id} has none (trials of other conditions: {len(participant.trials)})"
         return f"each person must have a trial of {words}; {found}. Correct the conditions in [[participants.trials]]."
     return ""
 

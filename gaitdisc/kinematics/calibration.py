@@ -145,7 +145,7 @@ class _Builder:
         width, depth = float(np.linalg.norm(across)), float(np.linalg.norm(ahead))
         if self.measures.inter_asis_m is not None:
             what = f"the measured distance of the iliac spines is {self.measures.inter_asis_m * 1000:.0f} mm, "
-            self._note("pelvis width", f"{what}but {width * 1000:.0f} mm between the markers")
+            self._note("pelvis width", f"{what}but the markers are {width * 1000:.0f} mm apart")
             width = self.measures.inter_asis_m
         for side in "lr":
             hip = self.hips.get(f"hip_{side}")
@@ -159,8 +159,8 @@ class _Builder:
             return davis_hip(width, (legs["l"] + legs["r"]) / 2, legs[side], self._radius(), side)
         if "harrington" not in methods:
             raise ChannelError(
-                "the hip joint centre after Davis needs the lengths of both legs",
-                f"{self.file} and the measures have {', '.join(sorted(legs)) or 'none'}",
+                "the hip joint centre after Davis must have the lengths of both legs",
+                f"{self.file} and the measures have {f'only that of side {next(iter(legs))}' if legs else 'none'}",
                 'Provide leg_length_m, or use hip = "harrington".',
             )
         if methods[0] == "davis" and side == "l":
@@ -195,7 +195,7 @@ class _Builder:
             self._note("width", f"the width of {joint}_{side}, between its two markers, is {width * 1000:.0f} mm")
             return width
         raise ChannelError(
-            f"a {joint} joint centre from one lateral marker needs the width of the {joint}",
+            f"a {joint} joint centre from one lateral marker must have the width of the {joint}",
             f"neither {self.file} nor the measures have it for side {side!r}",
             f"Provide {joint}_width_m, or add a medial marker in the static trial.",
         )
@@ -283,7 +283,7 @@ def _axes(right: Values, up: Values, file: str, segment: str, kept: str = "z") -
     size = float(np.linalg.norm(forward))
     if not size > 1e-3 * float(np.linalg.norm(up) * np.linalg.norm(right)) or not size > 0:
         raise ShapeError(
-            f"landmarks of {segment} must span a plane", f"in {file} they are collinear", "Check its markers."
+            f"landmarks of {segment} must span a plane", f"in {file} they are collinear", "Check these markers."
         )
     x = forward / size
     if kept == "y":

@@ -24,7 +24,7 @@ EXPLAINED = 0.5  # of the misfit is gone when two labels are exchanged
 UNFIT = ("exchanged markers", "broken segment")  # kinds of findings
 MOST_PAIRS = 3  # exchanged in one trial
 FRAMES = 12  # in which each pair is tried
-SPOILS = "the segments' angles and cycles in these frames; correct the labels, or use this session's static trial"
+SPOILS = "the segments' angles and cycles in these frames; correct the labels, or use the session's static trial"
 FEWEST_FRAMES = 3  # that a pair has to explain: fewer are single frames in which a marker jumped
 
 
@@ -133,7 +133,7 @@ def exchange_findings(
         where = "this trial" if min(order)[0] <= 0 else "this trial or in the static trial"
         before = f"{1000.0 * one.before_m:.0f} mm" if np.isfinite(one.before_m) else "a reversed axis"
         what = f"{', '.join(one.segments)}: exchanging {first} and {second} in {where} corrects {one.frames.sum()} "
-        what += f"of {len(one.frames)} frames: from {before} to {1000.0 * one.after_m:.0f} mm off the static trial"
+        what += f"of {len(one.frames)} frames: {1000.0 * one.after_m:.0f} mm off the static trial instead of {before}"
         spans = spans_s(markers.time, one.frames)
         findings.append(Finding("warning", "exchanged markers", file, what, SPOILS, f"{first}, {second}", spans=spans))
     for segment, frames in broken.items():

@@ -289,7 +289,7 @@ def _check_landmarks(landmarks: Mapping[str, str], file: str) -> None:
         empty = not all(all(choice) for choice in choices(text))
         if empty or (key in SIDED and not PLACEHOLDER.search(text)):
             needed = f"landmarks.{key} must name markers" + (" of both sides with {S}, {s} or {side}" * (key in SIDED))
-            mend = f'Write it as {key} = "{{S}}NAME", for RNAME and LNAME.'
+            mend = f'Write for example {key} = "{{S}}NAME", for RNAME and LNAME.'
             raise SchemaError(needed, f"{file}: found {text!r}", mend)
 
 
@@ -301,8 +301,8 @@ def _check_methods(methods: Mapping[str, tuple[str, ...]], landmarks: Mapping[st
     for joint, wand in (("knee", "thigh_wand"), ("ankle", "shank_wand")):
         for method, landmark in (("midpoint", f"{joint}_medial"), ("chord", wand)):
             if method in methods[joint] and landmark not in landmarks:
-                needed = f"joint_centres.{joint} = {method!r} needs landmarks.{landmark}"
-                raise SchemaError(needed, f"{file} does not name it", EXAMPLE)
+                needed = f"joint_centres.{joint} = {method!r} must have landmarks.{landmark}"
+                raise SchemaError(needed, f"{file} has no such landmark", EXAMPLE)
 
 
 def _check_tracked(tracked: Mapping[str, Iterable[str]], file: str) -> None:

@@ -28,7 +28,7 @@ def marker_labels(markers: Recording) -> list[str]:
     ]
     if not labels:
         raise ChannelError(
-            "angles from markers need a recording of markers, with channels <marker>.x, .y, .z",
+            "angles must be computed from a recording of markers, with channels <marker>.x, .y, .z",
             f"{markers.source.file or 'the recording'} has {', '.join(markers.names[:4]) or 'no channel'}",
             "Use the stream `markers` of the trial.",
         )
@@ -96,7 +96,7 @@ def up_axis(pelvis: Values, feet: Values, file: str = "") -> Values:
     lines = finite_rows(pelvis - feet)
     if not len(lines):
         raise ShapeError(
-            "the upward direction needs a frame with markers of the pelvis and of a foot",
+            "a frame must have markers of the pelvis and of a foot, for the upward direction",
             f"{file or 'the recording'} has none",
             "Fill the gaps in the markers, or use another trial.",
         )
@@ -121,13 +121,13 @@ def check_right_handed(pelvis: Values, up: Values, file: str = "") -> None:
     >>> check_right_handed(np.eye(3)[None], np.array([0.0, -1.0, 0.0]), "a.c3d")  # doctest: +ELLIPSIS
     Traceback (most recent call last):
     ...
-    gaitdisc.errors.ShapeError: the laboratory's axes must ... up is down (cosine -1.00): ...
+    gaitdisc.errors.ShapeError: the laboratory's axes must ... up points down (cosine -1.00): ...
     """
     upright = float(np.nanmedian(pelvis[:, :, 1] @ up))
     if not upright > 0:
         raise ShapeError(
             "the laboratory's axes must be right-handed, and the names of left and right markers correct",
-            f"{file or 'the recording'}: with the right iliac spine on the right and the sacrum behind, up is down "
+            f"{file or 'the recording'}: with the right iliac spine on the right and the sacrum behind, up points down "
             f"(cosine {upright:.2f}): the frame is mirrored, or left and right are exchanged",
             "Correct the axes of the export, or the labels.",
         )
@@ -151,13 +151,13 @@ def walking_frame(
         if not size > 0 or not abs(stated @ up) <= 0.5 * size:
             raise StrideError(
                 "the direction of walking must be a horizontal vector of three numbers",
-                f"it is {tuple(np.ravel(stated).tolist())}, up is {tuple(up.tolist())}",
-                "Write it in the laboratory's axes, for example 0 -1 0.",
+                f"it is {tuple(np.ravel(stated).tolist())}, and up is {tuple(up.tolist())}",
+                "Write the direction in the laboratory's axes, for example 0 -1 0.",
             )
         return WalkingFrame(_frames(np.tile(_level(stated, up), (len(origin), 1)), up), "forward as given")
     known = np.isfinite(origin).all(axis=1) & np.isfinite(facing).all(axis=1)
     if not known.any():
-        raise StrideError("the direction of walking needs the pelvis", "no frame has it", "Fill the marker gaps.")
+        raise StrideError("a frame must have the pelvis markers", "none has all of them", "Fill the marker gaps.")
     faced = _level(facing[known].mean(axis=0), up)
     seen = np.flatnonzero(known)
     spread = seen - seen.mean()

@@ -87,9 +87,9 @@ def move_body(
     """
     if static is None:
         raise ChannelError(
-            "angles from markers need a static trial of the person",
-            "the trial has none",
-            "Record a static trial with all markers of the set, or name it.",
+            "angles from markers must have a static trial of the person",
+            "none is given",
+            "Record a static trial with all markers of the set, or name such a trial.",
         )
     chosen = choose_marker_set(markers, static, marker_set)
     chosen = chosen if joints is None else chosen.with_joints(joints)
@@ -200,7 +200,7 @@ def _gaps_and_shape(
     typical = float(np.nanmedian(residual)) if np.isfinite(residual).any() else 0.0
     if typical > ANOTHER_SHAPE_M:
         what = f"the markers of {segment} are {typical * 1000:.0f} mm from their positions in the static trial"
-        spoils = "these angles; check that the static trial is of this person and session and the labels are right"
+        spoils = "these angles; check that the static trial is of this person and session, and that labels are right"
         findings.append(Finding("warning", "another shape", file, what, spoils))
     return findings
 
@@ -243,8 +243,8 @@ def angles_of_poses(
     known = poses["pelvis"].known
     if not known.any():
         raise ShapeError(
-            f"angles need a frame in which the body lies within {FARTHEST_M * 1000:.0f} mm of the markers",
-            f"{base.source.file or 'the trial'} has none (root mean square over all markers)",
+            f"in some frame, the body must lie within {FARTHEST_M * 1000:.0f} mm of the markers",
+            f"{base.source.file or 'the trial'} has no such frame (root mean square over all markers)",
             'Check the static trial and the direction of walking, or use joints = "free".',
         )
     path = np.stack([np.interp(base.time, base.time[known], axis[known]) for axis in poses["pelvis"].origin.T], axis=1)
@@ -271,7 +271,7 @@ def segment_angles(segments: Recording) -> tuple[Recording, tuple[Finding, ...]]
     lacking = [label for label in LABELS.values() if label not in there]
     if lacking:
         raise ChannelError(
-            "angles from segments need pelvis, thighs, shanks and feet, as pelvis, l_thigh, ...",
+            "angles from segments must have pelvis, thighs, shanks and feet, as pelvis, l_thigh, ...",
             f"{file} has no {', '.join(lacking)}; it has {', '.join(sorted(there))}",
             "Export these segments too, or export the joint angles.",
         )
@@ -306,7 +306,7 @@ def _pose_in_file(segments: Recording, label: str, file: str) -> Pose:
     if len(wrong):
         raise ShapeError(
             "the axes of a segment must have length 1, be perpendicular and be right-handed",
-            f"{file}: {label} in frame {known[wrong[0]] + 1} deviates by {skew[wrong[0]]:.2g}, and its "
+            f"{file}: the axes of {label} in frame {known[wrong[0]] + 1} deviate by {skew[wrong[0]]:.2g}, and their "
             f"determinant is {np.linalg.det(some[wrong[0]]):.3g}",
             "Export the trial again.",
         )

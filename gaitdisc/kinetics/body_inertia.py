@@ -37,9 +37,9 @@ class Person:
     def __post_init__(self) -> None:
         if self.mass_kg is None or not np.isfinite(self.mass_kg):
             raise UnitError(
-                "moments and powers per kg need the person's body mass [kg]",
+                "moments and powers per kg must have the person's body mass [kg]",
                 "neither the study nor the file states one",
-                "Write it in the study's participants, or in PROCESSING:BODYMASS of the C3D file.",
+                "Write the mass in the study's participants, or in PROCESSING:BODYMASS of the C3D file.",
             )
         if not MASS_KG.hold(self.mass_kg):
             raise UnitError(
@@ -127,14 +127,14 @@ def segment_lengths(poses: Mapping[str, Pose], side: str) -> dict[str, float]:
         ends = [poses.get(f"{name}_{side}") for name in (segment, beyond)]
         if ends[0] is None or ends[1] is None:
             raise ShapeError(
-                f"the length of {segment}_{side} needs the poses of {segment}_{side} and {beyond}_{side}",
+                f"for the length of {segment}_{side}, there must be poses of {segment}_{side} and {beyond}_{side}",
                 f"there are {', '.join(poses) or 'none'}",
                 "Provide the markers of the entire leg.",
             )
         length = finite_values(np.linalg.norm(ends[0].origin - ends[1].origin, axis=1))
         if not len(length):
             raise ShapeError(
-                f"the length of {segment}_{side} needs a frame with both of its joint centres",
+                f"a frame must have both joint centres of {segment}_{side}, for its length",
                 "no frame has both",
                 "Fill the gaps in the markers of this leg.",
             )

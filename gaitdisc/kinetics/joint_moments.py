@@ -177,9 +177,9 @@ def legs(
         seen = np.isfinite(places).all(axis=(0, 2))
         if not seen.any():
             raise ShapeError(
-                f"the inertia of foot_{side} needs a frame with heel, toes and the foot's pose",
+                f"a frame must have heel, toes and pose of foot_{side}, for its inertia",
                 "no frame has all three",
-                "Fill the gaps in the markers of this foot, or name others.",
+                "Fill the gaps in the markers of this foot, or name other markers.",
             )
         bodies = leg_inertia(person, side, lengths, np.median(places[1][seen], axis=0))
         found[side] = Leg({short: moving[name] for short, name in own.items()}, bodies)

@@ -172,7 +172,7 @@ def weigh_steps(
         share = weight.share(named[step.platform], alone) if alone.seconds >= ALONE_S else 1.0
         if not abs(share - 1) > MOST_APART:
             return step
-        found = f"it shows {share:.2f} of the force that one leg needs to carry {weight.newton:.0f} N of body weight"
+        found = f"its force is {share:.2f} of that with which one leg carries {weight.newton:.0f} N of body weight"
         if step.reason and share < 1:  # a sole beyond the edge, another foot: explains what is missing, never too much
             return replace(step, doubt=step.doubt or "note")
         return replace(step, reason=f"{found} from {alone.start:.2f} to {alone.end:.2f} s", doubt="warning")
@@ -240,7 +240,7 @@ def _edge(foot: FootPath, platform: Platform) -> str:
         frames = platform.span.holds(foot.time) & foot.still(part)
         outside = finite_values(platform.surface.outside(part)[frames])
         if len(outside) and np.median(outside) > BEYOND_EDGE_M:
-            return f"{name} {100 * np.median(outside):.0f} cm beyond its edge"
+            return f"{name} {100 * np.median(outside):.0f} cm beyond the plate's edge"
     pressure = platform.pressure_centre()[platform.load_n > CLEAR_LOAD * platform.load_n.max()]
     nearest = -float(np.nanmax(platform.surface.outside(pressure)))
     return f"the centre of pressure comes within {100 * nearest:.1f} cm of the edge" if nearest < SOLE_AROUND_M else ""

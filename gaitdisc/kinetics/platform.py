@@ -140,7 +140,7 @@ def platforms(trial: Trial) -> list[Platform]:
     found = [_plate(forces, name, surfaces) for name in plates] + [_foot_force(forces, name) for name in feet]
     if not found:
         raise ChannelError(
-            "joint moments need force and moment of the ground in three directions",
+            "joint moments must have force and moment of the ground in three directions",
             f"{forces.source.file or trial.name} has {', '.join(forces.names[:6])}",
             "Provide plates with FORCE_PLATFORM (C3D), or ground_force_r_vx to ground_torque_r_z (.mot).",
         )
@@ -150,9 +150,9 @@ def platforms(trial: Trial) -> list[Platform]:
         if load.max() < CLEAR_LOAD_N < -load[lowest]:
             found_n = f"{load[lowest]:.0f} N at {platform.time[lowest]:.3f} s and never more than {load.max():.0f} N"
             raise UnitError(
-                f"joint moments need the force of the ground on the foot, positive upwards, from {platform.name}",
+                f"the force of the ground on the foot must be positive upwards on {platform.name}",
                 f"{forces.source.file or trial.name} has {found_n}",
-                "The sign is reversed. Export the force of the ground on the foot.",
+                "Its sign is wrong. Export the force of the ground on the foot.",
             )
     return found
 
@@ -160,8 +160,8 @@ def platforms(trial: Trial) -> list[Platform]:
 def _plate(forces: Recording, name: str, surfaces: dict[str, Surface]) -> Platform:
     if name not in surfaces:
         raise ChannelError(
-            f"the wrench of {name} needs the corners of its surface",
-            f"{forces.source.file or 'the trial'} has them for {', '.join(surfaces) or 'no plate'}",
+            f"the wrench of {name} must have the corners of its surface",
+            f"{forces.source.file or 'the trial'} has corners for {', '.join(surfaces) or 'no plate'}",
             "Keep the corners of the trial's plates, or correct FORCE_PLATFORM:CORNERS.",
         )
     surface = surfaces[name]
@@ -182,8 +182,8 @@ def _foot_force(forces: Recording, key: str) -> Platform:
         first, file = int(np.argmax(lost)), forces.source.file or "the trial"
         raise ReadError(
             f"ground_force_{key} must have its point and moment in every loaded sample",
-            f"{file} lacks them for {force[first, 1]:.0f} N at {forces.time[first]:.3f} s, in {lost.sum()} samples in "
-            "all",
+            f"loaded samples of {file} without point or moment: {lost.sum()} (first: {force[first, 1]:.0f} N at "
+            f"{forces.time[first]:.3f} s)",
             "Export the centre of pressure in m, and 0 where the foot is in the air.",
         )
     floor = float(np.median(point[pressed, 1])) if pressed.any() else 0.0
@@ -199,7 +199,7 @@ def _three(forces: Recording, pattern: str) -> Values:
     lacking = [name for name in names if name not in forces.names]
     if lacking:
         raise ChannelError(
-            f"a wrench needs {', '.join(names)}",
+            f"a wrench must have {', '.join(names)}",
             f"{forces.source.file or 'the trial'} lacks {', '.join(lacking)}",
             "Export force, point and moment of the ground in all three directions, or map them in [channels].",
         )

@@ -49,8 +49,8 @@ class ForceBalance:
         """Return the balance as one line of text."""
         if not self.tested:
             return (
-                f"force balance: the loads of both feet are known at the same time in only {self.frames} frames, so "
-                "the balance is not tested"
+                "force balance: not tested, because too few frames have known loads of both feet at the same time "
+                f"({self.frames})"
             )
         return (
             f"force balance over {self.frames} frames: vertical rms {self.rms:.1f} % of body weight "
@@ -79,7 +79,7 @@ def force_balance(
     """
     if set(found) != {"l", "r"}:
         raise ChannelError(
-            "the balance of forces needs both legs and the pelvis",
+            "the balance of forces must have both legs and the pelvis",
             f"found {'only leg ' + ', '.join(found) if found else 'no leg'}",
             "Provide the markers of both legs.",
         )
@@ -138,8 +138,8 @@ def trial_kinetics(
     if not any(step.clean for step in steps):
         reasons = "; ".join(f"{one.platform} at {one.start:.2f} s: {one.reason}" for one in steps[:3])
         raise ChannelError(
-            "joint moments need a step of one foot alone on a force plate",
-            f"{file} has {reasons or 'no loaded platform'}",
+            "joint moments must have a step of one foot alone on a force plate",
+            f"{file}: {reasons or 'no platform is loaded'}",
             "Exclude the trial from kinetics, or use one in which each foot hit its own plate.",
         )
     loads = foot_loads(found, steps, time, settings.force_cutoff_hz, airborne)

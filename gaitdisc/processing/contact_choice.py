@@ -62,9 +62,9 @@ def choose_contacts(
     """
     if not isinstance(detector, str) or detector not in ("auto", *PREFERRED):
         raise StrideError(
-            f"the detector of contacts must be auto, {', '.join(PREFERRED)}",
+            f"the detector of contacts must be one of auto, {', '.join(PREFERRED)}",
             f"the detector is {str(detector)[:60]!r}",
-            "Name one of these. To use known contacts, call cycles(..., contacts=times).",
+            "Use one of these detectors. To use known contacts, call cycles(..., contacts=times).",
         )
     needed = "initial contacts must come from force, events, markers or joint angles"
     if any(len(recording.time) < 2 for recording in trial.streams.values()):
@@ -82,7 +82,7 @@ def choose_contacts(
     findings = [*late, *_findings(trial, chosen, seen, refused, reference)]
     if chosen in SEEN_LATE:
         by = f"the median difference at steps {'recorded by a plate' if reference == 'force' else 'marked by an event'}"
-        spoils = "phase, compared with a plate, by 3 to 5 % of the stride; durations are unaffected"
+        spoils = "phase, by 3 to 5 % of the stride compared with a plate; durations are unaffected"
         findings.append(offset_finding(trial.name, chosen, offset_s, by, spoils))
     return ContactChoice(taken, tuple(findings))
 
@@ -127,14 +127,14 @@ def events_on_plates(
     lags = [_lag_ms(seen, "markers", name, SAME_STEP_S) for name in ("force", "events")]
     plates, marked = (np.inf if lag is None else abs(lag - EARLY_MS["markers"]) for lag in lags)
     what = f"the file's events are {abs(late):.0f} ms {'after' if late > 0 else 'before'} the steps on a plate, "
-    what += f"more than the limit of {EVENTS_MS:g} ms"
+    what += f"which exceeds the limit of {EVENTS_MS:g} ms"
     if marked < plates and plates > DISAGREEMENT_MS:
         what += f"; the events are used, because they are {lags[1]:.0f} ms from the markers' contacts"
         return dict(seen), [Finding("warning", "events and plates", file, what, "moments; check the plates' clock")]
     moved = {
         side: replace(c, foot_off=c.foot_off - late / 1e3) for side, c in _move(seen["events"], -late / 1e3).items()
     }
-    what += "; the plates are used, and all events are shifted to agree with them"
+    what += "; the plates are used, and all events were shifted to agree with them"
     return {**seen, "events": moved}, [Finding("warning", "events and plates", file, what, "phase; check the events")]
 
 
@@ -196,7 +196,7 @@ def offset_finding(file: str, detector: str, offset_s: float | None, by: str, sp
         what += f"{EARLY_MS[detector]:g} ms early in walking ({EARLY_RANGE[detector]}, compared with a plate)"
         return Finding("note", "contact offset", file, what, spoils)
     way = "later" if offset_s >= 0 else "earlier"
-    what = f"contacts from {detector} are shifted {1000.0 * abs(offset_s):.0f} ms {way}, {by}"
+    what = f"contacts from {detector} were shifted {1000.0 * abs(offset_s):.0f} ms {way} ({by})"
     return Finding("note", "contact offset", file, what, "")
 
 
@@ -217,9 +217,9 @@ def find_marker_names(markers: Recording) -> tuple[dict[str, str], list[str]]:
     pelvis = [name for name in PELVIS if name in there]
     if not all(heels.values()) or not pelvis:
         raise ChannelError(
-            f"contacts from markers need heels ({HEELS['r'][0]}, {HEELS['l'][0]}) and pelvis ({', '.join(PELVIS[:4])})",
-            f"{markers.source.file} has heels {[h for h in heels.values() if h]} and pelvis {pelvis}",
-            'Map your names to these in [channels], for example RightHeel = "RHEE".',
+            f"markers must include heels ({HEELS['r'][0]}, {HEELS['l'][0]}) and pelvis ({', '.join(PELVIS[:4])})",
+            f"{markers.source.file} has {', '.join(filter(None, (*heels.values(), *pelvis))) or 'none of these'}",
+            'Map your labels to these names in [channels], for example RightHeel = "RHEE".',
         )
     return heels, pelvis
 
@@ -251,7 +251,7 @@ def _findings(
     taken = seen[chosen]
     counts = ", ".join(f"{len(c) - 1} {side}" for side, c in sorted(taken.items()))
     note = next(iter(taken.values())).note
-    findings = [Finding("note", "detector", trial.name, f"contacts by {chosen}; strides: {counts}; {note}", "")]
+    findings = [Finding("note", "detector", trial.name, f"contacts from {chosen}; strides: {counts}; {note}", "")]
     for name, contacts in seen.items():
         if name == chosen:
             continue
@@ -264,17 +264,17 @@ def _findings(
             spoils = []
             beyond = agreement.median_ms + EARLY_MS.get(name, 0.0) - EARLY_MS.get(chosen, 0.0)
             if abs(beyond) > DISAGREEMENT_MS and name != reference:  # which the contacts were moved by
-                spoils.append(f"phase: these detectors disagree by {DISAGREEMENT_MS:g} ms more than usual")
+                spoils.append(f"phase: these detectors disagree by over {DISAGREEMENT_MS:g} ms more than usual")
             if apart.any():
                 those = "1 contact" if apart.sum() == 1 else f"{apart.sum()} contacts"
-                spoils.append(f"the strides of {those} ({DISAGREEMENT_MS:g} ms or more from the usual difference)")
+                spoils.append(f"the strides of {those} (over {DISAGREEMENT_MS:g} ms from the median difference)")
             if name not in refused and len(agreement.missed) + len(agreement.extra):
                 at = ", ".join(f"{time:.2f}" for time in sorted([*agreement.missed, *agreement.extra])[:5])
                 spoils.append(f"the strides at about {at} s: one detector finds a contact there, the other does not")
             severity = "warning" if spoils else "note"
             findings.append(Finding(severity, "detectors compared", trial.name, what, "; ".join(spoils)))
     for name, error in refused.items():
-        reason = str(error) if error else "it finds no strides of both feet"
+        reason = str(error) if error else "no strides of both feet were found"
         findings.append(Finding("note", "detector", trial.name, f"{name} is not used: {reason}", ""))
     return findings
 
@@ -286,6 +286,6 @@ def nothing_found(
     remedy = "Add the file that contains forces, markers or angles to the trial, or remove the trial."
     return StrideError(
         needed,
-        f"{trial.name} has {', '.join(trial.streams) or 'no stream'}; {'; '.join(reasons) or 'none of them serves'}",
+        f"{trial.name} has {', '.join(trial.streams) or 'no stream'}; {'; '.join(reasons) or 'none shows contacts'}",
         markers.remedy if isinstance(markers, ChannelError) else remedy,
     )

@@ -99,7 +99,7 @@ def _moment(trial: Trial, name: str, mass_kg: float | None, time: Values) -> Val
     unit = own.channels[0].unit
     if unit == "N m/kg" and mass_kg is None:
         raise UnitError(
-            "moments in N m need the person's body mass [kg]",
+            "to convert moments to N m, the person's body mass [kg] must be stated",
             f"{trial.name} has {name}_moment in N m/kg, but no mass is stated",
             "Write mass_kg of the participant in the study file.",
         )
@@ -141,8 +141,8 @@ def _envelopes(trial: Trial, study: Study, side: str, time: Values) -> tuple[Val
     own = own.selected([name for name in own.names if name not in lost])
     if not own.names:
         raise ChannelError(
-            f"a moment model driven by EMG needs usable EMG of side {side!r}",
-            f"{trial.name} has {', '.join(sorted(lost)) or 'none'}" + (" dead" if lost else ""),
+            f"a moment model driven by EMG must have usable EMG of side {side!r}",
+            f"{trial.name} has {'only dead channels: ' + ', '.join(sorted(lost)) if lost else 'none'}",
             "Name the muscles in [channels], or set side in [strides] to the leg with electrodes.",
         )
     smooth = [make_envelope(own.selected([name]), study.filters) for name in own.names]

@@ -20,7 +20,7 @@ from gaitdisc.kinetics.trial_kinetics import trial_kinetics
 from gaitdisc.processing.two_sources import MOVES_DEG, line_angles
 from gaitdisc.recording import Finding, Recording, Trial
 
-STAY = "step lengths and widths there; the file's own angles follow the correct labels and are kept; "
+STAY = "step lengths and widths there; the angles of the file follow the correct labels and are used; "
 STAY += "correct the labels"
 BELOW = {  # angles that hang on a segment where a model is built from the pelvis down, all of them on the pelvis
     "thigh": r"(hip|knee|ankle|foot)_\w+_{0}|{1}(Hip|Knee|Ankle|AbsAnkle|FootProgress)Angles?\.[xyz]",
@@ -56,12 +56,12 @@ def compute_trial(
     typical = {name: float(np.nanmedian(r)) for name, r in moved.residual_m.items() if np.isfinite(r).any()}
     worst = max(typical, key=lambda name: typical[name])
     median_mm, largest_mm = 1000.0 * float(np.median([*typical.values()])), 1000.0 * typical[worst]
-    what = f"markers are {median_mm:.1f} mm from their positions in the static trial, "
-    what += f"the median of {len(typical)} segments; the largest distance is {largest_mm:.1f} mm ({worst})"
+    what = f"the distance of the markers from their positions in the static trial is {median_mm:.1f} mm "
+    what += f"(median of {len(typical)} segments); the largest distance is {largest_mm:.1f} mm ({worst})"
     findings = [*trial.findings, *moved.findings, Finding("note", "residual", file, what, "")]
     steps = None
     if own:
-        what = f"{' and '.join(own)} of the file are replaced by those computed from its markers"
+        what = f"{' and '.join(own)} of the file were replaced by those computed from its markers"
         findings.append(Finding("note", "own model", file, what, ""))
     if person is not None and "forces" in trial.streams:
         try:

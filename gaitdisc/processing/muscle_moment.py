@@ -85,7 +85,7 @@ def drives(record: JointRecord) -> Driven:
     word, signs = JOINTS[record.joint], np.array([sign_at(record.joint, name) for name in record.muscles], float)
     if not signs.any():
         raise ChannelError(
-            f"identifying a device at the {word} needs EMG of a muscle that spans the {word}",
+            f"to identify a device at the {word}, the EMG must include a muscle that spans the {word}",
             f"{record.subject} {record.condition} has {', '.join(record.muscles)}",
             f"Choose another joint, such as --participant {record.subject}:ankle_angle, or name a muscle in "
             "[channels].",

@@ -35,8 +35,8 @@ FEW = 3  # cycles of a foot below which no spread is spoken of
 METHOD = (
     "Contacts come from the file's events, otherwise from force, markers (heel farthest in front of the pelvis, each "
     "step along its own direction) or joint angles, in this order. A detector is skipped if it finds fewer than 80 % "
-    "of the strides of another. If a plate or event records a step that markers or angles also find, the time of the "
-    "plate or event is used. All other contacts are shifted by the median difference of the person's session.",
+    "of the strides of another. If a plate recorded or an event marked a step that markers or angles also find, the "
+    "plate's or event's time is used. Other contacts are shifted by the median difference of the person's session.",
     "Foot off comes from events, otherwise from force (if markers agree within 0.15 s), from the toe farthest behind "
     "the pelvis, or from the ankle's largest plantarflexion. With angles only, contacts are about 30 ms early and foot "
     "off about 30 ms late, so stance is about 6 % of a stride too long.",
@@ -50,8 +50,8 @@ METHOD = (
 COMPUTED = (
     "Joint angles are computed from markers, calibrated with the person's static trial. “Findings” lists the marker "
     "set, the distance of the markers from their static positions, bridged gaps and the force balance. Moments and "
-    "powers of these trials are shown for cycles whose stance is a complete step of this foot alone, with centre of "
-    "pressure, heel and toes on the plate."
+    "powers of these trials are shown for cycles whose stance is a complete step of the channel's own foot, with "
+    "centre of pressure, heel and toes on the plate."
 )
 MOST_PANELS = 21
 

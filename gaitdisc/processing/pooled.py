@@ -124,9 +124,9 @@ def _read_trials(
             twin = prints.setdefault(whole.hexdigest(), planned)
             if twin is not planned:
                 raise StrideError(
-                    "a recording must be counted once, for one session and condition",
+                    "a recording must belong to only one session and condition",
                     f"its samples are identical to those of {participant.trial_name(twin)}",
-                    "Remove one of the two.",
+                    "Remove one of the two trials.",
                 )
             seen.append(_show_trial(standing, planned, number, trial, folder))
         except GaitdiscError as error:
@@ -216,7 +216,7 @@ def _pool(
     if late:
         by = "the difference at one step" if steps == 1 else f"the median difference at {steps} steps"
         by += " recorded by a plate or marked by an event"
-        findings.append(offset_finding(trials.where, late, offset_s, by, "phase and stance, by 3 to 5 % of the cycle"))
+        findings.append(offset_finding(trials.where, late, offset_s, by, "phase and stance by 3 to 5 % of the cycle"))
     refusals = [*lost, *([Refusal(participant.id, trials.where, too_few)] if too_few and (seen or not lost) else [])]
     return PooledCycles(
         subject=participant.id,
@@ -281,8 +281,9 @@ def _too_few(standing: Standing, trials: TrialSet, cut: Sequence[_CutTrial], out
     counts = ", ".join(f"{kept[side]} of side {side}" for side in "rl")
     have = "1 trial has" if len(trials.trials) == 1 else f"{len(trials.trials)} trials have"
     who = " ".join((standing.participant.id, trials.where))
+    where = "over ground" if outside else "on a treadmill"
     error = StrideError(
-        f"{who} needs {needed} cycles of a foot {'over ground' if outside else 'on a treadmill'}, pooled over trials",
+        f"{who}: the number of cycles of a foot {where}, pooled over trials, must be at least {needed}",
         f"{have} {counts}{first}{''.join(causes[:1])}",
         f"{'Correct the labels, add' if causes else 'Add'} trials, or lower {key} in [quality].",
     )

@@ -104,7 +104,7 @@ def processed(trial: Trial, study: Study, body_weight_n: float | None = None) ->
     side = study.strides.side
     if side not in choice.contacts:
         raise StrideError(
-            f"percent stride of side {side!r} needs contacts of this side",
+            f"percent stride of side {side!r} must have contacts of this side",
             f"{trial.name}: {choice.detector} finds contacts of side {', '.join(choice.contacts)} only",
             "Change side in [strides].",
         )
@@ -167,8 +167,8 @@ def _require(trial: Trial, key: str, names: Sequence[str]) -> Recording:
         nearest = nearest_word(missing[0], recording.names)
         excluded = "".join(f"; excluded: {finding.what}" for finding in trial.findings if finding.kind == CONTRADICTED)
         raise ChannelError(
-            f"the models need {', '.join(missing)}",
-            f"{recording.source.file or trial.name} has {len(recording.names)} channels, none of this name"
+            "the channels named in [models] must be in the trial",
+            f"{recording.source.file or trial.name} has {len(recording.names)} channels, but not {', '.join(missing)}"
             + (excluded or (f"; the nearest is {nearest!r}" if nearest else "")),
             ("Correct the file" if excluded else "Map the file's own label in [channels]")
             + ", or remove the name from [models].",
@@ -192,7 +192,7 @@ def _state(trial: Trial, raw: Recording, study: Study) -> Recording:
     dead = [finding for finding in emg_findings(emg) if finding.severity == "refused"] if is_raw(emg) else []
     if dead:
         raise ChannelError(
-            f"the models need usable EMG of {', '.join(f.channel for f in dead)}",
+            f"the models must have usable EMG of {', '.join(f.channel for f in dead)}",
             f"{emg.source.file or trial.name}: " + "; ".join(f"{f.channel} is {f.kind}: {f.what}" for f in dead),
             "Remove the muscle from [models], or remove the trial.",
         )
@@ -324,7 +324,7 @@ class ReadWalk:
         """Filtered walk, cut into strides, under the settings of a study."""
         if self.without_angles:
             raise ChannelError(
-                "models need joint angles, from the files or computed from markers and a static trial",
+                "models must have joint angles, from the files or computed from markers and a static trial",
                 f"{self.trial.name} has markers but no angles: {self.without_angles}",
                 'Add the standing trial with condition = "static", or the file with the angles.',
             )

@@ -27,7 +27,7 @@ def gait_samples(trajectory: Trajectory, outputs: Sequence[str]) -> tuple[Sample
     named = walk or "the trajectory"
     if not outputs:
         raise ChannelError(
-            "a response must predict at least one channel", f"none is named for {named}", "Name them in outputs."
+            "a response must predict at least one channel", f"none is named for {named}", "Name one in outputs."
         )
     if absent := [name for name in outputs if name not in trajectory.names]:
         raise ChannelError(
@@ -53,6 +53,6 @@ def gait_samples(trajectory: Trajectory, outputs: Sequence[str]) -> tuple[Sample
     worst = sorted((-int(count), place) for place, count in enumerate(bad) if count)
     reasons += [f"{-count} of {trajectory.names[place]} not usable" for count, place in worst[:3]]
     reasons += [f"and {len(worst) - 3} more channels"] if len(worst) > 3 else []
-    what = f"{lost} of {len(rows)} samples are excluded" + (": " + ", ".join(reasons) if reasons else "")
-    spoils = "a fifth or more of the walk; check the channels that are named" if lost >= 0.2 * len(rows) else ""
+    what = f"excluded samples: {lost} of {len(rows)}" + (f" ({', '.join(reasons)})" if reasons else "")
+    spoils = "a fifth or more of the walk; check the channels named here" if lost >= 0.2 * len(rows) else ""
     return samples, Finding("warning" if spoils else "note", "samples left away", walk, what, spoils)

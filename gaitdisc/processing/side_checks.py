@@ -62,7 +62,7 @@ def _feet_on_plates(trial: Trial) -> tuple[dict[str, FootPath], list[Platform], 
     heels, pelvis = find_marker_names(markers)
     if toes is None or "forces" not in trial.streams:
         raise ChannelError(
-            "a comparison of plates with the feet needs toe markers and forces",
+            "a comparison of plates with the feet must have toe markers and forces",
             f"{trial.name} lacks toe markers or forces",
             "Name the markers in [channels].",
         )
@@ -119,10 +119,10 @@ def check_weight(weighed_n: float | None, mass_kg: float | None, file: str) -> l
     off = abs(weighed_n / (mass_kg * GRAVITY) - 1) if weighed_n and mass_kg else 0.0
     if weighed_n is None or off <= NOTED:
         return []
-    what = f"the force plates show {weighed_n / GRAVITY:.1f} kg in the static trial, but {mass_kg:.1f} kg are stated"
+    what = f"the plates show {weighed_n / GRAVITY:.1f} kg in the static trial, but the stated mass is {mass_kg:.1f} kg"
     if off > WRONG:
         needed = f"for moments per kg, body mass and force plates must agree within {100 * WRONG:.0f} %"
-        raise UnitError(needed, what, "Weigh the person again: correct the mass, or the gain of the plates.")
+        raise UnitError(needed, what, "Weigh the person again. Correct the mass, or the gain of the plates.")
     return [Finding("warning", "body weight", file, what, f"moments and powers, by {100 * off:.0f} %; weigh again")]
 
 

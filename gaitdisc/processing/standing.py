@@ -142,7 +142,7 @@ class Standing:
         if self.markers is not None:
             return (*person_findings(self.markers, markers, trial.name), *units)
         severity = "note" if with_angles else "warning"
-        spoils = "angles from markers" + ("; those of the file are used" if with_angles else "")
+        spoils = "angles from markers" + ("; the angles of the file are used" if with_angles else "")
         return (Finding(severity, "static trial", trial.name, self.unread, spoils), *units)
 
     def _unit_findings(self, trial: Trial) -> list[Finding]:

@@ -115,7 +115,7 @@ def step_events(
     if chosen == "events":
         for side, at in find_exchanged_contacts(seen["events"], seen.get("markers", {})).items():
             what = f"the heel of side {side} lands at {', '.join(f'{time:.2f}' for time in at[:5])} s, when the "
-            what += "file's events have the other foot: the heels seem to be exchanged; the events are used"
+            what += "file's events mark the other foot: the heels seem to be exchanged; the events are used"
             spoils = "step lengths and widths, which are excluded for this trial; correct the labels of the heels"
             findings.append(Finding("warning", "exchanged heels", trial.name, what, spoils))
     contacts = {side: one.time for side, one in seen[chosen].items()}
@@ -152,7 +152,7 @@ def walking_part(trial: Trial) -> Trial:
     cut += [f"{end:.1f} to {time[-1]:.1f} s"] if np.isfinite(end) else []
     if not cut:
         return trial
-    what = f"no walking from {' and from '.join(cut)} (standing, or turning on the spot); this part is cut out"
+    what = f"no walking from {' and from '.join(cut)} (standing, or turning on the spot); this part was cut out"
     said = Finding("note", "standing", trial.name, what, "")
     streams = {key: part for key, one in trial.streams.items() if len((part := one.between(start, end)).time) > 1}
     events = tuple(event for event in trial.events if start <= event.time < end)

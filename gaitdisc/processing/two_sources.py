@@ -141,7 +141,7 @@ def _against_markers(angles: Recording, markers: Recording) -> Contradictions:
         moved, r = (_range(own), _range(line)), _correlation(own, line)
         what = f"{name} varies by {moved[0]:.3g} deg, the lines between its markers by {moved[1]:.3g} deg (r = {r:.2f})"
         if moved[1] >= MOVES_DEG and r < -AGAINST:
-            yield [name], f"{what}: its sign is reversed, or two of the markers are exchanged"
+            yield [name], f"{what}: its sign is wrong, or two of the markers are exchanged"
         elif (
             moved[1] >= MOVES_DEG
             and r > ALIKE
@@ -157,7 +157,7 @@ def _against_markers(angles: Recording, markers: Recording) -> Contradictions:
         if min(apart) > OFFSET_DEG or max(apart) < -OFFSET_DEG:
             far, near = sorted(both, key=lambda name: -abs(both[name].mean() - usual))
             what = f"{far} is {both[far].mean():+.0f} deg from the lines between its markers"
-            yield [far], f"{what}, {near} {both[near].mean():+.0f} deg: an offset that the markers do not show"
+            yield [far], f"{what}, and {near} {both[near].mean():+.0f} deg: an offset that the markers do not show"
 
 
 def _find_turned_hips(angles: Recording) -> Contradictions:
@@ -171,10 +171,10 @@ def _find_turned_hips(angles: Recording) -> Contradictions:
     if together > AGAINST and together - _correlation(*knees) > AGAINST:
         name = names[int(np.argmin(swings))]
         what = f"{name} flexes with the other hip (r = {together:.2f}), unlike the knees, and extends while its knee"
-        yield [name], f"{what} swings: its sign is reversed"
+        yield [name], f"{what} swings: its sign is wrong"
     elif together < -AGAINST and max(swings) < -AGAINST and max(np.nanmean(right), np.nanmean(left)) < 0:
         what = f"both hips extend while their knees swing (r = {max(swings):.2f})"
-        yield names[:2], f"{what}, and are extended on average: their sign is reversed"
+        yield names[:2], f"{what}, and are extended on average: their sign is wrong"
 
 
 def _moment_sizes(moments: Recording) -> Contradictions:
@@ -184,7 +184,7 @@ def _moment_sizes(moments: Recording) -> Contradictions:
     most = sorted(peaks, key=lambda name: -peaks[name])[:2][-1:]  # the second: the largest may be the wrong one
     if not most or not peaks[most[0]]:
         return
-    usual, unit, why = peaks[most[0]], units[most[0]], "it has another unit, such as N mm instead of N m"
+    usual, unit, why = peaks[most[0]], units[most[0]], "the unit is wrong, such as N mm instead of N m"
     if usual < LEAST_MOMENT[unit]:
         least = f"{LEAST_MOMENT[unit]:g} {unit}"
         yield list(peaks), f"moments of the legs reach {usual:.2g} {unit}, but standing takes at least {least}: {why}"
@@ -192,7 +192,7 @@ def _moment_sizes(moments: Recording) -> Contradictions:
     for name, peak in peaks.items() if walks and usual >= LEAST_MOMENT[unit] else ():
         share = LEAST_SHARE if _FLEXION.fullmatch(name) else LEAST_SHARE_OTHER
         if 1e-3 * share < peak / usual < share or peak / usual > 1 / share:
-            yield [name], f"{name} reaches {peak:.2g} {unit}, {most[0]} {usual:.3g} {unit}: {why}"
+            yield [name], f"{name} reaches {peak:.2g} {unit}, but {most[0]} reaches {usual:.3g} {unit}: {why}"
 
 
 def _powers(moments: Recording, angles: Recording) -> Contradictions:
@@ -212,9 +212,9 @@ def _powers(moments: Recording, angles: Recording) -> Contradictions:
         slope = float(given @ made / (made @ made))
         r = slope * float(np.sqrt((made @ made) / (given @ given)))
         if r < -AGAINST or (r > ALIKE and not 1 / POWER_SCALE <= slope <= POWER_SCALE):
-            what = f"{power} must equal {moment} times the rate of {angle}, but is {slope:.3g} times that (r = {r:.2f})"
+            what = f"{power} must equal {moment} times the rate of {angle}, but is {slope:.3g} times this (r = {r:.2f})"
             names = [name for name in units if re.fullmatch(rf"{joint}_\w+_{side}_moment|{power}", name)]
-            yield names, f"{what}: the sign or unit of one of them is wrong"
+            yield names, f"{what}: the sign or unit of one of the three is wrong"
 
 
 def _find_turned_moments(moments: Recording, source: Recording) -> Contradictions:
@@ -226,8 +226,8 @@ def _find_turned_moments(moments: Recording, source: Recording) -> Contradiction
         own = np.where(moments[moment] == 0, np.nan, moments[moment])
         r = _correlation(own, other)
         if r > AGAINST and _range(other) >= MOVES_DEG and (beside.startswith("hip") or np.nanmean(own) > 0):
-            what = f"{moment} correlates with {beside} (r = {r:.2f}), which it opposes in walking"
-            yield [moment], f"{what}: its sign is reversed"
+            what = f"{moment} correlates with {beside} (r = {r:.2f}), although the two oppose each other in walking"
+            yield [moment], f"{what}: its sign is wrong"
 
 
 def _range(values: Values) -> float:

@@ -102,8 +102,7 @@ def _common_contacts(trials: list[Trial], detector: str) -> tuple[str, list[Mapp
         if all(serves) and min(most) and (sides := found[0][name].keys() & found[1][name].keys()):
             return name, [{side: here[name][side] for side in sides} for here in found]
     raise StrideError(
-        "two walks can be compared over strides that the same detector finds in both: force, events, markers or hip "
-        "angles",
+        "the same detector must find strides in both walks: force, events, markers or hip angles",
         ". ".join(reasons),
         "Use two walks with hip flexion, with forces or with markers.",
     )
@@ -117,7 +116,7 @@ def _contacts(trial: Trial, name: str, joints: Recording | None) -> Mapping[str,
     if joints is None:
         raise StrideError(
             "both recordings must have hip flexion of the same side if contacts come from angles",
-            "they have no hip angle in common",
+            "the walks have no hip angle in common",
             "Map the columns in the study's [channels].",
         )
     sides = tuple(channel.side for channel in joints.channels if channel.name.startswith("hip_flexion"))
@@ -205,7 +204,7 @@ def repeat_stride(trial: Trial) -> Trial:
     left = sorted(set(trial.streams) - set(kept))
     what = f"one stride of {count / kinematics.rate_hz:.3f} s that ends as it began, repeated {TIMES} times"
     if left:
-        what += f"; {', '.join(left)} excluded, because the time base differs"
+        what += f"; excluded because of a different time base: {', '.join(left)}"
     spread = "the spread over strides, which a single stride does not have"
     note = Finding("note", "one stride", kinematics.source.file or trial.name, what, spread)
     return replace(trial, streams=kept, events=(), findings=(*trial.findings, note))
@@ -226,7 +225,7 @@ def _period(kinematics: Recording, name: str) -> int:
     apart = np.abs(x[-1] - x[0])[moving] / reach[moving]
     if np.median(apart) > CLOSES:
         worst = int(np.flatnonzero(moving)[np.argmax(apart)])
-        found = f"in {name}, {angles.names[worst]} ends {abs(x[-1, worst] - x[0, worst]):.1f} deg from its start"
+        found = f"in {name}, {angles.names[worst]} ends {abs(x[-1, worst] - x[0, worst]):.1f} deg from where it began"
         raise StrideError(needed, found, "Use a complete stride (two steps), or a walk of several strides.")
     step = np.abs(np.diff(x, axis=0)).mean(axis=0)[moving] / reach[moving]
     beside = np.abs(x[1] - x[-1])[moving] / reach[moving]

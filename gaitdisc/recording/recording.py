@@ -207,7 +207,7 @@ class Recording:
         """
         if not isinstance(name, str):
             raise ChannelError(
-                "a channel is selected by its name",
+                "a channel must be selected by its name",
                 f"found {type(name).__name__} {str(name)[:60]}",
                 "Use the channel's name. For several channels use recording.selected([...]); for a period of time "
                 "use recording.between(...).",

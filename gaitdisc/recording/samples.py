@@ -172,7 +172,7 @@ class Samples:
         who = self.subject or "the recording"
         if len(self) < least:
             raise TrainingError(
-                f"a fit of {len(self.inputs)} inputs to {len(self.outputs)} outputs needs at least {least} samples",
+                f"a fit of {len(self.inputs)} inputs to {len(self.outputs)} outputs must have at least {least} samples",
                 f"{who} has {len(self)} usable samples",
                 "Record longer, or use fewer channels. The findings say which samples were excluded.",
             )
@@ -183,7 +183,7 @@ class Samples:
                 raise TrainingError(
                     "all samples of a fit must be finite",
                     f"{who}: {names[column]} has {int(bad[:, column].sum())} missing or infinite samples of "
-                    f"{len(self)}, the first at {self.time[row]:.3f} s",
+                    f"{len(self)} (first: {self.time[row]:.3f} s)",
                     "Mark these samples as not usable; the fit then excludes them.",
                 )
         still = fit_scale(self.y).constant

@@ -148,8 +148,8 @@ class Strides:
                 table = table.reset_index()
             if "time" not in getattr(table, "columns", ()):
                 raise ShapeError(
-                    "strides can be cut from a Recording, or from a DataFrame with times [s] in a column 'time'",
-                    f"found {type(table).__name__}" + (" without it" if hasattr(table, "columns") else ""),
+                    "strides must be cut from a Recording, or from a DataFrame with times [s] in a column 'time'",
+                    f"found {type(table).__name__}" + (" without this column" if hasattr(table, "columns") else ""),
                     "Give one stream of a trial, for instance trial.stream('kinematics'), or rename the column of "
                     "times to 'time'.",
                 )

@@ -275,7 +275,7 @@ class Trial:
         if count < 2:
             raise SamplingError(
                 f"trial {self.name}: streams on one time base must overlap in time",
-                f"the last stream begins at {start:.3f} s, the first one ends at {end:.3f} s",
+                f"the last stream begins at {start:.3f} s, and the first one ends at {end:.3f} s",
                 "Check that the files belong to the same trial and clock.",
             )
         time = start + np.arange(count) / rate_hz

@@ -27,7 +27,7 @@ class Part(NamedTuple):
 
 
 PARTS = (
-    Part(3, "tables", "ch3_tables", "all tables of 3.4, from the included results", 0.1, 0.1,
+    Part(3, "tables", "ch3_tables", "all tables of 3.4, from the results that are included", 0.1, 0.1,
          words=("all",), quick_words=("all",)),
     Part(3, "van_der_pol", "ch3_systems", "3.4.1, Figs. 3.2-3.5, 3.11", 20, 0.7,
          words=("van_der_pol", OUT), needs=METHODS),
@@ -35,14 +35,14 @@ PARTS = (
     Part(3, "burgers", "ch3_burgers", "3.4.3, Fig. 3.12", 60, 0.3, needs=METHODS),
     Part(3, "measurement_bias", "ch3_systems", "3.4.4, Fig. 3.13", 8, 0.2,
          words=("measurement_bias", OUT), needs=METHODS),
-    Part(3, "who_names", "ch3_who_names", "which method names the effect, 3.4 and 3.5", 30, 0.3, needs=METHODS),
-    Part(3, "seeds", "ch3_seeds", "results of `tables` again, for every set, start and seed", 120, 0.3, needs=METHODS),
-    Part(3, "further", "ch3_further", "methods, noise, starts and trajectories that 3.4 and 3.5 also mention", 40, 0.5,
+    Part(3, "who_names", "ch3_who_names", "which method names the effect (3.4 and 3.5)", 30, 0.3, needs=METHODS),
+    Part(3, "seeds", "ch3_seeds", "results of `tables` again, for each set, start and seed", 120, 0.3, needs=METHODS),
+    Part(3, "further", "ch3_further", "further methods, noise, starts and trajectories of 3.4 and 3.5", 40, 0.5,
          quick_words=(OUT, "--seeds", "1", "--tables", "variance"), needs=METHODS),
     Part(4, "ankle_exo", "ch4_ankle_exo", "the entire chapter, Figs. 4.2-4.4", 9, 0.7),
-    Part(4, "bands", "ch4_further", "4.4, 6.2.2: bands, sparse terms, a search, a smooth curve, on runners", 4, 0.7,
+    Part(4, "bands", "ch4_further", "4.4, 6.2.2: bands, sparse terms, search, smooth curve (runners)", 4, 0.7,
          words=(OUT, "--tables", "band", "people", "terms", "search", "curve"), data="gait/exotendon_run"),
-    Part(4, "outcomes", "ch4_further", "6.2.2: joint moments and metabolic power as outcomes, real people", 0.1, 0.1,
+    Part(4, "outcomes", "ch4_further", "6.2.2: joint moments and metabolic power of real people as outcomes", 0.1, 0.1,
          words=(OUT, "--tables", "moments", "energy"), data="gait/ankle_exo_emg_grf"),
     Part(5, "gait_individual", "ch5_gait", "5.3.3, upper Table 5.2, Fig. 5.4", 60, 0.3, words=("individual", OUT)),
     Part(5, "gait_population", "ch5_gait", "5.3.3, lower Table 5.2, Fig. 5.5", 90, 0.7, words=("population", OUT)),

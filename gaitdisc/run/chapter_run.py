@@ -36,14 +36,14 @@ class Made(NamedTuple):
 
 def find_lack(part: Part, data: Path | None) -> SchemaError | None:
     """The refusal of a part that cannot be computed on this machine; None where it can."""
-    needs = f"{part.name} of chapter {part.chapter} needs"
+    needs = f"part {part.name} of chapter {part.chapter} must have"
     libraries = [name for name in part.needs if find_spec(name) is None]
     if libraries:
         words = " and ".join(libraries)
-        return SchemaError(f"{needs} {words}", "it is not installed", "Run: pip install 'gaitdisc[chapter3]'.")
+        return SchemaError(f"{needs} {words}", "not installed", "Run: pip install 'gaitdisc[chapter3]'.")
     folder = _data_folder(data)
     if part.data and not (folder / part.data).is_dir():
-        do = "Name the folder that contains it with --data or GAITDISC_DATA."
+        do = "Name the folder of the data with --data or GAITDISC_DATA."
         return SchemaError(f"{needs} the data of {part.data}", f"{folder} has no such folder", do)
     return None
 
@@ -122,7 +122,7 @@ def _study(part: Part, folder: Path, quick: bool, data: Path | None, ticked: Cal
         raise TrainingError(
             f"part {part.name} of chapter {part.chapter} cannot be computed",
             f"its study ended with {lines[-1] if lines else f'exit code {process.returncode}'}",
-            f"Its complete output is in {said}.",
+            f"Read its complete output in {said}.",
         )
     said.unlink()
     return text

@@ -125,7 +125,7 @@ def list_citations(folder: Path) -> list[Cited]:
             raise SchemaError(
                 f"the part of a chapter must be one of {', '.join(OF_PARTS)}",
                 f"{folder.name}/{CHAPTER} names {str(part)[:40]!r}",
-                "Another version of gaitdisc wrote it. Cite with that version.",
+                "Another version of gaitdisc wrote this folder. Cite with that version.",
             )
         used = {"this program", *OF_PARTS[part]}
     else:

@@ -128,9 +128,9 @@ def _cluster(address: str) -> Iterator[None]:
         client = Client(address, timeout=CONNECT_S)
     except (OSError, ValueError) as error:
         raise ClusterError(
-            "a cluster needs a Dask scheduler that responds",
+            "a cluster must have a Dask scheduler that responds",
             f"{address}: {str(error)[:200] or type(error).__name__}",
-            "Start one with `dask scheduler`, correct the address, or omit --cluster.",
+            "Start a scheduler with `dask scheduler`, correct the address, or omit --cluster.",
         ) from error
     try:
         with parallel_config(backend="dask"):
@@ -203,11 +203,11 @@ def _begun(
 def _reason(error: BaseException, jobs: int) -> str:
     signals = re.search(r"\{(\w+)", str(error))
     what = "ran out of memory" if isinstance(error, MemoryError) else f"was killed ({signals[1] if signals else '?'})"
-    fewer = f"run the command with --jobs {jobs - 1}, or on" if jobs > 1 else "use"
+    fewer = f"Run the command with --jobs {jobs - 1}, or on" if jobs > 1 else "Use"
     memory = "an unknown amount"
     with suppress(AttributeError, OSError, ValueError):
         memory = f"{os.sysconf('SC_PAGE_SIZE') * os.sysconf('SC_PHYS_PAGES') / 2**30:.0f} GiB"
     return (
         f"The process of a participant {what} {TRIES} times, probably because memory is short (this machine has "
-        f"{memory}). Results of the other participants are kept; {fewer} a machine with more memory."
+        f"{memory}). Results of the other participants are kept. {fewer} a machine with more memory."
     )

@@ -81,7 +81,7 @@ def short_run_findings(
             short[start:end] = end - start < need
         if short.any():
             segments, least_s = counted(len(runs(short)), "segment"), need / recording.rate_hz
-            what = f"{segments} between gaps shorter than {need} samples ({least_s:.3f} s)"
+            what = f"{segments} between gaps, each shorter than {need} samples ({least_s:.3f} s)"
             spoils = f"these segments, which are excluded: a filter of {cutoff_hz:g} Hz requires {need} samples"
             spans = spans_s(recording.time, short)
             findings.append(Finding("warning", "short run", file, what, spoils, channel=channel.name, spans=spans))
@@ -100,7 +100,7 @@ def _filter(recording: Recording, cutoff_hz: float, order: int, kind: str, max_g
     need = count_needed(cutoff_hz, rate, order) if cutoff_hz > 0 and rate > 0 else 2
     if len(recording.time) < need:
         raise SamplingError(
-            f"a {kind} filter of {cutoff_hz:g} Hz needs at least {need} samples",
+            f"for a {kind} filter of {cutoff_hz:g} Hz, there must be at least {need} samples",
             f"{file} has {len(recording.time)}",
             "Record longer, or choose a higher cut-off.",
         )

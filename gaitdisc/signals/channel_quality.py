@@ -148,7 +148,7 @@ def drift_findings(forces: Recording) -> list[Finding]:
         baseline = swing_baseline(forces[channel.name], forces.rate_hz)
         if len(baseline) < FEWEST_SWINGS:
             if len(baseline):
-                what = f"only {len(baseline)} unloaded phases between steps; the drift test requires {FEWEST_SWINGS}"
+                what = f"only {counted(len(baseline), 'unloaded phase')} between steps; the test needs {FEWEST_SWINGS}"
                 findings.append(Finding("note", "force drift", forces.source.file, what, "", channel.name))
             continue
         time = forces.time[0] + baseline[:, 0] / forces.rate_hz

@@ -57,7 +57,7 @@ def marker_contacts(
             raise StrideError(
                 f"heel marker {heel} must swing by at least 0.1 m relative to the pelvis to show contacts",
                 f"{markers.source.file or 'the recording'}: it swings by {swing:.3f} m along the direction of walking",
-                "Check the direction, the marker's name and whether the trial is walking.",
+                "Check the direction, the marker's name and whether the trial is a walk.",
             )
         step = mean_step(markers.time)
         known = np.where(np.isfinite(ahead), ahead, -np.inf)
@@ -119,7 +119,7 @@ def angle_contacts(kinematics: Recording, sides: tuple[str, ...] = ("r", "l")) -
         name = f"hip_flexion_{side}"
         if name not in kinematics.names:
             raise ChannelError(
-                "contacts from angles need hip flexion",
+                "contacts from angles must have hip flexion",
                 f"{kinematics.source.file or 'the recording'} has {len(kinematics.names)} channels, but not {name!r}",
                 "Map the column in the study's [channels], or choose another detector.",
             )
@@ -143,10 +143,10 @@ def _cycles(kinematics: Recording, name: str) -> tuple[Values, float]:
     reach = float(np.subtract(*np.percentile(known, [95, 5]))) if len(known) else 0.0
     if not np.isfinite(period) or reach < FEWEST_HIP_DEG:
         raise StrideError(
-            f"strides from angles need a hip that swings by at least {FEWEST_HIP_DEG:g} deg and repeats",
-            f"{hip.source.file or 'the recording'}, {name}: the range is {reach:.1f} deg, the regularity "
+            f"for strides from angles, the hip must swing by at least {FEWEST_HIP_DEG:g} deg and repeat its motion",
+            f"{hip.source.file or 'the recording'}, {name}: the range is {reach:.1f} deg, and the regularity is "
             f"{regularity:.2f} in {hip.duration_s:.1f} s",
-            "Check whether the trial is walking and whether the angle is in deg.",
+            "Check whether the trial is a walk and whether the angle is in deg.",
         )
     slow = low_pass(hip, CYCLE_CUTOFF / period).values[:, 0]
     slow_reach = float(np.subtract(*np.nanpercentile(slow, [95, 5])))

@@ -13,6 +13,7 @@ from gaitdisc.errors import ChannelError, StrideError
 from gaitdisc.recording import Finding, Recording, Trial
 from gaitdisc.recording.arrays import Span, Values, finite_values, freeze, runs
 from gaitdisc.signals.direction import Direction, marker_position, pelvis_position
+from gaitdisc.words import counted
 
 DETECTORS = ("force", "markers", "angles", "events", "oscillator")
 MATCH_S = 0.25
@@ -66,7 +67,7 @@ class Contacts:
             raise StrideError(
                 "contacts must have side 'r' or 'l' and a known detector",
                 f"the side is {self.side!r}, the detector {self.detector!r}",
-                f"The detectors are {', '.join(DETECTORS)}.",
+                f"Give a side, and one of the detectors {', '.join(DETECTORS)}.",
             )
         if time.ndim != 1 or np.any(np.diff(time) <= 0) or not np.isfinite(time).all():
             raise StrideError(
@@ -151,7 +152,7 @@ class Agreement:
     def line(self) -> str:
         """Return the comparison as one line of text."""
         return (
-            f"{len(self.difference_s)} pairs, second minus first {self.median_ms:+.0f} ms (median), "
+            f"{counted(len(self.difference_s), 'pair')}, second minus first {self.median_ms:+.0f} ms (median), "
             f"{self.iqr_ms:.0f} ms (interquartile range); {len(self.missed)} missed, {len(self.extra)} extra"
         )
 
@@ -164,7 +165,7 @@ def order_findings(right: Contacts, left: Contacts, file: str = "") -> list[Find
 
     >>> r = Contacts(np.array([0.0, 1.0, 2.0, 3.0]), "r", "force")
     >>> print(order_findings(r, Contacts(np.array([0.5, 2.5]), "l", "force"))[0].what)
-    1 of 3 strides of side r do not contain exactly one contact of side l: at 1.00 s
+    strides of side r without exactly one contact of side l: 1 of 3 (at 1.00 s)
     """
     findings = []
     for one, other in ((right, left), (left, right)):
@@ -176,10 +177,8 @@ def order_findings(right: Contacts, left: Contacts, file: str = "") -> list[Find
                 wrong.append(Span(float(start), float(end)))
         if wrong:
             at = ", ".join(f"{start:.2f}" for start, _ in wrong[:5]) + (" ..." if len(wrong) > 5 else "")
-            what = (
-                f"{len(wrong)} of {len(one) - 1} strides of side {one.side} do not contain exactly one contact of side "
-                f"{other.side}: at {at} s"
-            )
+            what = f"strides of side {one.side} without exactly one contact of side {other.side}: "
+            what += f"{len(wrong)} of {len(one) - 1} (at {at} s)"
             spoils = "these strides: a contact was missed, or a foot stepped on the other plate or belt"
             findings.append(Finding("warning", "crossover", file, what, spoils, spans=tuple(wrong)))
     return findings
@@ -198,11 +197,11 @@ def event_contacts(trial: Trial) -> dict[str, Contacts]:
     """
     contacts = [event for event in trial.events if event.label == CONTACT]
     if not any(event.side in ("r", "l") for event in contacts):
-        seen = f"{len(contacts)} of them, without a side" if contacts else f"none among {len(trial.events)} events"
+        seen = f"{counted(len(contacts), 'contact')} of no side" if contacts else f"none in {len(trial.events)} events"
         raise StrideError(
             "events must name the foot of each initial contact",
             f"{trial.name} has {seen}",
-            "Label them in the motion capture software, or choose another detector in [strides].",
+            "Label the contacts in the motion capture software, or choose another detector in [strides].",
         )
     found = {}
     for side in ("r", "l"):
@@ -210,7 +209,7 @@ def event_contacts(trial: Trial) -> dict[str, Contacts]:
         offs = np.unique([event.time for event in trial.events if event.label == OFF and event.side == side])
         lost = sum(event.side == "" for event in contacts)
         if len(times):
-            note = "events of the file" + (f"; {lost} contacts without a side are excluded" if lost else "")
+            note = "events of the file" + (f"; excluded: {counted(lost, 'contact')} without a side" if lost else "")
             found[side] = Contacts(times, side, "events", offs, note)
     return found
 
@@ -265,9 +264,9 @@ def force_contacts(forces: Recording, body_weight_n: float | None = None) -> dic
     sides = {c.name: c.side for c in forces.channels if c.quantity == "vertical_force" and c.side}
     if not sides:
         raise ChannelError(
-            "contacts from force need a vertical force for each foot",
+            "contacts from force must have a vertical force for each foot",
             f"{forces.source.file or 'the recording'} has {', '.join(forces.names) or 'no channel'}",
-            "Assign a foot to each plate or belt in [strides], or provide markers, from which it can be determined.",
+            "Name the foot of each plate or belt in [channels], or add markers, which show the foot.",
         )
     found = {}
     for side in sorted(set(sides.values())):
@@ -312,7 +311,7 @@ def plate_contacts(
                 raise StrideError(
                     "both heel markers must be visible at contact to identify the foot on a plate",
                     f"{forces.source.file}, {channel.name}: a heel marker is missing at the contact at {time:.3f} s",
-                    "Fill the gap in the marker, or assign a foot to each plate.",
+                    "Fill the gap in the marker, or choose another detector in [strides].",
                 )
             side = max(place, key=lambda key: place[key])
             times[side].append(float(time))

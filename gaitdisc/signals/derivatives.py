@@ -39,7 +39,7 @@ def derivative(values: Values, rate_hz: float, order: int = 1) -> Values:
         raise SamplingError("the order of a derivative must be 1 or 2", f"order is {order}", "Use order=1 or order=2.")
     if len(values) < len(FIRST):
         raise SamplingError(
-            f"a derivative needs at least {len(FIRST)} samples", f"found {len(values)}", "Use a longer period."
+            f"a derivative must have at least {len(FIRST)} samples", f"found {len(values)}", "Use a longer period."
         )
     weights = FIRST if order == 1 else SECOND
     count = len(values) - 2 * REACH

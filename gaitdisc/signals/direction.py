@@ -73,7 +73,7 @@ def walking_direction(markers: Recording, heels: Mapping[str, str], pelvis: Sequ
     swings = [marker_position(markers, name) - centre for name in heels.values()]
     if not np.isfinite(np.concatenate(swings)).all(axis=1).any():
         raise StrideError(
-            "the direction of walking needs a frame with a heel and the pelvis",
+            "for the direction of walking, a frame must have a heel and the pelvis",
             f"{markers.source.file or 'the recording'}: no frame has {', '.join(heels.values())} and "
             f"{', '.join(pelvis)}",
             "Fill the gaps in the markers, or choose another detector in [strides].",
@@ -121,7 +121,7 @@ def _from_swings(swings: Sequence[Values], up: Values, level: list[int], file: s
         raise StrideError(
             f"the heels must move fastest in the direction of walking, with a skewness of at least {FEWEST_SKEW:g}",
             f"in {file or 'the recording'} the skewness is {skew:+.2f}",
-            "Give the direction of walking in the study's [strides].",
+            "Write the direction of walking in the study's [treadmill].",
         )
     forward = np.zeros(3)
     forward[level] = line * np.sign(skew)
@@ -145,6 +145,6 @@ def state_direction(forward: Sequence[float], up: Sequence[float] = (0.0, 0.0, 1
         raise StrideError(
             "the forward and upward directions must be perpendicular and not zero",
             f"forward is {tuple(forward)}, up is {tuple(up)}",
-            "Correct the directions in the study's [strides].",
+            "Correct the two directions.",
         )
     return Direction(along / lengths[0] + 0.0, above / lengths[1] + 0.0, "given")

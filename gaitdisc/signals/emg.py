@@ -60,9 +60,9 @@ def envelopes(
             )
     if emg.rate_hz <= 2 * highpass_hz:
         raise SamplingError(
-            f"an EMG high-pass of {highpass_hz:g} Hz needs a rate above {2 * highpass_hz:g} samples per second",
+            f"for an EMG high-pass of {highpass_hz:g} Hz, the rate must exceed {2 * highpass_hz:g} samples per second",
             f"{file} has {emg.rate_hz:g}",
-            "Export the raw EMG at its full rate (usually 1000 Hz). If it is an envelope already, state this in [emg].",
+            "Export the raw EMG at its full rate (usually 1000 Hz). If this EMG is an envelope, apply a low-pass only.",
         )
     for column, channel in enumerate(emg.channels):
         x = finite_values(emg.values[:, column])
@@ -70,8 +70,8 @@ def envelopes(
             raise SamplingError(
                 "raw EMG must oscillate about zero",
                 f"{file}, {channel.name}: all {len(x)} samples lie between {x.min():.3g} and {x.max():.3g} "
-                f"{channel.unit}, none below zero",
-                "The signal is rectified or an envelope. State this in [emg], or export the raw signal.",
+                f"{channel.unit}, and none is below zero",
+                "The signal is rectified or an envelope. Apply a low-pass only, or export the raw signal.",
             )
     fast = high_pass(emg, highpass_hz, order)
     return low_pass(fast.with_values(np.abs(fast.values)), lowpass_hz, order)
@@ -144,7 +144,7 @@ def emg_findings(emg: Recording, range_v: float | None = None) -> list[Finding]:
             continue  # an empty channel is a gap from end to end
         share = float(known.std()) / limit.volts
         at_rail = np.abs(x) >= AT_RAIL_SHARE * limit.volts
-        rail = f"range {limit.volts:.3g} V, from {limit.how}"
+        rail = f"range of {limit.volts:.3g} V ({limit.how})"
         top, bottom = known.max(), known.min()  # a muscle meets each once: an input that stops before the others do
         ends = (x >= top - 1e-6 * (top - bottom)) | ((x <= bottom + 1e-6 * (top - bottom)) & (bottom < 0))
         if ends.mean() >= RAILS_SHARE > at_rail.mean():
@@ -279,8 +279,8 @@ class _Muscle(NamedTuple):
 
     def words(self) -> str:
         """Say while what it is stronger."""
-        where = "the foot is on the ground" if self.by_own > 0 else "the foot is in the air"
-        return f"{self.name} is {np.exp(abs(self.by_own)):.1f} times as strong while {where}"
+        where = ("on the ground", "in the air")[:: 1 if self.by_own > 0 else -1]
+        return f"{self.name} is {np.exp(abs(self.by_own)):.1f} times as strong with the foot {' as '.join(where)}"
 
 
 def order_of_muscles(envelope: Recording, strides: Mapping[str, Strides]) -> list[Finding]:

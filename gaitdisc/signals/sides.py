@@ -62,7 +62,7 @@ def verify_sides(kinematics: Recording, strides: Strides) -> float:
         return at
     swapped = SWING[0] <= across <= SWING[1]
     raise StrideError(
-        f"in strides of side {strides.side!r} the knee must bend most in swing, at {SWING[0]:g} to {SWING[1]:g} %",
+        f"in strides of side {strides.side!r} the knee must bend most at {SWING[0]:g} to {SWING[1]:g} % (swing)",
         f"{kinematics.source.file or 'the recording'}: {own} peaks at {at:.0f} %"
         + (f", {other} at {across:.0f} %: left and right are exchanged" if swapped else ""),
         f"Exchange the sides of the {strides.detector} contacts or of the angles."

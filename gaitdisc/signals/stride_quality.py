@@ -117,7 +117,7 @@ def without_outlying(recording: Recording, strides: Strides, fewest_channels: in
     for k in np.flatnonzero(out):
         times = distance[k] / usual
         column = int(np.argmax(np.where(far[k], times, 0.0)))
-        more = f" and {far[k].sum() - 1} more channels" if far[k].sum() > 1 else ""
+        more = f" (and {far[k].sum() - 1} more)" if far[k].sum() > 1 else ""
         name = recording.names[column]
         reason = f"outlying: {name}{more} at {times[column]:.1f} times the usual distance from the median"
         dropped.append(DroppedStride(float(strides.start[k]), float(strides.end[k]), reason))
@@ -165,7 +165,7 @@ def late_change(recording: Recording, strides: Strides, seed: int = 0) -> LateCh
     curves, start = curves[whole], kept.start[whole]
     if len(curves) < FEWEST_TO_CHANGE or not curves.shape[2]:
         raise StrideError(
-            f"the test for a late change needs at least {FEWEST_TO_CHANGE} complete strides",
+            f"for the test for a late change, there must be at least {FEWEST_TO_CHANGE} complete strides",
             f"{recording.source.file or 'the recording'} has {len(curves)} of side {strides.side!r}",
             "Record longer, or inspect the trial by eye.",
         )
@@ -210,7 +210,7 @@ def late_change_findings(recording: Recording, strides: Strides) -> list[Finding
         f"gait changes at {change.time:.0f} s of {recording.time[-1]:.0f} s by {change.size_sd:.1f} stride-to-stride "
         f"SD (p = {change.p:.3f}): {moved} (root mean square over the stride)"
     )
-    spoils = "a model trained before the change and tested after it; exclude the trial, or cut it there"
+    spoils = "models trained before the change and tested after it; exclude the trial, or crop it at the change"
     return [Finding("warning", kind, file, what, spoils, spans=spans)]
 
 

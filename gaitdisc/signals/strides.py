@@ -37,7 +37,7 @@ def cut_strides(
     """
     if len(contacts) < 2:
         raise StrideError(
-            "a stride needs two initial contacts of the same foot",
+            "a stride must have two initial contacts of the same foot",
             f"{contacts.detector} found {len(contacts)} of side {contacts.side!r}",
             "Record longer, or choose another detector in [strides].",
         )

@@ -105,7 +105,7 @@ def test_segments_need_no_static_trial_and_markers_do(tmp_path, called):
         np.testing.assert_allclose(found[name], known[name], atol=1e-3)
     write_trc(markers_of(known, RAJAGOPAL), tmp_path / "walk.trc")
     refused = called("angles", tmp_path / "walk.trc", "--out", tmp_path / "b.mot", ends=REFUSED)
-    assert says(refused.stderr, "angles", "need a static")
+    assert says(refused.stderr, "angles", "must have a static")
 
 
 @pytest.fixture(scope="module")

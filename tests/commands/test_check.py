@@ -55,7 +55,7 @@ def test_the_mapping_of_a_walk_needs_its_ground_forces_and_a_model_of_opensim(tm
     for out, words, said in (
         ("walk.toml", (model, "--forces", "forces.sto"), "Add --external-loads grf.xml"),
         ("walk.toml", (tmp_path / "leg.xml", *loads), "found leg.xml"),
-        ("walk", (model, *loads), "Call it leg.toml"),
+        ("walk", (model, *loads), "Name it leg.toml"),
     ):
         assert said in called("new", tmp_path / out, "--from", *words, ends=REFUSED).stderr
 

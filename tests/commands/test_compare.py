@@ -25,10 +25,10 @@ def test_a_participant_of_a_study(study, called):
 @pytest.mark.parametrize(
     ("words", "said"),
     [
-        (["{exo}"], "a comparison needs two recordings, or a study; exo.mot is one recording. Name the measured walk"),
+        (["{exo}"], "must have two recordings, or a study; exo.mot is one recording. Name the measured walk after it"),
         (["{exo}", "{exo}"], "are identical files"),
         (["{exo}", "{natural}", "--channel", "ankle_ange_r"], "the most similar common name is 'ankle_angle_r'"),
-        (["{exo}", "{natural}", "--detector", "force"], "strides that the same detector finds in both"),
+        (["{exo}", "{natural}", "--detector", "force"], "the same detector must find strides in both"),
     ],
 )
 def test_refusals_are_one_sentence(called, recordings, tmp_path, words, said):

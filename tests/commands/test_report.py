@@ -56,7 +56,7 @@ def test_one_person_before_and_after_beside_a_reference(called, run_folder, tmp_
 
 def test_what_is_not_there_is_refused_in_words(called, run_folder, tmp_path):
     nobody = called("report", run_folder, "--person", "P99", ends=1)
-    assert "'P99' is not; known: P07, P08" in nobody.stderr
+    assert "'P99' is not. Name one of: P07, P08." in nobody.stderr
     half = called("report", run_folder, "--before", "s1")
     assert says(half.stderr, "--person, --before", "--after")
     none = called("report", run_folder, "--reference", tmp_path / "none")

@@ -69,7 +69,7 @@ def test_times_may_be_a_variable(visual3d):
 @pytest.mark.parametrize(
     ("channels", "said"),
     [
-        ({}, r"the study's \[channels\] must state .* each variable .* export.mat holds RKNEE_ANGLE, RHEE, FP1"),
+        ({}, r"the study's \[channels\] must state .* each variable .* export.mat; .*contains RKNEE_ANGLE, RHEE, FP1"),
         ({"RKNEE_ANGLE": "knee_angle_r @ 100 Hz"}, r"must have one column for 'knee_angle_r', .* its shape is 200 x 3"),
         ({"RHEE": "RHEE @ 100 Hz"}, r"the marker 'RHEE' of 'RHEE' must have a unit"),
         ({"RHEE(:,1)": "heel [furlong] @ 100 Hz"}, r"must be in the list of units; found 'furlong'"),

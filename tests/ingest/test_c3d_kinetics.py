@@ -37,8 +37,8 @@ def test_a_plate_shows_that_kinetics_are_per_kg_and_which_mass_it_was():
     assert set(_units(channels).values()) == {"N/kg", "N m/kg", "W/kg"}
     np.testing.assert_array_equal(values[:, 2], 11.0 * STEP)
     assert (findings[0].severity, findings[0].kind) == ("note", "per body mass")
-    assert says(findings[0].what, "plate 1", "660 N", "RGroundReactionForce", "11", "6 forces")
-    assert says(findings[0].what, "kg of body", "60.0 kg")
+    assert says(findings[0].what, "plate 1", "660 N", "RGroundReactionForce", "11", "channels: 6")
+    assert says(findings[0].what, "body mass 60.0 kg")
 
 
 def test_another_mass_than_the_file_states_is_a_warning():
@@ -66,7 +66,7 @@ def test_without_a_plate_the_size_of_the_numbers_decides_and_is_a_warning():
 def test_forces_and_moments_that_contradict_each_other_are_left_and_named(reaction, ankle):
     (_, channels), findings = house_kinetics(_kinetics(reaction, ankle), NO_PLATE, 60.0, "a.c3d")
     assert set(_units(channels).values()) == {"N", "N m", "W"}
-    assert says(findings[0].what, "units are those of the file")
+    assert says(findings[0].what, "units of the file are used")
     assert findings[0].severity == "warning"
 
 
@@ -75,7 +75,7 @@ def test_a_positive_push_off_is_turned_and_the_ground_is_not():
     np.testing.assert_array_equal(values[:, 3], -1.4 * PUSH_OFF)
     np.testing.assert_array_equal(values[:, 4], 0.1 * STEP)  # the moment of the ground is no joint moment
     np.testing.assert_array_equal(values[:, 5], 3 * PUSH_OFF)  # generated power stays positive
-    assert says(findings[-1].what, "1.40 N m/kg", "1 joint")
+    assert says(findings[-1].what, "1.40 N m/kg", "channels: 1")
 
 
 @pytest.mark.parametrize(
@@ -103,7 +103,7 @@ def test_plates_of_six_people_show_their_own_mass(gait_data, reader):
     for path in _people(gait_data):
         trial = read_trial(path, reader=reader)
         (said,) = [f for f in trial.findings if f.kind == "per body mass" and "carries" in f.what]
-        shown = float(said.what.split("body mass, ")[1].split(" kg")[0])
+        shown = float(said.what.split("(body mass ")[1].split(" kg")[0])
         stated = {"HC002D": 32.1, "HC030A": 45.8, "HC031A": 27.7, "HC032A": 60.3, "HC033A": 51.5, "HC036A": 33.0}
         assert shown == pytest.approx(stated[path.name[:6]], abs=0.11), path.name
         units = {c.quantity: c.unit for c in trial.stream("moments").channels if "Normalised" not in c.name}

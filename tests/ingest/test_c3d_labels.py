@@ -100,7 +100,7 @@ def test_the_dialect_without_contexts():
 def test_events_outside_of_the_file_are_left_out_and_reported():
     events, findings = _events([(0, 1.0), (0, 9.0)], ["LHS", "LHS"])
     assert len(events) == 1
-    assert says(findings[0].what, "1 of 2 events", "200 frames")
+    assert says(findings[0].what, "events outside the 200 frames", "1 of 2")
 
 
 def test_the_clock_of_the_cropped_file_is_recognised_and_reported():
@@ -139,7 +139,7 @@ def test_muscles_are_known_behind_the_words_of_the_device():
     assert [(c.name, c.unit, c.side) for c in channels] == [("emg_rf_l", "V", "l"), ("emg_ta_r", "V", "r")]
     np.testing.assert_allclose(values[0], [1, 0.002])
     assert [c.name for c in streams["signals"][1]] == ["Voltage.L Spare"]
-    assert says(findings[0].what, "1 voltages", "EMG", "signals (#3 Voltage.L")
+    assert says(findings[0].what, "1 voltage", "EMG", "signals (#3 Voltage.L")
 
 
 def test_labels_that_are_all_alike_are_made_unique_by_description_then_by_place():

@@ -103,7 +103,7 @@ def test_what_is_no_c3d_file_is_named(tmp_path):
         "picture": "is a PNG picture",
         "folder": "is a folder",
         "zeros": "bytes 0 and 0",
-        "processor": "has 0",
+        "processor": "has type 0",
         "missing": "does not exist",
     }
     for name, words in said.items():
@@ -156,10 +156,10 @@ def test_a_truncated_file_is_refused_with_its_numbers(file, lost):
 def test_contradicting_counts_are_settled_by_the_length_of_the_file(file):
     layout, findings = find_layout(replace(file[0], last_frame=20), file[1])
     assert layout.frames == 50
-    assert "frames as 50 and" in findings[0].what
+    assert "(frames: 50 and" in findings[0].what
     layout, findings = find_layout(file[0], _with(file[1], POINT__USED=900))
     assert layout.points == 3
-    assert says(findings[0].what, "points as 900", "3", "3")
+    assert says(findings[0].what, "points: 900", "3", "3")
 
 
 def test_more_frames_than_16_bits_hold(file):

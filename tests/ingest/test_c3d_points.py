@@ -105,14 +105,14 @@ def test_a_place_at_exactly_the_origin_was_not_seen():
     streams, _, findings = _streams([[0.0, 0, 0, 300, 400, 0]], ["A", "B"], UNITS=("mm",))
     assert np.isnan(streams["markers"][0][0, :3]).all()
     assert streams["markers"][0][0, 5] == 0
-    assert "1 marker positions" in findings[0].what
+    assert findings[0].what.startswith("marker positions at") and findings[0].what.endswith(": 1")
 
 
 def test_equal_and_missing_labels_are_made_unique():
     streams, _, findings = _streams([[300.0] * 12], ["A", "A", "B"], UNITS=("mm",))
     names = [channel.name for channel in streams["markers"][1]][::3]
     assert names == ["A_1.x", "A_2.x", "B.x", "point_4.x"]
-    assert says(findings[0].what, "1 point labels")
+    assert says(findings[0].what, "labels", "1 in all")
 
 
 def test_the_study_names_markers_and_components():
@@ -135,7 +135,7 @@ def test_outputs_to_which_one_model_adds_a_word_are_known_by_their_own_labels():
     assert [names[3], names[6], names[9]] == ["LAbsAnkleAngle.x", "LPelvisAngles.x", "LPelvisAngles_TOR.x"]
     assert streams["moments"][1][0].name == "knee_angle_l_moment"
     (said,) = [finding for finding in findings if finding.kind == "model suffix"]
-    assert said.severity == "note" and "LKneeAngles_M" in said.what and "_M and are read as LKneeAngles" in said.what
+    assert said.severity == "note" and "LKneeAngles_M is read as LKneeAngles" in said.what
 
 
 @pytest.mark.parametrize("labels", [("LKneeAngles", "LKneeAngles_M"), ("LKneeAngles_M", "LHipAngles_F")])
@@ -258,7 +258,7 @@ def test_a_channel_without_a_scale_is_missing_and_named(real, reader, number):
     trial = read_trial(real, reader=reader)
     (said,) = [f for f in trial.findings if f.kind == "scale"]
     assert said.severity == "warning" and said.file == "walk.c3d"
-    assert said.what.startswith(f"ANALOG:SCALE of channel #{place + 1} ") and f"is {number:g}; these" in said.what
+    assert said.what.startswith(f"ANALOG:SCALE of channel #{place + 1} ") and f"is {number:g}; a ch" in said.what
     emg, before = trial.stream("emg").values, sound.stream("emg").values
     gone = np.isnan(emg).all(axis=0)
     assert gone.sum() == 1

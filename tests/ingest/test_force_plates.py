@@ -78,7 +78,7 @@ def test_an_origin_without_depth_is_inferred_by_where_the_foot_stands():
 def test_force_of_the_foot_on_the_ground_is_turned_around_and_reported():
     streams, _, findings = _read(_rows(sign=-1.0), _file())
     _check(streams)
-    assert says(findings[0].what, "plates 1", "reversed")
+    assert says(findings[0].what, "plate 1:", "reversed")
 
 
 def test_type_4_through_its_matrix():
@@ -99,7 +99,7 @@ def test_the_zero_span_is_removed_unless_the_plate_is_loaded_then():
     loaded = _rows()[::-1].copy()
     streams, _, findings = _read(np.vstack([loaded, loaded[-1:].repeat(400, axis=0)]), _file(ZERO=np.array([1, 10])))
     assert streams["forces"][0][0, 2] == pytest.approx(600)
-    assert says(findings[0].what, "600 N", "samples, 1 to 10")
+    assert says(findings[0].what, "600 N", "samples 1 to 10")
 
 
 def test_a_plate_far_from_its_foot_is_reported():
@@ -131,7 +131,7 @@ def test_plates_with_each_others_channels_are_reported(sense):
 
 def test_a_plate_that_nobody_stepped_on():
     _, _, findings = _read(_rows() * 0.05, _file())
-    assert says(findings[0].what, "no plate was loaded with 100 N")
+    assert says(findings[0].what, "no plate was loaded with more than 100 N")
 
 
 @pytest.mark.parametrize(

@@ -57,7 +57,7 @@ def test_a_stiff_knee_follows_the_other_one():
     stiff = -10 + 5 * np.sin(np.arange(300) / 20)
     streams, findings = with_flexion_positive({"kinematics": _walk(knee_angle_r=-GAIT, knee_angle_l=stiff)})
     np.testing.assert_array_equal(streams["kinematics"]["knee_angle_l"], -stiff)
-    assert says(findings[1].what, "follows the other")
+    assert says(findings[1].what, "takes the sign of the other")
 
 
 def test_two_knees_of_two_signs_are_a_warning():
@@ -90,7 +90,7 @@ def test_speed_and_generalised_moment_go_with_the_knee():
     turned, (finding,) = with_flexion_positive(streams)
     np.testing.assert_array_equal(turned["signals"].values, -speeds.values)
     np.testing.assert_array_equal(turned["moments"].values, -moments.values)
-    assert finding.what.endswith(", as are the signs of knee_angle_r/speed, knee_angle_r_moment")
+    assert finding.what.endswith("; the same holds for knee_angle_r/speed, knee_angle_r_moment")
     of_table = {**streams, "moments": replace(moments, source=Source(reader="csv"))}  # may be of another convention
     np.testing.assert_array_equal(with_flexion_positive(of_table)[0]["moments"].values, moments.values)
 

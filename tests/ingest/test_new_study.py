@@ -68,7 +68,7 @@ def test_folders_become_people_and_names_pseudonyms(tmp_path):
     assert study.models.emg == ("emg_sol_r",)
     assert "emg_sol_r" in study.models.outputs
     text = "\n".join(notes)
-    assert "not pseudonyms became P01" in text
+    assert "not pseudonyms were replaced by P01" in text
     assert says(text, "left", "S02/broken_exo.mot: broken_exo.mot", "OpenSim")
     assert "mtp_angle_r" in text and "lumbar_bending" in text
 
@@ -82,7 +82,7 @@ def test_angles_that_not_all_have_and_several_words_are_reported(tmp_path):
     assert set(study.models.angles) == {channel.name for channel in CHANNELS[:6]} & set(ANGLES)
     text = "\n".join(notes)
     assert says(text, "'baseline'")
-    assert says(text, "1 of 3 trials", "EMG")
+    assert says(text, "trials with EMG: 1 of 3")
     assert says(text, "excluded because some")
 
 
@@ -107,7 +107,7 @@ def test_folders_without_recordings_are_refused(tmp_path):
     with pytest.raises(ReadError, match="none must be a folder"):
         draft_study(tmp_path / "none")
     (tmp_path / "plates.forces").touch()
-    with pytest.raises(ReadError, match=r"none.*; not read, because of their ending: 1 \.forces\. Name"):
+    with pytest.raises(ReadError, match=r"none.*; files not read because of their ending: 1 \.forces\. Name"):
         draft_study(tmp_path)
     (tmp_path / "a.mot").write_text("x")
     with pytest.raises(ReadError, match=r"none.*left.*a\.mot"):
@@ -162,7 +162,7 @@ def test_what_no_name_shows_is_listed_with_the_one_line_for_all(tmp_path):
         _walk(tmp_path / "S01" / f"{name}.mot")
     study, notes = draft_study(tmp_path)
     assert [trial.condition for trial in study.participants[0].trials].count("unknown") == 2
-    (said,) = [note for note in notes if "condition unknown" in note]
+    (said,) = [note for note in notes if "unknown condition" in note]
     assert says(said, "S01/a1.mot, S01/a2.mot", "[conditions]", '= "fast"')
     path = write_study(study, tmp_path / "study.toml")
     text = path.read_text().replace('# unnamed = "walking"', 'unnamed = "fast"')

@@ -101,7 +101,7 @@ def belt(peak_n, pattern=((60, 1.0), (40, 0.0))):
 def test_a_step_of_ten_newtons_is_per_kg():
     (finding,) = per_kg_findings(belt(10.8))
     assert (finding.kind, finding.channel) == ("per body mass", "ground_force_r_vy")
-    assert says(finding.what, "10.8 N and shows steps")
+    assert says(finding.what, "10.8 N", "steps")
 
 
 @pytest.mark.parametrize("peak", [60.0, 700.0, 2.0])
@@ -118,7 +118,7 @@ def test_the_moments_of_a_real_walk_are_in_newton_metres_until_divided_by_its_ma
     moments = trial.stream("moments")
     assert per_kg_findings(trial.streams) == []
     (finding,) = per_kg_findings({"moments": moments.with_values(moments.values / 72.6)})
-    assert says(finding.what, "seems to be in N m")
+    assert says(finding.what, "seems to be N m per kg")
 
 
 def test_millimetres_called_metres_and_the_other_way_round_are_refused():

@@ -137,7 +137,7 @@ def test_a_silent_header_is_inferred_or_refused(tmp_path):
     ("change", "kind", "words"),
     [
         (lambda t: t.replace("inDegrees=yes", "inDegrees=no"), UnitError, "knee_angle_r reaches"),
-        (lambda t: t[: t.index("0.3\t")], ReadError, r"must have 60 rows .*; it ends after 30, at line 37\. The file"),
+        (lambda t: t[: t.index("0.3\t")], ReadError, r"have 60 rows .*; it ends after 30 rows, at line 37\. The file"),
         (lambda t: t[: t.index("0.3\t") + 12], ReadError, "3 cells, one per column; line 38 .the last line. has 2"),
         (
             lambda t: t.replace("0.3\t", "0.305\t"),

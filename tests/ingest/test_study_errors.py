@@ -39,7 +39,7 @@ crop_s = [1.0, 2.0]
     [
         ("kinematics_hz", "kinematic_hz", r"line 6: .*known\. Did you mean 'kinematics_hz'\?"),
         ("[filters]", "[filter]", r"line 5: the keys of the study.*'filter' is.* mean 'filters'\?"),
-        ("= 6.0", '= "6"', r"line 6: \[filters\] kinematics_hz must be a number; found '6'\. Write it without quotes"),
+        ("= 6.0", '= "6"', r"line 6: \[filters\] kinematics_hz must be a number; found '6'\. Write the number without"),
         ("= 6.0", "= -1", r"line 6: \[filters\] kinematics_hz must be above 0; found -1"),
         ("= 6.0", "= nan", r"kinematics_hz must be a finite number; found nan"),
         ("= 6.0", "= 6.0\norder = 3", r"line 7: \[filters\] order must be one of 2, 4, 6 or 8; found 3"),
@@ -54,7 +54,7 @@ crop_s = [1.0, 2.0]
         ('nominal = "natural"\n', "", r"line 2: \[conditions\] must have 'nominal'; it is missing\. Add nominal \("),
         ("[[participants]]", "[participants]", r"must be a TOML file|two pairs of brackets: \[\[participants\]\]"),
         ('"t"', "t", r"must be a TOML file; the parser reports: Invalid value \(at line 1, column 9\)"),
-        ('"t"', "3", r"line 1: title must be text; found 3\. Write it in quotes"),
+        ('"t"', "3", r"line 1: title must be text; found 3\. Write the text in quotes"),
         ("[strides]\ndetector =", "strides =", r"must be a table; found 'auto'|kinematics_hz"),
         ("6.0", "true", r"kinematics_hz must be a number; found True"),
         ("[strides]", "[quality]\nmin_strides = 0\n[strides]", r"\[quality\] min_strides must be at least 1; found 0"),
@@ -102,7 +102,7 @@ def _participants(words, *people):
     ("words", "people", "message"),
     [
         (("natural", "exo"), [("P1", "naturl")], r"'natural' or 'exo'; found 'naturl'\. Did you mean 'natural'\?"),
-        (("natural", "exo"), [("P1", "zzz")], "Use one of them, or 'unknown'"),
+        (("natural", "exo"), [("P1", "zzz")], "Use one of these words, or 'unknown'"),
         (("natural", "exo"), [("p1", "exo"), ("P1", "exo")], "2 times"),
     ],
 )
@@ -142,7 +142,7 @@ def _sessions(sessions, of_trial):
         (("01.03.24",), None, "date"),
         (("20240301",), None, "date"),
         (("March 2024",), None, "date"),
-        (("pre", "pre"), None, "each session once; 'pre' occurs twice"),
+        (("pre", "pre"), None, "differ from the others; 'pre' occurs twice"),
         (("before", "after"), "befor", r"\('before', 'after'\); found 'befor'\. Did you mean 'before'\?"),
         ((), "pre", r"\(none\); found 'pre'\. Add it: sessions = \['pre'\]"),
     ],

@@ -97,7 +97,7 @@ def test_who_lacks_a_condition_is_refused_but_not_a_group_that_never_has_it():
 def test_nobody_without_a_walk_is_reported():
     person = _person("P01", _trial("static"), _trial("unknown"))
     said = why_refused(_study(person, nominal="straight", others=("turn",)), person)
-    assert says(said, "'straight'", "'turn'; P01", "2 trials")
+    assert says(said, "'straight'", "'turn'; P01", "trials of other conditions: 2")
     assert why_refused(_study(person, nominal="a"), _person("P02", excluded="ill")) == "excluded in the study: ill"
 
 

@@ -159,5 +159,5 @@ def test_a_direction_that_is_none_is_refused(given):
 
 
 def test_a_pelvis_that_is_never_seen_is_refused():
-    with pytest.raises(StrideError, match="walking needs the pelvis"):
+    with pytest.raises(StrideError, match="must have the pelvis markers; none has"):
         walking_frame(np.full((2, 3), np.nan), np.zeros((2, 3)), UP, 100.0)

@@ -217,8 +217,8 @@ ANGLES = move_body(markers_of(known_angles(60), RAJAGOPAL), static_of(RAJAGOPAL)
 @pytest.mark.parametrize(
     ("markers", "static", "given_set", "words"),
     [
-        (WALK, None, None, r"need a static.*none"),
-        (WALK, None, "rajagopal", r"need a static.*none"),
+        (WALK, None, None, r"must have a static.*none"),
+        (WALK, None, "rajagopal", r"must have a static.*none"),
         (STRANGE, STRANGE, None, r"plug_in_gait.*LKNE, RTHI"),
         (static_of(PLUG_IN_GAIT), static_of(PLUG_IN_GAIT), "gait2354", r"gait2354; static\.c3d.*no L\.ASIS.*1"),
         (
@@ -236,7 +236,7 @@ def test_without_the_markers_of_one_set_in_both_trials_a_body_is_not_followed(ma
 
 
 def test_a_plane_in_which_nobody_walks_is_refused():
-    with pytest.raises(ShapeError, match=r"40 mm.*none.*joints = \"free\""):
+    with pytest.raises(ShapeError, match=r"40 mm.*no such frame.*joints = \"free\""):
         move_body(WALK, static_of(PLUG_IN_GAIT), "plug_in_gait", MEASURES, (0, 0, 1), "planar")
 
 

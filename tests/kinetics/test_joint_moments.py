@@ -119,7 +119,7 @@ def test_a_leg_without_a_segment_is_left_out():
 def test_a_foot_without_its_heel_is_refused():
     poses, paths, _, _ = walker()
     blind = FootPath("r", TIME, np.full((len(TIME), 3), np.nan), paths["r"].toe)
-    with pytest.raises(ShapeError, match=r"foot_r needs a frame.*no"):
+    with pytest.raises(ShapeError, match=r"a frame must have .* foot_r.*no"):
         legs(poses, {"r": blind}, PERSON, RAW)
 
 

@@ -135,10 +135,10 @@ def test_a_path_of_unlike_shapes_is_refused():
 # The side is the one that the events of the file have at the same instant; reasons as seen on pictures of the steps
 REAL = {
     "HC002D/straight/HC002D06": [("r", ""), ("l", "")],
-    "HC002D/turn/HC002D25": [("l", ""), ("r", "the heel is 2 cm beyond its edge")],
+    "HC002D/turn/HC002D25": [("l", ""), ("r", "the heel is 2 cm beyond the plate's edge")],
     "HC030A/turn/HC030A22": [("r", ""), ("l", "")],
     "HC031A/turn/HC031A23": [("r", ""), ("", "both feet are on the plate, l for 0.53 s, r for 0.47 s")],
-    "HC032A/turn/HC032A18": [("r", ""), ("l", "the toes are 8 cm beyond its edge")],
+    "HC032A/turn/HC032A18": [("r", ""), ("l", "the toes are 8 cm beyond the plate's edge")],
     "HC033A/turn/HC033A22": [("r", ""), ("l", "the centre of pressure comes within 1.9 cm of the edge")],
     "HC036A/straight/HC036A10": [("r", ""), ("l", "")],
     "HC036A/turn/HC036A23": [("r", "")],

@@ -93,7 +93,7 @@ def test_a_turn_keeps_the_clean_step_and_names_the_other(gait_data):
     rows = (result.moments.time > left_out.start) & (result.moments.time < left_out.end)
     assert left_out.side == "l"
     assert np.isnan(result.moments["ankle_angle_l_moment"][rows]).all()
-    assert says(result.findings[0].line(), "8 cm beyond its edge")
+    assert says(result.findings[0].line(), "8 cm beyond the plate's edge")
 
 
 def test_a_trial_without_a_clean_step_or_without_forces_is_refused(gait_data):
@@ -155,7 +155,7 @@ def test_few_frames_tell_nothing():
     loads["l"] = replace(loads["l"], known=np.full(len(TIME), False))
     balance = force_balance(found, loads, UP, person)
     assert (balance.frames, balance.tested) == (0, False)
-    assert says(balance.line(), "both", "0 frames", "not")
+    assert says(balance.line(), "not tested", "both feet", "(0)")
 
 
 def test_one_leg_cannot_be_balanced():

@@ -89,7 +89,7 @@ def test_contacts_that_lie_apart_or_are_missed_are_a_warning(trial):
     assert (alike.severity, alike.spoils) == ("note", "")
     moved = right.copy()
     moved[12] += 0.08
-    assert says(against([*left, *(("r", time) for time in moved)]).spoils, "1 contact (50 ms", "more")
+    assert says(against([*left, *(("r", time) for time in moved)]).spoils, "1 contact (over 50 ms", "median")
     missed = against([*left, *(("r", time) for time in np.delete(right, 12))])
     assert missed.severity == "warning"
     assert says(missed.spoils, f"{right[12]:.2f} s", "detector finds a", "not")

@@ -88,4 +88,4 @@ def test_a_walk_that_is_refused_keeps_what_its_reader_saw(gait_data, tmp_path):
     (seen,) = inspect_study(study)
     assert seen.light == "red"
     (finding,) = [finding for finding in seen.findings if finding.kind == "per body mass"]
-    assert says(finding.what, "seems to be in N")
+    assert says(finding.what, "seems to be N m per kg")

@@ -142,7 +142,7 @@ def test_too_few_cycles_are_refused_by_the_setting_of_the_ground(pieces):
         (found,) = pool_cycles(study, person, lambda planned: pieces[int(planned.files[0][0])])
         assert len(found.kept) == 0 and found.curves.shape[0] == 0
         (refusal,) = found.refusals
-        assert refusal.reason.startswith(f"P01 walk needs {needed} cycles of a foot") and says(refusal.reason, has, key)
+        assert refusal.reason.startswith("P01 walk: ") and says(refusal.reason, f"at least {needed};", has, key)
         assert set(found.left_out["reason"]) == {"too few cycles"}
         assert not can_pool([found])
 

@@ -58,7 +58,7 @@ def test_an_envelope_is_not_rectified_again(trial, study):
 
 def test_a_missing_angle_names_the_nearest(trial, study):
     models = Models(angles=("hip_flexion_r", "ankle_ange_r"), outputs=("hip_flexion_r",))
-    with pytest.raises(ChannelError, match=r"ankle_ange_r.*none of this name; the nearest.*'ankle_angle_r'"):
+    with pytest.raises(ChannelError, match=r"10 channels, but not ankle_ange_r; the nearest.*'ankle_angle_r'"):
         processed(trial, study.model_copy(update={"models": models}))
 
 

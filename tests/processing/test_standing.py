@@ -90,7 +90,7 @@ def test_cycles_of_a_study_are_those_of_the_steps_taken_by_hand(files, trials, f
     assert [int(one.kept["kinetic"].sum()) for one in found] == [2, 2]
     said = {finding.kind: finding for finding in findings}
     assert said["marker set"].what.startswith("plug_in_gait: ")
-    far = re.match(r"markers are (\S+) mm.* (\S+) mm \(\w+\)$", said["residual"].what)
+    far = re.match(r"the distance of the markers .* is (\S+) mm .* is (\S+) mm \(\w+\)$", said["residual"].what)
     assert far and 0 < float(far[1]) <= float(far[2]) < 5.5
     assert {"force balance", "own model"} <= set(said)
 

@@ -84,7 +84,7 @@ def test_a_hip_of_turned_sign_is_left_out(plug_in_gait, tables, names):
     for trial in (plug_in_gait, tables):
         findings, gone = said_of(planted(trial, np.negative, *names))
         assert gone == set(names)
-        assert all("sign is reversed" in finding.what for finding in findings)
+        assert all("sign is wrong" in finding.what for finding in findings)
 
 
 def test_an_offset_of_one_knee_is_left_out_where_markers_do_not_show_it(plug_in_gait, tables):
@@ -101,7 +101,7 @@ def test_moments_of_a_thousandth_are_left_out(plug_in_gait, tables):
         small = planted(trial, lambda moment: moment / 1000, *legs, stream="moments")
         (finding,), gone = said_of(small)
         assert set(legs) <= gone
-        assert says(finding.what, f"{unit}", "at least", "another unit")
+        assert says(finding.what, f"{unit}", "at least", "the unit is wrong")
         one = planted(trial, lambda moment: moment / 1000, "knee_angle_l_moment", stream="moments")
         (finding,), gone = said_of(one)
         assert gone == {finding.channel} == {"knee_angle_l_moment"}

@@ -96,7 +96,7 @@ def test_a_stumble_is_left_out_and_said():
 def test_no_strides_in_common_is_refused_in_words():
     forces = replace(only(walk(1), "forces"), name="plates")
     angles = replace(only(walk(2), "kinematics"), name="angles")
-    with pytest.raises(StrideError, match=r"detector finds.*both") as refused:
+    with pytest.raises(StrideError, match=r"same detector must find.*both") as refused:
         walk_pair(forces, angles)
     assert "plates by" in str(refused.value)
     with pytest.raises(StrideError, match=r"plates has contacts by force\. angles by force: "):
@@ -126,7 +126,7 @@ def test_the_force_of_one_foot_is_enough_where_force_is_requested():
     assert says(note.what, "right foot is used for both")
     assert [one.detector for one in walk_pair(*one_foot)] == ["angles", "angles"]  # which see both feet
     other = replace(one_foot[1], streams={"forces": walk(2).stream("forces").selected_by(lambda one: one.side == "l")})
-    with pytest.raises(StrideError, match="the same detector finds in both"):
+    with pytest.raises(StrideError, match="the same detector must find strides in both"):
         walk_pair(one_foot[0], other, detector="force")
 
 
@@ -151,7 +151,7 @@ def test_streams_on_another_base_are_left_out_and_said():
     force = Recording(np.arange(1000) / 1000, np.ones((1000, 1)), (Channel("f", "vertical_force", "N", "r"),))
     walk = repeat_stride(Trial("sim", {"kinematics": stride(), "forces": force}))
     assert set(walk.streams) == {"kinematics"}
-    assert says(walk.findings[-1].what, "forces", "time base differs")
+    assert says(walk.findings[-1].what, "different time base: forces")
 
 
 def test_half_a_stride_and_a_long_walk_are_refused_in_words():

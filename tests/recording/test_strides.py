@@ -77,7 +77,7 @@ def test_a_table_is_cut_as_its_recording_is():
     one, table = strides(0.5, 1.5), pd.DataFrame({"knee": time, "time": time})
     for recording in (table, table.set_index("time")):
         np.testing.assert_allclose(one.normalised(recording)[0, :, 0], 0.5 + np.arange(101) / 100)
-    for other, words in ((time, "found ndarray"), (table[["knee"]], "found DataFrame without it")):
+    for other, words in ((time, "found ndarray"), (table[["knee"]], "found DataFrame without this column")):
         with pytest.raises(ShapeError, match=rf"\[s\].*'time'; {words}"):
             one.normalised(other)
 

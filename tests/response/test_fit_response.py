@@ -281,7 +281,7 @@ def test_eq_4_2_state_rate_and_percent_stride_in_acceleration_out(nominal):
     np.testing.assert_array_equal(samples.x[:, 2], nominal.xdot[:, 0])
     np.testing.assert_array_equal(samples.x[:, 4], nominal.phi)
     np.testing.assert_array_equal(samples.y[:, 0], nominal.xddot[:, 1])
-    assert (excluded.severity, excluded.what) == ("note", "0 of 6000 samples are excluded")
+    assert (excluded.severity, excluded.what) == ("note", "excluded samples: 0 of 6000")
 
 
 def test_the_dissertations_49_inputs(nominal):
@@ -301,7 +301,7 @@ def test_what_is_left_away_is_counted_with_its_reason(nominal):
     samples, excluded = gait_samples(replace(nominal, usable=usable, phi=phi), (ANKLE,))
     assert len(samples) == 5750
     assert np.isfinite(samples.phi).all()
-    assert says(excluded.line(), "P01", "left", "250 of 6000 samples", "200 outside", "50", "knee_angle_r not")
+    assert says(excluded.line(), "P01", "excluded samples: 250 of 6000", "200 outside", "50", "knee_angle_r not")
     usable[:3000] = False
     assert gait_samples(replace(nominal, usable=usable), (ANKLE,))[1].severity == "warning"
 

@@ -172,7 +172,7 @@ def too_large(_):
 
 def test_memory_that_runs_out_is_as_a_kill():
     [(_, lost)] = compute_in_processes(1, too_large, [1])
-    assert says(lost.reason, "2 times", "memory") and says(lost.reason, "use a machine", "more")
+    assert says(lost.reason, "2 times", "memory") and says(lost.reason, "Use a machine", "more")
 
 
 def wrong(_):

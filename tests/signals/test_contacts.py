@@ -59,7 +59,7 @@ def test_two_feet_are_not_compared():
         (([2.0, 1.0],), "missing or out of order"),
         (([1.0, np.nan],), "missing or out of order"),
         (([1.0], "x"), "the side is 'x', the detector 'force'"),
-        (([1.0], "r", "eye"), "are force, markers, angles, events, oscillator"),
+        (([1.0], "r", "eye"), "one of the detectors force, markers, angles, events, oscillator"),
     ],
 )
 def test_contacts_that_are_none_are_refused(arguments, words):
@@ -75,7 +75,7 @@ def test_a_crossover_is_named_on_both_sides():
     right, left = contacts(np.arange(6)), contacts(np.delete(np.arange(6) + 0.5, 2), "l")
     first, second = order_findings(right, left, "walk.c3d")
     assert first.spans == ((2.0, 3.0),)
-    assert says(first.what, "1 of 5 strides", "2.00 s")
+    assert says(first.what, "strides", "1 of 5", "2.00 s")
     assert second.spans == ((1.5, 3.5),)
     assert says(first.spoils, "plate or belt")
 
@@ -95,12 +95,12 @@ def test_events_become_contacts_with_foot_off():
 
 def test_contacts_without_a_foot_are_counted():
     found = event_contacts(trial(("initial contact", "r", 2.0), ("initial contact", "", 3.0)))
-    assert says(found["r"].note, "1 contacts", "excluded")
+    assert says(found["r"].note, "excluded", "1 contact without")
 
 
 @pytest.mark.parametrize(
     ("events", "words"),
-    [((), "HC030A05 has none among 0 events"), ((("initial contact", "", 1.0),), "has 1 of them, without a side")],
+    [((), "HC030A05 has none in 0 events"), ((("initial contact", "", 1.0),), "has 1 contact of no side")],
 )
 def test_a_file_without_contacts_is_refused(events, words):
     with pytest.raises(StrideError, match=words):

@@ -164,7 +164,7 @@ def test_movement_artefact_below_40_hz_is_gone():
 
 
 def test_a_slow_rate_an_envelope_and_an_angle_are_refused():
-    with pytest.raises(SamplingError, match=r"40 Hz.*above 80.*walk\.c3d.*80.*EMG"):
+    with pytest.raises(SamplingError, match=r"40 Hz.*exceed 80.*walk\.c3d.*80.*EMG"):
         envelopes(single(np.random.default_rng(0).normal(size=500), 80.0))
     with pytest.raises(SamplingError, match=r"walk\.c3d, emg_sol_r.*500 samples.*below"):
         envelopes(single(0.1 + np.abs(np.random.default_rng(0).normal(size=500))))

@@ -28,7 +28,7 @@ def test_all_that_stands_out_and_the_profile_have_their_numbers():
     table = numbers_table(reading)
     assert len(table.rows) == len(reading.numbers) > 30 and len(reading.noted) > 1
     assert table.rows[0][-1] != "–" and table.rows[-1][-1] == "–"
-    assert f"{len(reading.noted)} stand out" in table.caption
+    assert f"(standing out: {len(reading.noted)})" in table.caption
     profile = profile_table(reading)
     assert len(profile.rows) == 9 and len(profile.numbers) == 18
     assert profile_table(read_beside(made_person(), None)) is None
