@@ -266,8 +266,8 @@ def lines(table: pd.DataFrame) -> list[str]:
     for row in table.to_dict("records"):
         what = f"{row['condition']}: " if "condition" in row else ""
         what += f"{row['effect']} at {row['place']}, {row['number']}" if row["place"] else row["effect"]
-        mean = f", mean {row['mean']:.3g}" if row["place"] else ""
+        mean = f", mean {row['mean']:.3g} {row['unit']}".rstrip() if row["place"] else ""
         if np.isfinite(row["low"]):
-            mean += f" (95 % {row['low']:.3g} to {row['high']:.3g})"
-        said.append(f"{what}: {row['people']} of {row['of']}{mean} {row['unit']}".rstrip() + f": {row['who']}")
+            mean += f" (95 % CI {row['low']:.3g} to {row['high']:.3g})"
+        said.append(f"{what}: {row['people']} of {row['of']}{mean}: {row['who']}")
     return said

@@ -39,7 +39,7 @@ from gaitdisc.saved.provenance import provenance_now
 def test_an_angle_is_given_in_degrees_too():
     rows = estimates_table(manufactured()).rows
     assert rows[0][2:] == ("stiffness", "286 N m/rad", "279 N m/rad", "293 N m/rad", "")
-    assert rows[1][-1] == "2.0 deg (95 % 1.9-2.1)"
+    assert rows[1][-1] == "2.0 deg (95 % CI 1.9 to 2.1)"
 
 
 def test_where_no_number_is_an_angle_no_column_is_in_degrees():

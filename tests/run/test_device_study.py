@@ -307,7 +307,7 @@ def test_an_effect_is_said_with_who_shows_it_and_an_interval_over_people():
     assert row["who"].split(", ") == ["W02 300", "W03 280", "W01 200"]
     half = 4.302653 * np.std([200.0, 300.0, 280.0], ddof=1) / np.sqrt(3)  # Student's t, 2 degrees of freedom
     assert (row["mean"], row["low"]) == (pytest.approx(260.0), pytest.approx(260.0 - half, rel=1e-6))
-    assert says(lines(table)[0], "one_sided_spring", "ankle_moment", "3 of 4, mean 260", "(95 %")
+    assert says(lines(table)[0], "one_sided_spring", "ankle_moment", "3 of 4, mean 260 N m/rad (95 % CI", "): W02")
     assert says(lines(table)[1], "nothing", "1 of 4: W04")
     assert (table.iloc[1]["effect"], table.iloc[1]["who"]) == (NOTHING, "W04")
 
