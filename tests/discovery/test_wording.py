@@ -70,7 +70,7 @@ def test_where_nothing_meets_the_criteria_the_listed_explanation_that_removes_mo
     listed = (Explanation((SPRING,), replace(left, p=0.2)), Explanation((replace(SPRING, name="hysteresis"),), left))
     none = {"verdict": "unexplained", "effects": (), "parts": (), "where": (), "rivals": (), "held_out": size}
     said = sentence(**none, explanations=listed)
-    assert says(said, "no tested explanation meets the criteria", "hysteresis", "removes most: 88 %", "New trials")
+    assert says(said, "no tested explanation meets the criteria", "removes most", "hysteresis", "88 %", "New trials")
     assert "removes most" not in sentence(**none, explanations=listed[:1])
 
 
@@ -106,15 +106,15 @@ def test_two_effects_are_both_told():
 @pytest.mark.parametrize(
     ("name", "number", "said"),
     [
-        ("input_delay", (0.04, 0.03, 0.05, "s"), "x acts later than recorded, by 0.04 s"),
-        ("input_delay", (-0.04, -0.05, -0.03, "s"), "driving signal x acts earlier than recorded, by 0.04 s"),
+        ("input_delay", (0.04, 0.03, 0.05, "s"), "x acts 0.04 s (95 % CI 0.03 to 0.05) later than recorded"),
+        ("input_delay", (-0.04, -0.05, -0.03, "s"), "x acts 0.04 s (95 % CI 0.03 to 0.05) earlier than recorded"),
         ("input_gain", (1.2, 1.1, 1.3, "1"), "x acts 1.2 (95 % CI 1.1 to 1.3) times as strongly"),
         ("input_saturation", (0.7, 0.6, 0.8, "1"), "driving signal x saturates below 0.7 (95 % CI 0.6 to 0.8)"),
         ("sensor_gain", (1.2, 1.1, 1.3, "1"), "x reads 1.2 (95 % CI 1.1 to 1.3) times the true value"),
         ("sensor_gain", (0.0178, 0.0175, 0.0181, "1"), "true value, as if radians were read as"),
         ("sensor_gain", (-1.01, -1.03, -0.99, "1"), "times the true value, as if its sign were reversed"),
-        ("sensor_offset", (-0.2, -0.3, -0.1, "m"), "x reads low by 0.2 m (95 % CI 0.1 to 0.3)"),
-        ("sensor_drift", (0.2, 0.1, 0.3, "m/s"), "measured x drifts high by 0.2 m/s"),
+        ("sensor_offset", (-0.2, -0.3, -0.1, "m"), "x reads 0.2 m (95 % CI 0.1 to 0.3) too low"),
+        ("sensor_drift", (0.2, 0.1, 0.3, "m/s"), "measured x drifts upwards by 0.2 m/s"),
         ("sensor_lag", (0.04, 0.03, 0.05, "s"), "measured x lags by 0.04 s"),
     ],
 )
