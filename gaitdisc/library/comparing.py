@@ -205,7 +205,7 @@ def permutation_clusters(
         raise ShapeError(
             "two sets of curves must have the same points and channels"
             + (", and the same number of rows for pairs" if paired else ""),
-            f"shapes (unit, phase, channel) are {one.shape} and {other.shape}, with {len(names)} names of channels",
+            f"the shapes (unit, phase, channel) are {one.shape} and {other.shape}, with {len(names)} names of channels",
             "Cut both into strides of 101 points with the same channels.",
         )
     plan = PermutationPlan(alpha, permutations, seed)

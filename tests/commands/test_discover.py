@@ -181,7 +181,7 @@ def test_the_answer_stands_before_its_twins_are_searched(lab, tmp_path, monkeypa
 def test_twins_are_refused_where_an_engine_runs_the_model(lab, tmp_path, called):
     done = called("discover", lab / "leg.xml", lab / "good.csv", "--twins", "2", "--out", tmp_path, ends=REFUSED)
     assert says(
-        done.stderr, "twins and a plan need a simulation file or a Python function", "leg.xml", "Leave them out"
+        done.stderr, "twins and a plan need a simulation file or a Python function", "leg.xml", "Leave both out"
     )
 
 
