@@ -46,7 +46,7 @@ def test_degrees_for_radians_and_a_column_that_is_not_there_are_refused(lab, tmp
     table = pd.read_csv(lab / "trials.csv").rename(columns={"drive": "torque"})
     table.to_csv(tmp_path / "other.csv", index=False)
     said = CliRunner().invoke(app, ["discover", str(lab / "pendulum.xml"), str(tmp_path / "other.csv")])
-    assert "needs a measured column 'drive'" in str(said.exception)
+    assert "must have a column 'drive'" in str(said.exception)
 
 
 def test_a_coordinate_that_no_column_shows_is_refused(lab):
