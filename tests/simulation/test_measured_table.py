@@ -172,10 +172,7 @@ def test_recordings_with_faults(ankle):
     [
         (lambda t: t.iloc[:0], r"a trial must have 20 samples; walk.parquet has no rows. Export"),
         (lambda t: t.assign(theta="a lot"), r"'a lot'; 80 such cells\. Write a number, or leave the cell empty"),
-        (
-            lambda t: t.rename(columns={"time": "time_ms"}),
-            r"'time' in seconds; walk.parquet has 'time_ms'. Convert this",
-        ),
+        (lambda t: t.rename(columns={"time": "time_ms"}), r"in seconds; walk.parquet has 'time_ms'. Convert this"),
         (lambda t: t.rename(columns={"time": "Time [ms]"}), r"walk.parquet has 'Time \[ms\]'. Convert this column"),
         (
             lambda t: t.assign(time=pd.to_datetime(t["time"], unit="s")),
