@@ -209,7 +209,7 @@ class ResponseRun(StudyRun):
     provenance : Provenance
         Settings, seed, files, versions.
     units : mapping of str to tuple
-        Saved units, by the file of their kind: `walks`, `responses`, `tests`, `quantities`, `over`, `cycles`.
+        Saved parts of the result, by name: `walks`, `responses`, `tests`, `quantities`, `over`, `cycles`.
     unfitted : tuple of Refusal
         In a study with a device: participants with pooled cycles but without fitted models, with reasons.
     renewed : tuple of str

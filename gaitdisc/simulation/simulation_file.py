@@ -278,7 +278,7 @@ def bundled(name: str) -> Simulation:
     Parameters
     ----------
     name : str
-        `pendulum`, `lorenz` or another; the refusal of an unknown name lists all.
+        Name such as `pendulum` or `lorenz`; the error for an unknown name lists all names.
 
     Raises
     ------
