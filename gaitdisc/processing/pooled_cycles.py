@@ -43,8 +43,8 @@ class PooledCycles(Saved, file="cycles.json"):
     detectors : mapping of str to int
         Detector of the contacts -> number of trials.
     contact_offset_s, foot_off_offset_s : float, optional
-        Shift of contacts and foot offs from markers or angles [s], positive towards later times: their median difference
-        from a plate or the file's events, over the steps that both contain. None without a shift.
+        Shift of contacts and foot offs from markers or angles [s], positive towards later times: their median
+        difference from a plate or the file's events, over the steps that both contain. None without a shift.
     offset_steps : int
         Number of contacts that both detectors found.
     over_ground : bool
