@@ -21,7 +21,7 @@ RANDOM = "random (leaks)"
 RULES = {
     "temporal": "first 70 % of each trial training, next 10 % validation, last 20 % test; no window crosses a border",
     "blocked": "ten blocks of each trial: seven training, one validation, two test; no window crosses a border",
-    RANDOM: "windows drawn at random, with neighbours of test windows in the training part: the error is far too small",
+    RANDOM: "windows drawn at random, with neighbours of test windows in the training part: the error is too small",
 }
 
 
