@@ -68,8 +68,8 @@ def common_curves(walks: Sequence[WalkSummary], wanted: Sequence[str] = ()) -> C
         fewest, most = min(map(len, parts)), max(map(len, parts))
         if fewest < most:
             what = (
-                f"{most - fewest} of {most} strides are not used, because at least one of their {len(shared)} channels "
-                "is missing"
+                f"{fewest} of {most} strides are used: the others lack at least one of the {len(shared)} compared "
+                "channels"
             )
             findings.append(Finding("note", "strides", walk_name(walk), what, "the number of strides only"))
         curves.append(np.stack([part[:fewest] for part in parts], axis=2))
@@ -93,7 +93,7 @@ def _list_shared(walks: Sequence[WalkSummary], wanted: Sequence[str], findings: 
     for walk, unit in zip(walks, units, strict=True):
         absent = sorted(everything - set(unit))
         if absent:
-            what = f"the walk has no {list_names(absent)}, but another walk has"
+            what = f"the walk lacks {list_names(absent)}, which another walk has"
             findings.append(Finding("note", "not compared", walk_name(walk), what, "the comparison of these channels"))
     kept = []
     for channel in walks[0].channels:
@@ -124,9 +124,9 @@ def _whole_strides(walks: Sequence[WalkSummary], channel: Channel) -> list[Value
 def _usable(channel: Channel, parts: list[Values], walks: Sequence[WalkSummary], findings: list[Finding]) -> bool:
     for part, walk in zip(parts, walks, strict=True):
         if len(part) <= LEAST_KEPT * len(walk.curves) and len(part) < len(walk.curves):
-            what = f"{len(walk.curves) - len(part)} of {len(walk.curves)} strides have gaps and are excluded"
+            what = f"excluded because of gaps in {len(walk.curves) - len(part)} of {len(walk.curves)} strides"
             findings.append(
-                Finding("warning", "gaps", walk_name(walk), what, "the comparison of this walk", channel.name)
+                Finding("warning", "gaps", walk_name(walk), what, "the comparison of this channel", channel.name)
             )
             return False
     return all(len(part) for part in parts)
@@ -154,9 +154,9 @@ def _moving(
             twins.append(channel.name)
         else:
             kept.append(channel)
-    for names, what in ((still, "do not vary in any walk"), (twins, "repeat another channel exactly")):
+    for names, why in ((still, "constant in every walk"), (twins, "identical to another channel")):
         if names:
-            text = f"{', '.join(names)} {what} and are excluded"
+            text = f"excluded ({why}): {', '.join(names)}"
             findings.append(Finding("note", "not compared", _both(walks), text, "nothing"))
     return kept
 

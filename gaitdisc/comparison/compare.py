@@ -97,9 +97,9 @@ def compare_walks(
     fewest = FEWEST_IN_ONE if as_curve else FEWEST_IN_EACH
     if len(other) < fewest:
         raise ComparisonError(
-            f"{names[1]}, the reference, must have at least {fewest} strides, because they give the spread",
+            f"{names[1]}, the reference walk, must have at least {fewest} strides, because they give the spread",
             f"it has {len(other)}, and {names[0]} has {len(one)}",
-            "Record longer. Name a walk of a single stride, such as a periodic simulation, first.",
+            "Record longer. Give a walk of a single stride, such as a periodic simulation, as the first of both.",
         )
     correlation, shortest = stride_correlation(other), len(other)
     if not as_curve:
@@ -137,8 +137,8 @@ def compare_people(
     """
     if len(first) < FEWEST_IN_ONE:
         raise ComparisonError(
-            f"two conditions can be compared across at least {FEWEST_IN_ONE} participants",
-            f"{len(first)} have both",
+            f"at least {FEWEST_IN_ONE} participants must have both conditions for a comparison",
+            f"the number of these participants is {len(first)}",
             "Compare the strides of one participant with --participant.",
         )
     walks = [walk for pair in zip(first, second, strict=True) for walk in pair]

@@ -36,7 +36,7 @@ def mismatch_sentences(mismatch: Mismatch) -> list[str]:
             f"{counted(len(mismatch.channels), 'channel')} ({n}, {p_words(float(mismatch.summary['p'].min()))}).",
             *moved,
             "This does not prove equality: four of five such comparisons would detect a gap of "
-            f"{_by_unit(mismatch, unseen, 'visible', smallest=True)} or more, and gaps of up to "
+            f"{_by_unit(mismatch, unseen, 'visible', smallest=True)} or more. Gaps of up to "
             f"{_by_unit(mismatch, unseen, 'within')} at some point are not excluded.",
         ]
     if not ordered:
@@ -90,7 +90,7 @@ def smallest_p_sentence(mismatch: Mismatch) -> str:
     units = done.second if done.first == 1 or done.unit == "participant" else done.first + done.second
     of = counted(units, done.unit.split()[0]) if done.exact else f"{done.permutations} permutations"
     have = f"{int((p * done.permutations < 1.5).sum())} of {counted(len(p), 'region')}"
-    return f"p = {1 / done.permutations:.2g} is the smallest value that {of} can give; {have} have it."
+    return f"p = {1 / done.permutations:.2g} is the smallest value that {of} can give (reached in {have})."
 
 
 def _kind(mismatch: Mismatch, name: str) -> str:
@@ -113,14 +113,14 @@ def method_sentences(mismatch: Mismatch) -> list[str]:
     all_of = "all possible ones" if done.exact else "drawn at random"
     if done.unit == "participant":
         units = (
-            f"The units are pairs of walks of one participant (n = {done.first}). Under the null hypothesis the sign "
+            f"Each unit is a pair of walks of one participant (n = {done.first}). Under the null hypothesis the sign "
             "of each mean difference is random."
         )
         about = "p applies to people like these."
     else:
         about = (
             "p applies to these two recordings only, not to other days, marker placements or people. Two walks of one "
-            "person often differ by more than their strides do."
+            "person often differ by more than the strides of one walk."
         )
         if done.first == 1:
             units = (

@@ -266,8 +266,8 @@ def exact_inputs(case: Case, now: ScoredModel) -> tuple[Finding, ...]:
         if like:
             size = with_unit(amount(float(np.sqrt(np.mean(push**2)))), unit)
             what = (
-                f"an error of {' or '.join(like)} with the time course of the {spoken(candidate.name)}, {size} (rms), "
-                "would explain the gap as well; the inputs were assumed to be exact"
+                f"an error of {size} (rms) in {' or '.join(like)}, with the time course of the "
+                f"{spoken(candidate.name)}, would explain the gap as well; the inputs were assumed to be exact"
             )
             spoils = "which effect is named, if an input has this error"
             found.append(Finding("note", "exact inputs", case.measured.source, what, spoils))

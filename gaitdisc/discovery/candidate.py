@@ -31,12 +31,12 @@ class SignalFault(NamedTuple):
 SIGNAL_ERRORS = {
     "input_gain": SignalFault("gain", 1.0, "{gain}*{s}", "acts {} times as strongly as recorded"),
     "input_delay": SignalFault(
-        "seconds", 0.0, "delay({s}, {seconds})", "acts later than recorded, by {}", "acts earlier than recorded, by {}"
+        "seconds", 0.0, "delay({s}, {seconds})", "acts {} later than recorded", "acts {} earlier than recorded"
     ),
     "input_lag": SignalFault("seconds", 0.0, "", "acts through a first-order lag of {}"),
     "sensor_gain": SignalFault("gain", 1.0, "{gain}*({s})", "reads {} times the true value"),
-    "sensor_offset": SignalFault("offset", 0.0, "({s}) + {offset}", "reads high by {}", "reads low by {}"),
-    "sensor_drift": SignalFault("rate", 0.0, "({s}) + {rate}*t", "drifts high by {}", "drifts low by {}"),
+    "sensor_offset": SignalFault("offset", 0.0, "({s}) + {offset}", "reads {} too high", "reads {} too low"),
+    "sensor_drift": SignalFault("rate", 0.0, "({s}) + {rate}*t", "drifts upwards by {}", "drifts downwards by {}"),
     "sensor_lag": SignalFault("seconds", 0.0, "{s}", "lags by {}"),
 }
 

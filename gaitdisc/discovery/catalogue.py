@@ -105,7 +105,7 @@ class Request:
         if not 0 < alpha < 1:
             raise SchemaError("alpha must lie between 0 and 1", f"found {alpha:g}", "Use 0.05, for example.")
         if twins < 0:
-            raise SchemaError("the number of twins must be 0 or more", f"found {twins}", "Use 20, for example.")
+            raise SchemaError("the number of simulated records must be 0 or more", f"found {twins}", "Use 20.")
         return cls(read_catalogue(catalogue) if catalogue else (), effects, catalogue, alpha, progress, twins=twins)
 
 
@@ -169,15 +169,15 @@ def _shapes(content: dict[str, Any], file: str) -> tuple[Shape, ...]:
     if not isinstance(entries, list) or not entries or set(content) != {"shape"}:
         raise SchemaError(
             "a catalogue must contain only [[shape]] entries",
-            f"{file} holds {', '.join(sorted(content)) or 'nothing'}",
-            'Begin each effect with a line "[[shape]]".',
+            f"{file} has {', '.join(sorted(content)) or 'no entries'}",
+            'Begin each effect with a line "[[shape]]", and remove all other sections.',
         )
     return tuple(_shape(entry, f"{file}, shape {number}") for number, entry in enumerate(entries, 1))
 
 
 def _shape(entry: Any, where: str) -> Shape:
     if not isinstance(entry, dict):
-        raise SchemaError("a shape must be a table", f"{where} is not one", 'Begin it with a line "[[shape]]".')
+        raise SchemaError("a shape must be a table", f"{where} is none", 'Begin each shape with a line "[[shape]]".')
     for key in entry:
         if key not in _ENTRIES:
             near = get_close_matches(key, _ENTRIES, 1)
@@ -190,7 +190,7 @@ def _shape(entry: Any, where: str) -> Shape:
             "a shape's name must be lower-case words joined by _", f"{where} has {name!r}", 'Write name = "my_effect".'
         )
     if not isinstance(pieces, list) or not pieces or not all(isinstance(piece, str) for piece in pieces):
-        raise SchemaError("the pieces of a shape must be a list", f"{where} has {pieces!r}", 'Write pieces = ["x**2"].')
+        raise SchemaError("pieces must be a list of expressions", f"{where} has {pieces!r}", 'Write pieces = ["x**2"].')
     if not isinstance(states, dict) or not all(_is_name(key) and isinstance(states[key], str) for key in states):
         raise SchemaError(
             "a shape's states must be names, each with its time derivative as an expression",

@@ -29,8 +29,8 @@ AGREES = 1.25  # times what is left of Nominal strides; 0.97 to 1.12 in four mad
 FOOT_SHOWS_AT = ("knee_angle", "hip_flexion")
 FEWEST_STRIDES = FEWEST_TRIALS * STRIDES
 MEND = (
-    f"Record one walk of at least {FEWEST_STRIDES} strides of each condition, and set the second as device in "
-    "[conditions]. Of short trials, `gaitdisc run` pools the cycles, and `gaitdisc report STUDY --person P --before A "
+    f"Record one walk of at least {FEWEST_STRIDES} strides in each condition, and set the second condition as device "
+    "in [conditions]. From short trials, `gaitdisc run` pools the cycles; `gaitdisc report STUDY --person P --before A "
     "--after B` compares two sessions or conditions."
 )
 LEAST_FOOT_KG = 0.3  # three made people show up to 0.2 kg at these joints where there is none
@@ -150,8 +150,8 @@ def check_length(trial: Trial, shortest_s: float) -> None:
     """Refuse a walk too short for the strides of a discovery, before faults whose mend would not help."""
     time = trial.stream("kinematics").time
     if (lasts_s := float(time[-1] - time[0])) < FEWEST_STRIDES * shortest_s:
-        needed = f"naming the effect of a device needs {FEWEST_STRIDES} strides in one trial"
-        raise StrideError(needed, f"{trial.name} lasts {lasts_s:.1f} s", MEND)
+        needed = f"to name the effect of a device, one trial must have {FEWEST_STRIDES} strides"
+        raise StrideError(needed, f"{trial.name} lasts only {lasts_s:.1f} s", MEND)
 
 
 def check_kinetics(trial: Trial) -> None:
@@ -159,9 +159,9 @@ def check_kinetics(trial: Trial) -> None:
     wrong = [finding for finding in trial.findings if finding.kind == "force balance" and finding.severity == "warning"]
     if wrong:
         raise SchemaError(
-            "moments need ground forces that balance the body weight within 12 %",
+            "the ground forces must balance the body weight within 12 %",
             f"{trial.name}: {wrong[0].what}",
-            "Correct mass_kg in the study file, or the scale of the plates. Otherwise this error would be named as "
+            "Correct mass_kg in the study file, or the scale of the plates. Otherwise the imbalance would be named as "
             "an effect.",
         )
     per_kg = [finding for finding in trial.findings if finding.kind == "per body mass"]
@@ -172,13 +172,13 @@ def check_kinetics(trial: Trial) -> None:
             "Write their unit as N m/kg in [channels], or multiply them by the body mass.",
         )
     for key, word, mend in (
-        ("emg", "EMG", "Add the file with the EMG, or name its channels in [channels]."),
+        ("emg", "EMG", "Add the file with the EMG, or name the EMG channels in [channels]."),
         ("moments", "joint moments", "Add force plates, a static trial and mass_kg, or a .sto file of moments."),
     ):
         if key not in trial.streams:
             why = next((f": {finding.what}" for finding in trial.findings if finding.kind == "no moments"), "")
             raise NoMomentsError(
-                f"naming the effect of a device at a joint needs {word} in both walks",
+                f"to name the effect of a device at a joint, both walks must have {word}",
                 f"{trial.name} has no {word}{why if key == 'moments' else ''}",
                 mend,
             )
@@ -191,7 +191,7 @@ def check_calibrated(model: MuscleMoment, nominal: JointRecord) -> None:
         raise SchemaError(
             f"the moment model must explain at least {100 * LEAST_R2:.0f} % of the variance of held-out Nominal "
             "strides before an effect of the device is named",
-            f"the {JOINTS[nominal.joint]} of {nominal.subject} has R2 {model.r2:.2f}, with {strides} strides",
+            f"the {JOINTS[nominal.joint]} model of {nominal.subject} has R² {model.r2:.2f}, with {strides} strides",
             "Record more strides, add muscles that span the joint, or check that EMG and forces share a clock.",
         )
 

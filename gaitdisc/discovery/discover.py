@@ -95,7 +95,7 @@ def weigh_explanations(
     elif unproven and alone and grows_along_runs(case, as_read):  # a fall, after a rise that was learned; two tries
         progress("the held-out data show a gap that the training data do not show: other data are held out")
         first = begun(split_in_time(measured, last=False))
-        first = replace(noted(case, first, "shows a gap that the training data do not show"), alpha=case.alpha / 2)
+        first = replace(noted(case, first, "the training data do not show the gap of"), alpha=case.alpha / 2)
         as_read_first = first.as_read()
         tried = decide(first, as_read_first)
         if tried.found.parts:
@@ -149,7 +149,7 @@ def fit_given(case: Case, as_read: ScoredModel, effects: tuple[str, ...]) -> Ver
         if not tried:
             raise SchemaError(
                 "an effect to be fitted must change a measured channel, and may be given only once",
-                f"with {given!r} in addition, the simulation diverges or runs as without it",
+                f"if {given!r} is added, the simulation diverges or does not change",
                 "Give another effect or place.",
             )
         now = score(min(tried, key=lambda model: model.fit.misfit))

@@ -136,7 +136,7 @@ def _with_number(found: Discovery, changed: Changed) -> Discovery:
     sentence = found.sentence.replace(estimate_text(old), estimate_text(new))
     if abs(old.value - new.value) > APART * abs(new.value):
         number = f"{old.value:.3g} {old.unit}".removesuffix(" 1")
-        sentence += f" In augmented.toml the value is {number}, fitted together with the other parameters."
+        sentence += f" In augmented.toml, this number is {number}, fitted together with the other parameters."
     return replace(found, effects=tuple(mended if one is effect else one for one in found.effects), sentence=sentence)
 
 
@@ -162,9 +162,9 @@ def device_findings(walks: DeviceWalks) -> tuple[Finding, ...]:
     late_ms = 1000 * (model.form.delay_s + model.form.lag_s)
     unseen = np.nanstd(model.others(drives(nominal))[np.isfinite(nominal.moment)])
     calibration = (
-        f"the {joint} moment model leaves a residual of {model.left_nm:.1f} of {model.before_nm:.1f} N m (rms) on "
-        f"held-out Nominal strides (R² {model.r2:.2f}); the EMG acts {late_ms:.0f} ms later than recorded; "
-        f"{unseen:.1f} N m come from muscles without an electrode"
+        f"the {joint} moment model leaves a residual of {model.left_nm:.1f} N m (rms) on held-out Nominal strides, in "
+        f"which the moment varies by {model.before_nm:.1f} N m (R² {model.r2:.2f}). The EMG acts {late_ms:.0f} ms "
+        f"later than recorded. Muscles without an electrode produce {unseen:.1f} N m"
     )
     mass = "the mass added to the foot is not estimated, because no marker shows the foot"
     if device.per_kg.size:  # which mass at the foot would be as large as what the moment model leaves
@@ -178,12 +178,12 @@ def device_findings(walks: DeviceWalks) -> tuple[Finding, ...]:
     ]
     if changed := walks.changed:
         both = (
-            f"the muscle gains are fitted to both walks together with {spoken(changed.change.name)} at "
+            f"the muscle gains are fitted to both walks together with the {spoken(changed.change.name)} at "
             f"{changed.change.place}, which removes {100 * changed.closed:.0f} % of the squared error on held-out "
             "device strides"
         )
         if rival := changed.rival:
-            both += f"; with the next best effect, {spoken(rival.name)} at {rival.place}, "
+            both += f"; with the next best effect, the {spoken(rival.name)} at {rival.place}, "
             both += f"the error of the fit is {changed.rival_leaves:.2f} times as large"
         findings.append(Finding("note", "moment model", nominal.subject, both, ""))
     return tuple(findings)
@@ -266,8 +266,8 @@ def lines(table: pd.DataFrame) -> list[str]:
     for row in table.to_dict("records"):
         what = f"{row['condition']}: " if "condition" in row else ""
         what += f"{row['effect']} at {row['place']}, {row['number']}" if row["place"] else row["effect"]
-        mean = f", mean {row['mean']:.3g}" if row["place"] else ""
+        mean = f", mean {row['mean']:.3g} {row['unit']}".rstrip() if row["place"] else ""
         if np.isfinite(row["low"]):
-            mean += f" (95 % {row['low']:.3g} to {row['high']:.3g})"
-        said.append(f"{what}: {row['people']} of {row['of']}{mean} {row['unit']}".rstrip() + f": {row['who']}")
+            mean += f" (95 % CI {row['low']:.3g} to {row['high']:.3g})"
+        said.append(f"{what}: {row['people']} of {row['of']}{mean}: {row['who']}")
     return said

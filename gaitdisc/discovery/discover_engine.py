@@ -165,7 +165,7 @@ def search_expansion(fit: EngineFit, request: Request, read: dict[Path, str]) ->
     now, own = answer.values(), {k: one for k, one in mapping.values().items() if engine.as_force(k) is None}
     moved = {name: now[name] for name, value in own.items() if abs(now[name] - value) > MOVED * abs(value)}
     if moved and (len(found.effects) > 1 or engine.fibres):  # one number alone rests on the engine's own runs
-        request.progress(f"expanding the model again about the new value of {' and '.join(moved)}")
+        request.progress(f"expanding the model again about the fitted values of {', '.join(moved)}")
         linear, driven = expand(mapping, engine, data, states, moved)
         found, _ = find_missing(linear, driven, request, read)
     return found, linear
@@ -227,10 +227,10 @@ def without_beside(found: Discovery, effects: tuple[FoundEffect, ...], idle: tup
 
 def withdraw_effects(found: Discovery, runs: OwnRuns) -> Discovery:
     """Take back what the engine's own runs do not bear out: an expansion or an integrator's step can err as well."""
-    named = " and ".join(f"the {named_at(effect)}" for effect in found.effects)
+    named, it = " and ".join(f"the {named_at(effect)}" for effect in found.effects), "it" * (len(found.effects) < 2)
     sentence = (
-        f"Not proven: {named}. {runs.engine}'s own runs have the same error with and without it, above the sensors' "
-        "noise; only runs of the expanded model supported it. Trials with other movement can decide."
+        f"Not proven: {named}. {runs.engine}'s own runs have the same error without {it or 'them'}, above the sensor "
+        f"noise; only runs of the expanded model supported {it or 'them'}. Trials with other movement can decide."
     )
     found = replace(found, effects=(), corrections=(), explanations=(), rivals=(*found.effects, *found.rivals))
     return replace(found, verdict="unexplained", sentence=sentence)
@@ -278,7 +278,7 @@ def refuse_unmeasured(mapping: Simulation, engine: Engine, data: Measured) -> No
         if coordinate.name not in seen:
             raise ChannelError(
                 "every free coordinate of the model must be measured",
-                f"no column shows {coordinate.called!r}; the observations show {', '.join(sorted(seen)) or 'none'}",
+                f"no column shows {coordinate.called!r} (the observations show {', '.join(sorted(seen)) or 'none'})",
                 "Name its column under [observations], or lock the coordinate in the model.",
             )
 
@@ -290,9 +290,9 @@ def _report_limits(engine: Engine, states: Values, data: Measured) -> Iterator[F
         if share := 100 * np.mean((q <= coordinate.low) | (q >= coordinate.high)):
             limits = f"{coordinate.low:.3g} to {coordinate.high:.3g} {coordinate.unit}"
             what = f"{coordinate.called} is at its limit ({limits}) in {share:.2g} % of the samples"
-            yield Finding("note", "limit", "model", f"{what}: the model's own limit acts there", "")
+            yield Finding("note", "limit", "model", f"{what}: there the model itself limits the movement", "")
     if touched := getattr(engine, "contacts", 0):
-        what = f"bodies are in contact (at most {touched} contacts), where the expansion of the model is not valid"
+        what = f"bodies touch (at most {touched} contacts): the expansion of the model is not valid during a contact"
         yield Finding("warning", "contact", "model", what, "results that depend on runs through a contact")
 
 

@@ -57,7 +57,7 @@ def find_missing(
     except np.linalg.LinAlgError as error:
         raise SamplingError(
             "each sample of a simulation must be predictable from the previous one",
-            f"samples are {1 / data.rate:.4g} s apart, and its derivatives overflow within one step",
+            f"samples are {1 / data.rate:.4g} s apart, and the simulation's derivatives overflow within one step",
             "Write times in seconds, not in milliseconds, or record at a higher rate.",
         ) from error
     files = {**files, **({request.catalogue: "catalogue"} if request.catalogue else {})}

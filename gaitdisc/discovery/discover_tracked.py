@@ -72,7 +72,7 @@ def discover_tracked(tracked: Tracked, kinematics: Path, request: Request = ALL)
         raise SchemaError(
             "effects and alpha can be given only for a forward simulation (a file, a function or a model)",
             f"{kinematics.name} is a tracked walk",
-            "Leave them out: each joint is searched.",
+            "Leave out effects and alpha: each joint is searched.",
         )
     progress = request.progress
     progress(f"reading {kinematics.name} and the forces")
@@ -152,14 +152,14 @@ def make_discovery(base: Simulation, joints: list[JointFinding]) -> Discovery:
         first = max(unexplained, key=lambda one: np.linalg.norm(one.joint.left) / one.joint.floor)
     name, left = f"net_{first.joint.port}", first.joint.left
     before, _, floor = found.held_out.channels[name]
-    size = f"{amount(before)} {units[joints.index(first)]} (noise floor {amount(floor)})"
+    size = f"{amount(before)} {(unit := units[joints.index(first)])} (noise floor {amount(floor)} {unit})"
     sentence = f"No effect is named: the residual of {name} is {size}, and no tested effect explains it."
     if best.gained > 0:
         fitted, held = (amount(float(np.sqrt(np.mean((left - one) ** 2)))) for one in (best.explained, best.predicted))
         sentence = (
-            f"Not proven: {named_at(rivals[0])} reduces the residual of {size} to {fitted} where it is fitted, and to "
-            f"{held} on held-out time. Its evidence is {best.gained:.0f}; a name requires {CRITERIA.margin:.0f}, and "
-            f"{100 * CLOSED:.0f} % less squared residual on held-out time. A longer or a second walk can decide."
+            f"Not proven: {named_at(rivals[0])} reduces the residual of {size} to {fitted} {unit} in the fit and "
+            f"to {held} {unit} on held-out time. Its evidence is {best.gained:.0f}; a name needs {CRITERIA.margin:.0f} "
+            f"and a held-out squared residual smaller by {100 * CLOSED:.0f} %. A longer or a second walk can decide."
         )
     return replace(found, verdict="unexplained", sentence=sentence)
 
@@ -188,7 +188,7 @@ def stretch_used(walk: Pass, file: str) -> str:
     for k in walk.joints:
         one, q = walk.engine.coordinates[k], walk.motion.q[:, k]
         unit, factor = display_unit(one.unit)
-        ranges.append(f"{one.called} {factor * q.min():.3g} to {factor * q.max():.3g} {unit}")
+        ranges.append(f"range of {one.called}: {factor * q.min():.3g} to {factor * q.max():.3g} {unit}")
     used = f"{file} covers {begin:.2f} to {end:.2f} s; the search used {time[0]:.2f} to {time[-1]:.2f} s"
     return "; ".join([used, *ranges])
 
@@ -220,10 +220,10 @@ def search_joints(walk: Pass, angle_noise: Values, request: Request = ALL) -> tu
     """Name what is left at each joint beside what noise makes of it; the simulation says what the numbers are."""
     if len(walk.times) < FEWEST:
         raise SamplingError(
-            f"naming residual moments needs {FEWEST / DENSE / walk.cutoff_hz:.2g} s or more at a low-pass of "
-            f"{walk.cutoff_hz:g} Hz",
-            f"motion and forces share {np.ptp(walk.motion.time):.2g} s",
-            "Record longer.",
+            f"to name residual moments at a low-pass cut-off of {walk.cutoff_hz:g} Hz, motion and forces must share at "
+            f"least {FEWEST / DENSE / walk.cutoff_hz:.2g} s",
+            f"they share {np.ptp(walk.motion.time):.2g} s",
+            "Record a longer walk.",
         )
     base = _simulation(walk)
     possible, joints = _candidates(base, walk, request.shapes), []
@@ -243,7 +243,7 @@ def _simulation(walk: Pass) -> Simulation:
     """The walk as a simulation: what its muscles' groups may do otherwise, and a port at each joint."""
     plain, numbers = draft(walk.engine), []
     for name in walk.groups:
-        numbers.append(Parameter(f"{name}_strength", 1.0, "1", 1 - STRENGTH, 1 + STRENGTH, "share of the file's force"))
+        numbers.append(Parameter(f"{name}_strength", 1.0, "1", 1 - STRENGTH, 1 + STRENGTH, "factor of the force"))
         numbers.append(Parameter(f"{name}_delay", 0.0, "s", meaning="delay of these muscles compared with the file"))
     seen, sensors = [], []
     for k in walk.joints:
@@ -313,14 +313,14 @@ def summarise_joint(walk: Pass, number: int, found: JointFinding) -> Finding:
     spring = found.least(walk.dense(walk.motion.q[:, number] - walk.motion.q[:, number].mean()))
     damper = found.least(walk.dense(walk.motion.v[:, number]))
     shares = [
-        f"{100 * found.least(walk.dense(walk.groups[name])):.2g} % of its {name.split('_')[-2]} muscles"
+        f"{100 * found.least(walk.dense(walk.groups[name])):.2g} % of the force of its {name.split('_')[-2]} muscles"
         for name in walk.groups_at(number)
     ]
     left = float(np.sqrt(np.mean(joint.left**2)))
     what = (
-        f"{one.called}: residual {left:.3g} of {np.std(joint.demanded):.3g} {unit}, noise {joint.floor:.2g}; smallest "
-        f"visible effects: a spring of {spring:.2g} {unit}/{one.unit}, a damper of {damper:.2g} {unit} s/{one.unit}"
-        + "".join(f", {each}" for each in shares)
+        f"{one.called}: residual {left:.3g} {unit} of a required {np.std(joint.demanded):.3g} {unit}, noise "
+        f"{joint.floor:.2g} {unit}; smallest visible effects: a spring of {spring:.2g} {unit}/{one.unit}, a damper of "
+        f"{damper:.2g} {unit} s/{one.unit}" + "".join(f", {each}" for each in shares)
     )
     if left > BEYOND * joint.floor and found.named is None:
         return Finding("warning", "without a name", "model", what, "this joint's residual, which no effect explains")
@@ -333,7 +333,7 @@ def doubts(shown: list[Finding]) -> list[Finding]:
     if not unnamed:
         return []
     what = (
-        f"{len(unnamed)} of {len(shown)} joints have an unnamed residual of {BEYOND:g} times their noise or more: the "
+        f"at {len(unnamed)} of {len(shown)} joints, an unnamed residual is {BEYOND:g} times the noise or more. The "
         "forces may have been computed for another motion, or for angles with another low-pass cut-off (lowpass_hz)"
     )
     return [Finding("warning", "forces in doubt", "model", what, "effects named at the other joints")]

@@ -101,17 +101,16 @@ def estimate_text(estimate: Estimate) -> str:
     """Write an estimate with its interval.
 
     >>> estimate_text(Estimate(286.0, 279.2, 292.8, "N m/rad"))
-    '286 N m/rad (95 % 279-293)'
+    '286 N m/rad (95 % CI 279 to 293)'
     >>> estimate_text(Estimate(-0.02, -0.03, -0.01, "rad"))
-    '−1.1 deg (95 % −1.7 to −0.6)'
+    '−1.1 deg (95 % CI −1.7 to −0.6)'
     """
     unit, factor = display_unit(estimate.unit)
     value, low, high = (factor * one for one in (estimate.value, estimate.low, estimate.high))
     if not (math.isfinite(low) and math.isfinite(high)):
         return with_unit(amount(value), unit)
     step = (high - low) / 2
-    between = "-" if low >= 0 else " to "
-    return f"{with_unit(amount(value, step), unit)} (95 % {amount(low, step)}{between}{amount(high, step)})"
+    return f"{with_unit(amount(value, step), unit)} (95 % CI {amount(low, step)} to {amount(high, step)})"
 
 
 def brief_text(estimate: Estimate) -> str:

@@ -191,7 +191,7 @@ def _over_stride(discovery: Discovery, table: pd.DataFrame) -> Figure:
     legend(drawn, discovery_key(measured=True))
     caption = (
         f"Signals and residuals over the stride, all {len(table)} held-out samples in {STRIDE_BINS} bins; bands: "
-        "standard deviation in a bin. Bar at the bottom: where the effect reaches at least half of its maximum."
+        "standard deviation in a bin. Bar at the bottom: part in which the effect reaches at least half its maximum."
     )
     return Figure("over_stride", caption, _alt(discovery), pd.concat(kept, ignore_index=True), drawn)
 

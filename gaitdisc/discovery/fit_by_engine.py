@@ -92,7 +92,7 @@ class EngineFit:
                 column = called.index(part.candidate.place)
                 lags[column] = seconds = max(part.values["seconds"], 0.1 / data.rate)
                 controls[:, :, column] = lag_signal(controls[:, :, column], seconds * data.rate)
-                lag = f"{part.candidate.place} with a first-order lag of {seconds:.4g} s cannot stand in a mapping: "
+                lag = f"a first-order lag of {part.candidate.place} ({seconds:.4g} s) cannot be written in a mapping: "
                 written = replace(written, notes=(*written.notes, f"{lag}only discovery.json contains it"))
         recorded = self.low_pass.filtered
         driven = Driven(written.engine, augmented, controls, forces, lags, recorded=recorded, progress=self.progress)
@@ -122,7 +122,7 @@ class EngineFit:
         left = [residual_by(driven, self.measured, at, self.states, near) for *_, driven in both]
         sizes = zip(runs.units.items(), root_mean_square(left[0] - left[1]), strict=True)
         said = ", ".join(f"{name} by {size:.1g} {unit}" for (name, unit), size in sizes)
-        notes = (*written.notes[:-1], f"{written.notes[-1]}; the held-out runs deviate from the expression in {said}")
+        notes = (*written.notes[:-1], f"{written.notes[-1]}; held-out runs differ from those of the expression: {said}")
         return augmented, replace(written, notes=notes)
 
     def fitted(self, found: Discovery, base: Simulation, runs: OwnRuns) -> Discovery:

@@ -20,7 +20,7 @@ from gaitdisc.recording.arrays import Values
 from gaitdisc.recording.recording import Finding
 
 TURNS = 30
-ALIKE = "has the same simulated motion with and without the identified effect"
+ALIKE = "the identified effect does not change the simulated motion of"
 DRAWN = 20  # times, inputs with their stated errors: the mean square to some 10 % where their effects are independent
 
 
@@ -128,16 +128,16 @@ def holding_out_others(case: Case, as_read: ScoredModel, now: ScoredModel) -> Ca
 
 def noting_alike(case: Case) -> Case:
     """Return a case with a finding that says that the held-out data do not show what the others speak for."""
-    blind = ", ".join(case.measured.trials[trial] for trial in case.held_out)
-    what = f"trial {blind} {ALIKE}; only the other trials show the effect"
+    blind = " and ".join(f"trial {case.measured.trials[trial]}" for trial in case.held_out)
+    what = f"{ALIKE} {blind}; only the other trials show the effect"
     spoils = "the test on these data, where the effect does not act"
     return case.noting(Finding("note", "held out", case.measured.source, what, spoils))
 
 
 def noted(before: Case, now: Case, why: str = ALIKE) -> Case:
     """Return a case with a finding that says what is held out in place of what, and why."""
-    blind, instead = (", ".join(one.measured.trials[trial] for trial in one.held_out) for one in (before, now))
-    what = f"trial {blind} {why}; trial {instead} is held out instead"
+    held = ([f"trial {one.measured.trials[trial]}" for trial in one.held_out] for one in (before, now))
+    what = "{} {}; the search held out {} instead".format(why, *map(" and ".join, held))
     finding = Finding("note", "held out", now.measured.source, what, "nothing; by default the last trial is held out")
     return now.noting(finding)
 

@@ -33,7 +33,7 @@ class Idle:
     def findings(self, source: str, kind: str) -> tuple[Finding, ...]:
         """One for each kind."""
         idle = (
-            ("warning", kind, self.places, "the search: an effect without influence cannot be identified"),
+            ("warning", kind, self.places, "the search, which cannot identify an effect there"),
             ("note", "parameter", self.parameters, "nothing; these data do not determine the value"),
             ("note", "state", self.states, "nothing; these data do not determine the initial value"),
         )
@@ -85,8 +85,8 @@ def refuse_idle(idle: Idle, simulation: Simulation, places: tuple[Place, ...]) -
         kinds = "ports" if simulation.ports else "equations"
         raise SimulationError(
             "an effect can be identified only where it changes a measured channel",
-            f"{' or '.join(map(repr, idle.places))} affects none of {', '.join(dict(simulation.observations))}",
-            "Check its factors, or measure a channel that it affects.",
+            f"{' and '.join(map(repr, idle.places))}: no effect on {', '.join(dict(simulation.observations))}",
+            "Check the factors of this place, or measure a channel that it affects.",
             (kinds, idle.places[0]),
         )
 

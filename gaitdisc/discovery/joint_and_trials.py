@@ -177,9 +177,9 @@ def cut_walk_trials(record: JointRecord, model: MuscleMoment, simulation: Simula
         first += STRIDES if whole else 1
     if len(trials) < FEWEST_TRIALS:
         raise StrideError(
-            f"a test on held-out strides needs {FEWEST_TRIALS} series of {STRIDES} strides in a row, with a known load "
-            f"on the foot in {100 * KNOWN:.0f} % of the samples",
-            f"{record.subject} {record.condition} has {last + 1} strides, and {len(trials)} such series",
+            f"the walk must have {FEWEST_TRIALS} series of {STRIDES} consecutive strides with a known load on the foot "
+            f"in {100 * KNOWN:.0f} % of the samples",
+            f"{record.subject} {record.condition} has {last + 1} strides with {len(trials)} such series",
             "Record longer, and keep each foot on its own plate.",
         )
     driving = [signal.name for signal in simulation.inputs]
@@ -254,7 +254,7 @@ def nominal_model(walk: ProcessedWalk, name: str) -> Simulation:
         states=(State("theta", "rad", meaning=name), State("omega", "rad/s")),
         inputs=(Input("phase", "1", meaning="percent stride / 100"),),
         parameters=(Parameter("stiffness", stiffness, "1/s^2"), Parameter("damping", damping, "1/s")),
-        ports=(Port("acceleration", "rad/s^2", meaning="moment of the device and of the person's adaptation"),),
+        ports=(Port("acceleration", "rad/s^2", meaning="effect of the device and of the person's adaptation"),),
         definitions=(("habit", " + ".join(pieces)),),
         equations=(("theta", "omega"), ("omega", "habit - stiffness*theta - damping*omega + acceleration")),
         observations=(("theta", "theta"),),
@@ -277,9 +277,9 @@ def stride_trials(walk: ProcessedWalk, name: str, strides: int = MOTION_STRIDES)
         first += strides if whole else 1
     if len(trials) < FEWEST_TRIALS:
         raise StrideError(
-            f"`discover` needs {FEWEST_TRIALS * strides} strides, with {strides} in a row in each trial",
-            f"{walk.trial.name} has {len(own)}, and {len(trials)} series of {strides} in a row",
-            "Record longer, or use fewer strides in a trial.",
+            f"a walk must have {FEWEST_TRIALS * strides} strides, in {FEWEST_TRIALS} series of {strides} in a row",
+            f"{walk.trial.name} has {len(own)} strides, with {len(trials)} such series",
+            "Record a longer walk, or use fewer strides per series.",
         )
     return check_measured(trials, ("phase",), ("theta",), walk.trial.name)
 

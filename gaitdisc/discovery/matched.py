@@ -48,13 +48,13 @@ def _check_trials(measured: Measured, where: str) -> None:
     names = measured.trials
     doubled = next((name for name in names if names.count(name) > 1), None)
     if doubled is not None:
-        raise ChannelError("each trial must have its own name", f"{where} has trial {doubled!r} twice", "Rename one.")
+        raise ChannelError("each trial must have its own name", f"{where} has {doubled!r} twice", "Rename one trial.")
     short = int(np.argmin(measured.samples))
     if measured.samples[short] < FEWEST:
         raise SamplingError(
             f"a trial must have at least {FEWEST} samples",
-            f"{where}, trial {names[short]!r} has {measured.samples[short]}",
-            "Remove it, or record longer.",
+            f"{where}, trial {names[short]!r} has {measured.samples[short]} samples",
+            "Remove this trial, or record a longer one.",
         )
 
 
@@ -63,8 +63,8 @@ def _check_inputs(simulation: Simulation, measured: Measured, where: str) -> Non
     given = measured.drive.inputs
     if given.shape[2] != len(names):
         raise ShapeError(
-            f"{simulation.title!r} needs {len(names)} inputs: {', '.join(names) or 'none'}",
-            f"{where} has {given.shape[2]}",
+            f"the trials must have the inputs of {simulation.title!r}: {', '.join(names) or 'none'}",
+            f"the number of inputs in {where} is {given.shape[2]}",
             "Give one column for each input, in this order.",
         )
     for trial, (name, samples) in enumerate(zip(measured.trials, measured.samples, strict=True)):
@@ -81,7 +81,7 @@ def _check_observed(measured: Measured, where: str) -> None:
     for trial, column in np.argwhere(~seen.any(axis=1)):
         raise ShapeError(
             "an observed channel must have values in every trial",
-            f"{where}, trial {measured.trials[trial]!r} has none of {measured.channels[column]!r}",
+            f"{where}, trial {measured.trials[trial]!r} has no value of {measured.channels[column]!r}",
             "Remove the trial or the channel.",
         )
     values = np.where(seen, measured.observed, np.nan)
@@ -101,7 +101,7 @@ def _check_filters(simulation: Simulation, measured: Measured, where: str) -> No
         cutoff = simulation.sensor(name).lowpass
         if cutoff is not None and cutoff >= measured.rate / 2:
             raise SamplingError(
-                f"the low-pass of an observation must lie below half the rate, {measured.rate / 2:g} Hz",
+                f"the low-pass of an observation must lie below half the sampling rate, {measured.rate / 2:g} Hz",
                 f"{file}, [observations.{name}] has lowpass = {cutoff:g}, but {where} has {measured.rate:g} samples "
                 "per second",
                 "Correct lowpass [Hz], or remove it.",

@@ -224,7 +224,7 @@ def without_trial_apart(case: Case) -> Measured:
         f"{next_least:.2g} if the next candidate, {measured.trials[other]!r}, is excluded instead"
     )
     source = measured.source or case.search.base.title
-    spoils = "this trial, which was left out; check its gain, its offset and whether a channel was constant"
+    spoils = "this trial, which was left out; check gain and offset of its channels, and whether one was constant"
     kept = measured.selected([one for one in range(count) if one != trial])
     return replace(kept, findings=(*kept.findings, Finding("warning", ODD_TRIAL, source, what, spoils)))
 

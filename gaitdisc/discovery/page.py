@@ -38,7 +38,7 @@ def estimates_table(discovery: Discovery) -> Table:
             degrees = estimate_text(one) if display_unit(one.unit)[1] != 1.0 else ""
             rows.append((spoken(effect.name), effect.place, number, *_amounts(one), degrees))
             records.append((effect.name, effect.kind, effect.place, name, *asdict(one).values(), effect.term))
-    caption = "The identified effect, in the units of the simulation file; low and high: 95 % interval."
+    caption = "The identified effect, in the units of the simulation file; low and high: 95 % confidence interval."
     headings = ("effect", "place", "number", "value", "low", "high", "in degrees")
     if not any(row[-1] for row in rows):
         headings, rows = headings[:-1], [row[:-1] for row in rows]
@@ -70,7 +70,7 @@ def gap_table(discovery: Discovery) -> Table:
     )
     if discovery.rivals and discovery.held_out.pieces and not discovery.effects:
         first = discovery.rivals[0]
-        caption += f" If no effect is named, p is that of {spoken(first.name)} {at_place(first.kind, first.place)}."
+        caption += f" No effect is named; p is that of the {spoken(first.name)} {at_place(first.kind, first.place)}."
     headings = ("data", "channel", "before", "after", "noise floor", "closed", "p")
     columns = ("data", "channel", "before", "after", "noise_floor", "unit", "closed", "p")
     return Table("gap", caption, headings, tuple(rows), _frame(records, columns))
@@ -105,8 +105,8 @@ def conditions_table(discovery: Discovery) -> Table:
             records.append((condition.condition, why, "", "", *[math.nan] * 3, "", *errors))
     caption = (
         f"Conditions of the study, n = {len(discovery.conditions)}, each compared with the Nominal walk, which "
-        "calibrates one moment model for all. In brackets: 95 % interval. Nominal, Nominal + named effect: root mean "
-        "square error of the net moment on the held-out strides of the condition."
+        "calibrates one moment model for all. In brackets: 95 % confidence interval. Nominal, Nominal + named effect: "
+        "root mean square error of the net moment on the held-out strides of the condition."
     )
     columns = ("condition", "effect", "place", "number", "value", "low", "high", "unit", "nominal_n_m", "named_n_m")
     headings = ("condition", "effect", "its parameters", *models)
@@ -158,8 +158,8 @@ def corrections_table(discovery: Discovery) -> Table:
         rows.append((correction.parameter, with_unit(f"{correction.given:.6g}", unit), *_amounts(found)))
         records.append((correction.parameter, correction.given, found.value, found.low, found.high, found.unit))
     caption = (
-        "Parameters of the file that changed within their bounds. These are not effects: every explanation, and the "
-        "initial model, was fitted with them. Low and high: 95 % interval."
+        "Parameters of the file that changed within their bounds. These are not effects: they were also fitted in the "
+        "initial model and in every explanation. Low and high: 95 % confidence interval."
     )
     headings = ("parameter", "in the file", "fitted", "low", "high")
     columns = ("parameter", "from", "to", "low", "high", "unit")
@@ -185,7 +185,7 @@ def explanations_table(discovery: Discovery) -> Table:
     caption = (
         f"Explanations of the gap, n = {len(rows)}. Closed: share of the squared gap above the noise, on held-out "
         "data. Evidence: reduction of the Bayesian criterion compared with the initial model; larger is better. Tied: "
-        "these data cannot distinguish it from the named effect; small: it closes too little to be named."
+        "these data cannot distinguish the explanation from the named effect; small: it closes too little to be named."
     )
     if not (discovery.provenance and discovery.provenance.section == TRACKED):  # a walk is searched whole
         given = '--effects "effect@place, effect@place".'

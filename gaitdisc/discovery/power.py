@@ -77,7 +77,7 @@ class Power:
         if math.isinf(size):
             most = with_unit(amount(self.sizes[-1], self.sizes[-1] / 10), self.unit)
             instead = f"; in most records with {most} the answer is {self.instead}" if self.instead else ""
-            return f"{what} is not found in 19 of 20 records like these with a {number} of up to {most}{instead}."
+            return f"{what} is found in fewer than 19 of 20 records like these, up to a {number} of {most}{instead}."
         said = with_unit(amount(size, size / 10), self.unit)
         return f"{what} is found in 19 of 20 records like these if the {number} is at least {said}."
 
@@ -86,9 +86,9 @@ def find_power(model: Simulation, data: Measured, request: Request) -> list[Powe
     """Find how large each effect of a request must be to be found in records like these."""
     if not request.effects:
         raise SchemaError(
-            "a plan needs the effects that are to be found",
-            "none is given",
-            'Name them: --effects "viscous_damping@port, input_delay@input".',
+            "a plan must name the effects to be found",
+            "no effect is given",
+            'Name the effects: --effects "viscous_damping@port, input_delay@input".',
         )
     case = set_up_case(model, without_spikes(data), request)
     refuse_unknown(case.search, request.effects)

@@ -162,7 +162,7 @@ class ConditionAnswer:
 
 @dataclass(frozen=True)
 class Twins:
-    """Answers of the same search to simulated records that resemble the user's.
+    """Answers of the same search to simulated records that resemble the measured ones.
 
     >>> Twins(20, "coulomb_friction@air", {"coulomb_friction@air": 19, "no_gap": 1}, {"no_gap": 20}).sentence[44:77]
     'gives the same answer in 19 of 20'
@@ -231,7 +231,7 @@ class Discovery(Saved, file="discovery.json"):
     sentence : str
         The answer in one sentence.
     where : tuple of Whereabouts
-        Where the gap arises, the largest share first.
+        Places at which the gap arises, the largest share first.
     effects : tuple of FoundEffect
         Identified effects.
     rivals : tuple of FoundEffect
@@ -258,7 +258,7 @@ class Discovery(Saved, file="discovery.json"):
     given : str
         For effects that the user specified: ``proven`` or ``refuted`` by held-out data. Empty after a search.
     twins : Twins, optional
-        Answers of the same search to simulated records that resemble the user's.
+        Answers of the same search to simulated records that resemble the measured ones.
     hide : callable, optional
         Function that returns the discovery as it is saved, without words that may name a person.
     """

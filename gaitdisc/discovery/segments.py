@@ -113,7 +113,7 @@ def cut_segments(
     """
     shortest = int(min(samples[trial] for trial in trials)) - 2 * margin
     if shortest < 4:
-        found = f"one has {shortest + 2 * margin}"
+        found = f"one trial has {shortest + 2 * margin}"
         raise SamplingError(f"a trial must have at least {4 + 2 * margin} samples", found, "Remove this trial.")
     if shortest // max(shortest // length, 1) != length:
         length = shortest // max(round(shortest / length), 1)

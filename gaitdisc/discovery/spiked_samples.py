@@ -117,8 +117,8 @@ def _finding(measured: Measured, marks: NDArray[np.bool_], channel: int) -> Find
         nearest = [known[known < first][-1:], known[known > first][:1]]
         beside = " and ".join(f"{record[one[0]]:.4g}" for one in nearest if one.size)
         said.append(
-            f"trial {measured.trials[trial]!r}: {count} of {len(time)} samples, the first at {time[first]:.4g} s "
-            f"({value:.4g}; its neighbours: {beside})"
+            f"trial {measured.trials[trial]!r}: {count} of {len(time)} samples (first: {value:.4g} at "
+            f"{time[first]:.4g} s, next to {beside})"
         )
         spans += [(float(time[begin]), float(time[end - 1])) for begin, end in runs(mine)]
     more = f"; further trials with spikes: {len(said) - LISTED}" if len(said) > LISTED else ""

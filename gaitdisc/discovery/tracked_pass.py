@@ -188,7 +188,7 @@ def refuse_other_motion(walk: Pass) -> None:
             raise SchemaError(
                 f"residual forces must be at most {100 * OTHER_MOTION:.0f} % of the weight",
                 f"the residual of {one.called} is {size:.0f} N (root mean square), and the weight is {weight:.0f} N",
-                "Compute the forces for this motion again: these are of another motion, or their computation failed.",
+                "Compute the forces for this motion again: they belong to another motion, or their computation failed.",
             )
 
 
@@ -197,6 +197,6 @@ def only_residuals(walk: Pass) -> str:
     base = [(k, walk.engine.coordinates[k]) for k in sorted(walk.engine.base)]
     sizes = [f"{amount(walk.size(walk.demanded[:, k]))} {one.force_unit} at {one.called}" for k, one in base]
     return (
-        "Nothing can be named at a joint: no file gives the muscles' forces, so any moment between two segments is "
-        f"attributed to muscles. The residuals of the ground and the body alone are {', '.join(sizes)} (rms)."
+        "No effect can be named at a joint: no file gives the muscle forces, so any moment between two segments is "
+        f"attributed to muscles. The ground and the body leave residuals of {', '.join(sizes)} (rms)."
     )

@@ -162,10 +162,10 @@ def say_apart(source: TwinSource, rivals: Sequence[ScoredModel]) -> str:
     words, then = max(changes, key=lambda change: np.minimum(change[1], CLEARLY).sum())
     clear, tried = then >= CLEARLY, f"{len(changes)} simulated changes of the measurement"
     if not clear.any():
-        return f"None of {tried} would distinguish it from what is tied with it: evidence of at most {then.max():.0f}."
+        return f"None of {tried} would distinguish the tied explanations (expected evidence: at most {then.max():.0f})."
     names = " or ".join(named_at(one.parts[-1].candidate) for one, it in zip(rivals, clear, strict=True) if it)
     evidence = f"expected evidence {then[clear].min():.0f}, now {now[clear].max():.0f}"
-    return f"Of {tried}, {words} would best distinguish it from {names}: {evidence}."
+    return f"Of {tried}, {words} would best distinguish the answer from {names}: {evidence}."
 
 
 def weigh_run(source: TwinSource, rival: TwinSource, measured: Measured, larger: float) -> float:
@@ -185,7 +185,7 @@ def weigh_run(source: TwinSource, rival: TwinSource, measured: Measured, larger:
 def refuse_twins(model: str) -> NoReturn:
     """Refuse twins, and a plan, of what only an engine or a study can run."""
     raise SchemaError(
-        "twins and a plan need a simulation file or a Python function", f"{model} is neither", "Leave them out."
+        "twins and a plan need a simulation file or a Python function", f"{model} is neither", "Leave both out."
     )
 
 
@@ -198,7 +198,7 @@ def search_twins(
     sources = [TwinSource(case, now, verdict.found.noise) for now in models]
     if any(source.draw(0) is None for source in sources):
         what = "a free run of the simulation departs from the record, so records like these cannot be simulated"
-        finding = Finding("note", "twins", case.measured.source, what, "how often this answer is right")
+        finding = Finding("note", "twins", case.measured.source, what, "the estimate of how often this answer is right")
         return replace(found, findings=(*found.findings, finding))
     note_found("")
     answers = [*search_records(sources, model, request)]
@@ -222,7 +222,7 @@ def search_records(sources: Sequence[TwinSource], model: Simulation, request: Re
                 pending = _search_side_by_side(model, twins, len(records) - done + 1, rule)
             answer = next(pending)
             left = (time.perf_counter() - begun) / done * (len(records) - done)
-            request.progress(f"{done} of {len(records)} simulated records are searched; about {left:.0f} s remain")
+            request.progress(f"{done} of {len(records)} simulated records searched; about {left:.0f} s remain")
             keep(answer)
         yield answer
 

@@ -131,7 +131,7 @@ def _removes_most(discovery: Discovery) -> str:
         if size and size.p < size.alpha and size.unexplained < 1:
             effects = " and ".join(named_at(effect) for effect in explanation.effects)
             closed = f"{100 * (1 - size.unexplained):.0f} % of the squared held-out error above the noise"
-            return f" Of the listed explanations, {effects} removes most: {closed}. New trials can decide."
+            return f" The listed explanation that removes most is {effects}: {closed}. New trials can decide."
     return ""
 
 

@@ -58,8 +58,8 @@ def refuse_other_units(mapping: Simulation, engine: Engine, measured: Measured, 
         one = engine.coordinates[steep[0]]
         raise SchemaError(
             f"the angle {one.called!r} must stay within {STEEPEST:g} rad: at a right angle two axes coincide",
-            f"column {_column(mapping, one)!r} makes it {largest[steep[0]]:.4g} rad",
-            "If these are degrees, state it in the mapping. Otherwise turn the axes of the model: x must point ahead.",
+            f"column {_column(mapping, one)!r} reaches {largest[steep[0]]:.4g} rad",
+            "State degrees in the mapping if these are degrees. Otherwise turn the model's axes: x must point ahead.",
         )
     misfit, degrees = _Misfit(mapping, engine, measured, states), as_read.copy()
     degrees[far] = np.pi / 180
@@ -68,7 +68,7 @@ def refuse_other_units(mapping: Simulation, engine: Engine, measured: Measured, 
         if np.isfinite(one.high) or misfit.with_factors(degrees) < misfit.with_factors(as_read):
             raise SchemaError(
                 f"coordinate {one.called!r} must stay within {_limit(one):.3g} rad",
-                f"column {_column(mapping, one)!r} makes it {largest[k]:.4g} rad, but may be in degrees",
+                f"column {_column(mapping, one)!r} reaches {largest[k]:.4g} rad; it may be in degrees",
                 f"State degrees in the mapping: gaitdisc new {engine.path.with_suffix('.toml').name} --from "
                 f"{engine.path.name} --degrees.",
             )
@@ -97,8 +97,8 @@ def refuse_other_conventions(mapping: Simulation, engine: Engine, measured: Meas
     )
     raise SchemaError(
         "the columns must have the units and signs that the mapping states",
-        f"column {column!r} {how.is_so}{more}: {engine.called} misses the record's accelerations by "
-        f"{as_read**0.5:.3g} times their size; with this correction, by {now**0.5:.2g}",
+        f"column {column!r} {how.is_so}{more}: the accelerations of {engine.called} differ from the record by "
+        f"{as_read**0.5:.3g} times their size, and with this correction by {now**0.5:.2g} times",
         f"{how.mend.format(column=column, expression=dict(mapping.observations)[column], name=one.name)} "
         f"To write a mapping: gaitdisc new {engine.path.with_suffix('.toml').name} --from {engine.path.name}.",
     )

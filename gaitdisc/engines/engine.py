@@ -19,6 +19,6 @@ def read_model(path: Path | str) -> Engine:
         raise ReadError("a model file must exist", f"there is none at {path}", "Check the path.")
     if not is_model(path):
         raise ReadError(
-            "a model must be a MuJoCo (.xml) or OpenSim (.osim) file", f"found {path.name}", "Name such a file."
+            "a model must be a MuJoCo (.xml) or OpenSim (.osim) file", f"found {path.name}", "Give such a file."
         )
     return OpensimModel(path) if path.suffix.lower() == ".osim" else MujocoModel(path)

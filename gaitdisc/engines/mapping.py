@@ -35,9 +35,9 @@ def draft(engine: Engine, degrees: bool = False) -> Simulation:
     found = engine.coordinates
     if len(found) + len(engine.controls) > MOST:
         raise SchemaError(
-            f"a model may have at most {MOST} free coordinates and controls together",
-            f"{engine.path.name} has {len(found)} and {len(engine.controls)}",
-            "Lock the joints (MuJoCo: take them out of their bodies) that your record does not show.",
+            f"a model must have at most {MOST} free coordinates and controls together",
+            f"{engine.path.name} has {len(found)} coordinates and {len(engine.controls)} controls",
+            "Lock the joints that your record does not show (MuJoCo: remove these joints).",
         )
     states = [State(one.name, one.unit, f"coordinate {one.called}") for one in found]
     states += [State(one.speed, f"{one.unit}/s") for one in found]
@@ -81,8 +81,8 @@ def read_mapping(path: Path | str) -> tuple[Simulation, Engine]:
     if read_tracked(file) is not None:
         raise SchemaError(
             "a mapping for a forward simulation must state the model's controls",
-            f"{file.name} holds [tracked]: its motion is prescribed, and only discover reads it",
-            "Run gaitdisc discover on it; to simulate, write a mapping without [tracked] for a copy of the model.",
+            f"{file.name} has [tracked]: its motion is prescribed, and only `gaitdisc discover` reads it",
+            "Run `gaitdisc discover`. To simulate, write a mapping without [tracked] for a copy of the model.",
         )
     mapping = read_simulation(file)
     engine = read_model(file.parent / mapping.model)
@@ -112,9 +112,9 @@ def check_mapping(mapping: Simulation, engine: Engine) -> None:
                 )
         if kind not in ("parameter", "port") and given != has:
             raise SchemaError(
-                f"a mapping must list every {kind.partition(' or ')[0]} of the model, in its order",
+                f"a mapping must list every {kind.partition(' or ')[0]} of the model, in the model's order",
                 f"the mapping lists {', '.join(given) or 'none'}; {file} has {', '.join(has) or 'none'}",
-                f"Write it again: gaitdisc new {engine.path.with_suffix('.toml').name} --from {file}.",
+                f"Write the mapping again: gaitdisc new {engine.path.with_suffix('.toml').name} --from {file}.",
             )
 
 

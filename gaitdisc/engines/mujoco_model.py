@@ -60,11 +60,11 @@ class MujocoModel:
             name = self._called("equality", int(bound[0])) or int(bound[0]) + 1
             raise SchemaError(
                 "every coordinate of the model must be free",
-                f"{self.path.name}: the equality constraint {name!r} makes one depend on others",
-                'Switch it off (active="false"), or take the dependent joint out of the model.',
+                f"{self.path.name}: the equality constraint {name!r} makes a coordinate depend on others",
+                'Switch this constraint off (active="false"), or remove the dependent joint from the model.',
             )
         if not model.njnt:
-            raise SchemaError("a model must have a joint", f"{self.path.name} has none", "Give a body a joint.")
+            raise SchemaError("a model must have a joint", f"{self.path.name} has none", "Add a joint.")
         names, kinds, taken = self._names("joint", model.njnt, set()), model.jnt_type, set[str]()
         self.balls = (model.jnt_dofadr + 3 * (kinds == 0))[kinds < 2].tolist()  # first of the three angles of each
         limited = (model.jnt_limited & (kinds > 1))[:, None]  # a ball's limit is a cone

@@ -51,15 +51,15 @@ class OpensimModel:
             )
         if described["dependent"]:
             raise SchemaError(
-                "every unlocked coordinate of the model must be free",
-                f"{self.path.name}: {described['dependent'][0]!r} depends on another one, but not by a coupler",
+                "every unlocked coordinate must be free, or depend on another one by a CoordinateCouplerConstraint",
+                f"{self.path.name}: {described['dependent'][0]!r} depends on another coordinate in a different way",
                 "Use a CoordinateCouplerConstraint, remove the dependence, or lock the coordinate.",
             )
         if not described["coordinates"]:
             raise SchemaError(
                 "a model must have at least one free coordinate",
                 f"{self.path.name}: all are locked ({', '.join(described['locked']) or 'there is none'})",
-                "Unlock those that were measured.",
+                "Unlock the measured coordinates.",
             )
         taken: set[str] = set()
         self.coordinates = tuple(
@@ -158,7 +158,7 @@ class OpensimModel:
             code = self._process.wait()
             raise ReadError(
                 "OpenSim must compute the model to the end",
-                f"{self.path.name}: its process ended with exit code {code}",
+                f"{self.path.name}: the process ended with exit code {code}",
                 "Open the model in OpenSim itself: a model that fails there cannot be simulated here.",
             ) from None
         if word == "absent":

@@ -35,7 +35,7 @@ class OpensimTracked(OpensimModel):
         )
         if not self.coordinates:
             raise SchemaError(
-                "a model must have at least one free coordinate", f"{self.path.name}: all are locked", "Unlock some."
+                "a model must have at least one free coordinate", f"{self.path.name}: all are locked", "Unlock one."
             )
         self._called = {new_name(f"{name}_mass", "number", taken): f"{name}_mass" for name, _ in described["masses"]}
         masses = zip(self._called, described["masses"], strict=True)

@@ -116,7 +116,7 @@ class OwnRuns:
         """One sentence."""
         sizes = zip(self.units.items(), *map(root_mean_square, (self.before, self.after)), strict=True)
         found = "; ".join(f"{name} {old:.3g} and {new:.3g} {unit}" for (name, unit), old, new in sizes)
-        return f"in {len(self.before)} runs by {self.engine}, the errors without and with the effects are {found}"
+        return f"rms errors without and with the effects, in {len(self.before)} runs by {self.engine}: {found}"
 
 
 def root_mean_square(left: Values) -> Values:
@@ -163,7 +163,7 @@ def residual_by(
     said = time.monotonic()
     for row, (trial, first) in enumerate(zip(at.trial, at.first, strict=True)):
         if time.monotonic() - said > SILENT_S:
-            model.progress(f"{row} of {len(at.trial)} runs by {engine.called} are done")
+            model.progress(f"{row} of {len(at.trial)} runs by {engine.called} done")
             said = time.monotonic()
 
         def left_from(starts: Values, samples: int, trial: int = trial, first: int = first):

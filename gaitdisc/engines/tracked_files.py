@@ -33,7 +33,7 @@ def draft_tracked(
         raise SchemaError(
             "a walk can be tracked only with an OpenSim model",
             f"found {model.name}",
-            "Leave out --external-loads, --forces and --actuators.",
+            "Give an .osim model, or leave out --external-loads, --forces and --actuators.",
         )
     if loads is None:
         raise SchemaError(
@@ -61,7 +61,7 @@ def check_loads(tracked: Tracked) -> None:
             near = nearest_word(body, tuple(bodies))
             raise SchemaError(
                 "a recorded force must act on a body of the model",
-                f"{loads.name}: force {force.get('name')!r} acts on {body!r}; {tracked.model.name} has no such body",
+                f"{loads.name}: force {force.get('name')!r} acts on {body!r}, a body that {tracked.model.name} lacks",
                 f"Did you mean {near!r}? " if near else f"Correct <applied_to_body>: {', '.join(bodies)}.",
             )
         for word in ("force_identifier", "point_identifier", "torque_identifier"):
@@ -70,8 +70,8 @@ def check_loads(tracked: Tracked) -> None:
             if lacking:
                 raise ChannelError(
                     f"each force of {loads.name} must have its columns in {data.name}",
-                    f"force {force.get('name')!r} needs {lacking[0]!r}; there is none",
-                    f"Correct <{word}>, or export the columns.",
+                    f"for force {force.get('name')!r} there is no column {lacking[0]!r}",
+                    f"Correct <{word}>, or export this column.",
                 )
 
 
@@ -105,7 +105,7 @@ def read_tracked_motion(
                 f"coordinate {one.called!r} must stay within {limit:.3g} {one.unit}",
                 f"{kinematics.name} has {largest:.4g} {one.unit}, which may be "
                 f"{'degrees' if one.unit == 'rad' else 'millimetres'}",
-                "Write inDegrees=yes in the header of the file." if one.unit == "rad" else "Write metres.",
+                "Write inDegrees=yes in the header of the file." if one.unit == "rad" else "Export metres.",
             )
     turning = [k for k, one in enumerate(coordinates) if one.unit == "rad"]
     moved = np.ptp(q[:, turning], axis=0) if turning else np.ones(1)
@@ -159,8 +159,8 @@ def _coordinates(path: Path, coordinates: tuple[Coordinate, ...], word: str) -> 
                 if degrees is None:
                     raise UnitError(
                         f"{path.name} must state whether its angles are in degrees",
-                        "its header does not",
-                        "Write inDegrees=yes or inDegrees=no there, before endheader.",
+                        "its header does not state it",
+                        "Write inDegrees=yes or inDegrees=no in the header, before endheader.",
                     )
                 unit = "deg" if degrees else "rad"
             columns[name] = stream.values[:, k] * (np.pi / 180 if unit.startswith("deg") else 1.0)
@@ -170,9 +170,9 @@ def _coordinates(path: Path, coordinates: tuple[Coordinate, ...], word: str) -> 
             raise ChannelError(
                 "every free coordinate of the model must be measured",
                 f"{path.name} has no column {one.called!r}",
-                f"Did you mean {near!r}? Rename it, or lock the coordinate in the model."
+                f"Did you mean {near!r}? Rename this column, or lock the coordinate in the model."
                 if near
-                else "Add it, or lock the coordinate in the model.",
+                else "Add this column, or lock the coordinate in the model.",
             )
     return streams[0].time, np.column_stack([columns[one.called] for one in coordinates])
 
@@ -216,7 +216,7 @@ def actuator_forces(tracked: Tracked, known: tuple[str, ...]) -> tuple[tuple[str
     if not np.isfinite(values).all():
         row, column = (int(one[0]) for one in np.nonzero(~np.isfinite(values)))
         raise ReadError(
-            "forces must have no gap", f"{path.name}: {names[kept[column]]!r} is empty in row {row + 1}", "Fill it."
+            "forces must have no gap", f"{path.name}: row {row + 1} of {names[kept[column]]!r} is empty", "Fill it."
         )
     return tuple(names[k] for k in kept[1:]), values
 
@@ -236,8 +236,8 @@ def _select_shared(spans: dict[Path, Values], time: Values, tracked: Tracked) ->
     if not inside.any() or np.ptp(time[inside]) < SHORTEST_S:
         raise SamplingError(
             f"a walk must last at least {SHORTEST_S:g} s",
-            f"{tracked.model.name} is to be tracked from {tracked.start_s:g} to {tracked.end_s:g} s, with "
-            f"{inside.sum()} samples there",
+            f"the walk of {tracked.model.name} is tracked from {tracked.start_s:g} to {tracked.end_s:g} s, where the "
+            f"number of samples is {inside.sum()}",
             "Correct start_s and end_s in [tracked].",
         )
     return inside

@@ -58,16 +58,16 @@ def read_tracked(path: Path | str) -> Tracked | None:
             return None
         table = parse_toml(text)
     except (OSError, ValueError) as error:
-        raise ReadError("a mapping must be a TOML file", f"{file.name}: {error}", "Correct it there.") from None
+        raise ReadError("a mapping must be a TOML file", f"{file.name}: {error}", "Correct it.") from None
     given = table["tracked"]
     unknown = [name for name in table if name not in ("title", "model", "tracked")]
     unknown += [name for name in given if name not in (*FILES, *NUMBERS)]
     if unknown:
         near = nearest_word(unknown[0], (*FILES, *NUMBERS))
         raise SchemaError(
-            f"a mapping with [tracked] may have only title, model and, in that table, {', '.join((*FILES, *NUMBERS))}",
+            f"a mapping with [tracked] may have only title, model and, in [tracked], {', '.join((*FILES, *NUMBERS))}",
             f"{file.name} has {unknown[0]!r}",
-            f"Did you mean {near!r}?" if near else "Take it out.",
+            f"Did you mean {near!r}?" if near else "Remove this key.",
         )
     if "external_loads" not in given:
         raise SchemaError(
@@ -79,7 +79,7 @@ def read_tracked(path: Path | str) -> Tracked | None:
     for name in NUMBERS:
         value = given.get(name, 1.0)
         if not isinstance(value, int | float) or isinstance(value, bool) or not 0 <= value < 1e3:
-            raise SchemaError(f"{name} must be a number", f"{file.name} has {value!r}", "Correct it.")
+            raise SchemaError(f"{name} must be from 0 to 1000", f"{file.name} has {value!r}", "Correct the number.")
     paths = {name: _there(file, name, given[name]) for name in FILES if name in given}
     model = _there(file, "model", table.get("model", f"{file.stem}.osim"))
     tracked = Tracked(model, find_loads(paths.pop("external_loads")))
@@ -110,8 +110,8 @@ def find_loads(loads: Path) -> tuple[Path, Path]:
     if not named or not path.is_file():
         raise ReadError(
             f"{loads.name} must name the file of its forces in <datafile>",
-            f"there is no file {named!r} in its folder" if named else "it names none",
-            "Correct <datafile>; the path is relative to the folder of the file that names it.",
+            f"there is no file {named!r} in its folder" if named else "it names no file",
+            f"Correct <datafile>; its path is relative to the folder of {loads.name}.",
         )
     return loads, path
 
@@ -121,7 +121,7 @@ def read_xml(path: Path) -> ElementTree.Element:
     try:
         return ElementTree.parse(path).getroot()
     except ElementTree.ParseError as error:
-        raise ReadError("an OpenSim file must be XML", f"{path.name}: {error}", "Export it again.") from None
+        raise ReadError("an OpenSim file must be XML", f"{path.name}: {error}", "Export this file again.") from None
 
 
 def write_tracked_mapping(tracked: Tracked, file: Path) -> None:

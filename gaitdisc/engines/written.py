@@ -82,7 +82,7 @@ def write_model(engine: Engine, augmented: Simulation, native: bool = True) -> W
                 absent.append(what)
             continue
         text, current, forces, values = tried, read, *wanted[1:]
-        said = "is written into the model; the accelerations agree with those of the expression to"
+        said = "is written into the model; the accelerations agree with those of the expression to a fraction of"
         notes.append(f"{what} {said} {deviation:.1g}")
     definitions = augmented.definitions
     for name, expression in definitions:

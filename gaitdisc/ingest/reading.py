@@ -241,7 +241,7 @@ WRITERS = {".mot": write_storage, ".sto": write_storage, ".csv": write_table, ".
 
 
 def write_recording(recording: Recording, path: Path | str, overwrite: bool = False) -> Path:
-    """Write a recording to a file that `read` can read; never a partial file.
+    """Write a recording to a file that `read` can read, completely or not at all.
 
     Parameters
     ----------

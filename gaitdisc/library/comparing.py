@@ -105,7 +105,7 @@ def paired_tests(first: pd.DataFrame, second: pd.DataFrame, alpha: float = 0.05)
     Returns
     -------
     DataFrame
-        One row per variable: n, w, p, medians, Hodges-Lehmann `shift` (second minus first) with its 95 % interval `low`
+        One row per variable: n, w, p, medians, Hodges-Lehmann `shift` (second minus first) with its 95 % CI `low`
         and `high`, `rank_biserial`, `p_adjusted`, `different`, and the participants left out. A variable with fewer
         than six participants is not tested and not counted.
 
@@ -165,7 +165,7 @@ def permutation_clusters(
     alpha : float
         Probability of a false positive anywhere.
     permutations : int
-        Maximum number of permutations; all of them if fewer are possible.
+        Maximum number of permutations; if fewer are possible, all are used.
     seed : int
         Seed of the random permutations.
 
@@ -205,7 +205,7 @@ def permutation_clusters(
         raise ShapeError(
             "two sets of curves must have the same points and channels"
             + (", and the same number of rows for pairs" if paired else ""),
-            f"shapes (unit, phase, channel) are {one.shape} and {other.shape}, with {len(names)} names of channels",
+            f"the shapes (unit, phase, channel) are {one.shape} and {other.shape}, with {len(names)} names of channels",
             "Cut both into strides of 101 points with the same channels.",
         )
     plan = PermutationPlan(alpha, permutations, seed)

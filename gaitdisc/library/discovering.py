@@ -56,8 +56,8 @@ def discover(
         Fit exactly these effects without a search, each ``"effect@place"`` (``"viscous_damping@air"``); held-out data
         support or refute them together.
     alpha : float, optional
-        Maximum false-positive rate: the p-value of a named effect on held-out data is below it. For a tracked walk it
-        is 0.05.
+        Maximum false-positive rate: the p-value of a named effect on held-out data is below alpha. For a tracked walk,
+        alpha is 0.05.
     twins : int, optional
         Number of records like yours that are simulated with the identified effect, and as many without it. All are
         searched like yours; `found.twins` has the answers. Not available for models of MuJoCo and OpenSim.
@@ -67,7 +67,7 @@ def discover(
     found : Discovery
         Verdict, summary in one sentence, effects with intervals, other explanations, and the gap of both models.
     augmented : Simulation
-        The model with the identified effect; `simulate` runs it. For a MuJoCo or OpenSim model, its mapping.
+        The model with the identified effect, for `simulate`; of a MuJoCo or OpenSim model, the mapping.
 
     Raises
     ------

@@ -44,8 +44,8 @@ def lowpass(
     Parameters
     ----------
     signal : Recording, DataFrame, Series or array_like (time,) or (time, channel)
-        A DataFrame has its times [s] in a column `time` or in an index of that name; every other column is filtered. A
-        Series has them in its index. A table without times, like an array, needs `rate_hz`.
+        A DataFrame must have times [s] in a column `time` or in an index of that name; every other column is filtered.
+        A Series must have times in its index. A table without times, like an array, requires `rate_hz`.
     cutoff_hz : float
         -3 dB frequency of one pass [Hz]; for 6 Hz (order 4, 100 Hz), both passes together have -3 dB at 5.39 Hz.
     order : int
@@ -68,8 +68,8 @@ def lowpass(
 
     References
     ----------
-    Ebers (2023), section 4.2.1. Differs: the two passes, the meaning of the cut-off and the edges, which the text does
-    not state.
+    Ebers (2023), section 4.2.1. Not stated there, and chosen here: the two passes, the meaning of the cut-off, and the
+    edges.
 
     Examples
     --------
@@ -94,7 +94,7 @@ def highpass(
     Parameters
     ----------
     signal : Recording, DataFrame, Series or array_like (time,) or (time, channel)
-        Signal in the forms of `lowpass`.
+        Signal in a form that `lowpass` accepts.
     cutoff_hz : float
         -3 dB frequency of one pass [Hz].
     order : int
@@ -137,7 +137,7 @@ def envelope(
     Parameters
     ----------
     emg : Recording, DataFrame, Series or array_like (time,) or (time, channel)
-        Raw EMG, as digitised and not rectified; EMG channels only, in the forms of `lowpass`.
+        Raw EMG, as digitised and not rectified; EMG channels only, in a form that `lowpass` accepts.
     highpass_hz, lowpass_hz : float
         -3 dB frequencies of one pass [Hz].
     order : int
@@ -160,7 +160,7 @@ def envelope(
     References
     ----------
     Ebers (2023), section 4.2.1: high-passed at 40 Hz, rectified, low-passed at 10 Hz, "fourth-order Butterworth
-    filters". Differs: order 4 in each of two passes, without lag, because the text states neither.
+    filters". Not stated there, and chosen here: order 4 in each of two passes, without lag.
 
     Examples
     --------
@@ -178,7 +178,7 @@ def differentiate(signal: Signal, order: int = 1, rate_hz: float | None = None) 
     Parameters
     ----------
     signal : Recording, DataFrame, Series or array_like (time,) or (time, channel)
-        Filtered signal, because differentiation amplifies noise; in the forms of `lowpass`.
+        Filtered signal, because differentiation amplifies noise; in a form that `lowpass` accepts.
     order : int
         Order of the derivative, 1 or 2.
     rate_hz : float, optional

@@ -38,9 +38,9 @@ def angles(
         `plug_in_gait`, `oxford_foot`, `helen_hayes`, `rajagopal`, `gait2354`, or a `.toml` file; by default recognised
         by the labels.
     joints : str, optional
-        `free` (each segment fitted separately), `held` (joined at joint centres) or `planar`; by default the set's.
+        `free` (each segment fitted separately), `held` (joined at joint centres) or `planar`; if omitted, the set's.
     forward : sequence of 3 floats, optional
-        Direction of walking in the laboratory's axes; by default from the pelvis.
+        Direction of walking in the laboratory's axes; by default computed from the pelvis.
 
     Returns
     -------

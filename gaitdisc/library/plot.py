@@ -374,7 +374,7 @@ def __dir__() -> list[str]:
 def _refuse_other(given: object, kind: str, made_by: str) -> None:
     if type(given).__name__ != kind:
         raise ShapeError(
-            f"this plot needs a {kind}, as {made_by} returns it",
+            f"this plot must be given a {kind}, as {made_by} returns it",
             f"found {type(given).__name__}",
             "Pass the result itself, or load it from its folder with gaitdisc.load.",
         )

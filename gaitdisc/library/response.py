@@ -102,7 +102,7 @@ def _angles(trials: Mapping[str, Trial], outputs: Sequence[str], given: Sequence
     if absent:
         raise ChannelError(
             "each output must be an angle that both walks have",
-            f"{absent[0]!r} is not among {', '.join(chosen) or 'them'}",
-            "Remove it from outputs, or name it in angles.",
+            f"{absent[0]!r} is not among the angles ({', '.join(chosen) or 'none'})",
+            "Remove this output, or name it in angles.",
         )
     return chosen

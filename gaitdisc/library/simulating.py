@@ -108,7 +108,7 @@ def simulate(
     time = np.asarray(time, float)
     if time.ndim != 1 or len(time) < 3:
         raise ShapeError(
-            "a simulation needs at least three increasing times [s]",
+            "a simulation must have at least three increasing times [s]",
             f"found {time.tolist() if time.size < 3 else time.shape}",
             "Give every time, for example np.linspace(start, end, number).",
         )
@@ -145,8 +145,8 @@ def _run_by(
     if lost.size:
         raise SimulationError(
             f"{engine.called} must run {engine.path.name} to the end",
-            f"its numbers are not finite from t = {time[lost[0]]:.6g} s on",
-            "Use another initial state, or check the inputs there.",
+            f"the states are not finite from t = {time[lost[0]]:.6g} s on",
+            "Use another initial state, or check the inputs at that time.",
         )
     channels, expressions = zip(*simulation.observations, strict=True)
     seen = evaluate_many(replace(simulation, model=""), expressions, Points(time, states, driven, rate=rate))
@@ -161,9 +161,9 @@ def _driven(simulation: Simulation, time: Values, inputs: Any) -> Values:
     given: Any = {} if inputs is None else inputs
     if not isinstance(given, Recording | Mapping) and not hasattr(given, "columns"):
         raise SimulationError(
-            f"{simulation.title or 'the simulation'!r} needs the inputs {', '.join(names)}",
+            f"{simulation.title or 'the simulation'!r} must have the inputs {', '.join(names)}",
             f"the inputs are a {type(given).__name__} without names",
-            f"Name them: inputs={{{names[0]!r}: values}}, or use a DataFrame or Recording with these columns.",
+            f"Name the inputs: inputs={{{names[0]!r}: values}}, or use a DataFrame or Recording with these columns.",
         )
     table: Any = given
     if hasattr(table, "columns") and has_times(table):  # it is read at the simulation's times
@@ -173,9 +173,9 @@ def _driven(simulation: Simulation, time: Values, inputs: Any) -> Values:
     for name in names:
         if name not in known:
             raise SimulationError(
-                f"{simulation.title or 'the simulation'!r} needs the inputs {', '.join(names)}",
+                f"{simulation.title or 'the simulation'!r} must have the inputs {', '.join(names)}",
                 f"{name!r} is not among the given inputs ({', '.join(known) or 'none'})",
-                f"Add it: inputs={{{name!r}: values}}.",
+                f"Add this input: inputs={{{name!r}: values}}.",
             )
         if isinstance(given, Recording):
             values = interpolate(given.time, given.selected([name]).values, time)[:, 0]
@@ -194,7 +194,7 @@ def _driven(simulation: Simulation, time: Values, inputs: Any) -> Values:
     if bad.size:
         row, column = bad[0]
         raise SimulationError(
-            "an input must be known at every time",
+            "every input must have a value at each time",
             f"{names[column]!r} is missing at t = {time[row]:.6g} s",
             "Fill the gap, or simulate a shorter period.",
         )
@@ -217,7 +217,7 @@ def _start(simulation: Simulation, start: Mapping[str, float] | Sequence[float] 
             raise SimulationError(
                 "every state of a simulation must have an initial value",
                 f"the state {state.name!r} has none",
-                f"Add it: start={{{state.name!r}: value}}.",
+                f"Add this value: start={{{state.name!r}: value}}.",
             )
     return np.array([state.initial for state in moved.states], float)
 

@@ -128,7 +128,7 @@ def cycles(
     )
     if side not in found:
         raise StrideError(
-            f"cycles of side {side!r} need initial contacts of this side",
+            f"for cycles of side {side!r}, there must be initial contacts of this side",
             f"contacts were found for side {', '.join(sorted(found)) or 'none'}",
             "Use the other side ('r' or 'l'), or another detector.",
         )
@@ -148,7 +148,7 @@ def _pick_given(contacts: Any, side: str, trial: Walk) -> dict[str, Contacts]:
     if time.size and np.nanmax(time) > latest:
         raise StrideError(
             "initial contacts must be times on the walk's clock [s]",
-            f"one is at {np.nanmax(time):g} s, but {walk.name} ends at {latest:g} s",
+            f"one contact is at {np.nanmax(time):g} s, but {walk.name} ends at {latest:g} s",
             "Divide frame numbers by the rate, or milliseconds by 1000.",
         )
     return {side: Contacts(time, side, "events")}

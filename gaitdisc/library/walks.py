@@ -34,9 +34,9 @@ def make_recording(signal: Recording | Trial | pd.DataFrame, kind: Kind | None =
         return signal
     if isinstance(signal, Trial):
         raise ChannelError(
-            "this function needs one stream of a trial",
-            f"{signal.name} has {', '.join(signal.streams) or 'none'}",
-            'Select one, for example trial.stream("kinematics").',
+            "this function must be given one stream of a trial",
+            f"{signal.name} has {', '.join(signal.streams) or 'no stream'}",
+            'Select a stream, for example trial.stream("kinematics").',
         )
     if not hasattr(signal, "columns"):
         raise ShapeError(

@@ -58,7 +58,7 @@ def fit_fourier_ridge(training: Samples, check: Samples, features: int = 0, seed
     training.trainable(LEAST_SAMPLES)
     if not len(check):
         raise TrainingError(
-            "ridge regression needs a validation part to choose its penalty",
+            "ridge regression must have a validation part to choose its penalty",
             "the validation part has no samples",
             "Record longer, or give validation a larger share.",
         )

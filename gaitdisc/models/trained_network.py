@@ -71,7 +71,7 @@ def restore_network(
     try:
         network.load_state_dict({name: torch.from_numpy(values) for name, values in weights.items()})
     except RuntimeError as error:
-        raise ValueError(f"its weights do not fit a {type(network).__name__}") from error
+        raise ValueError(f"the weights do not fit a {type(network).__name__}") from error
     scales = Scale(arrays["x_mean"], arrays["x_sd"]), Scale(arrays["y_mean"], arrays["y_sd"])
     return TrainedNetwork(inputs, outputs, *scales, network.eval())
 

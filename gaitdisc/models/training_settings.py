@@ -55,8 +55,8 @@ class TrainingSettings:
         """Refuse settings that train nothing."""
         for name in ("epochs", "batch", "learning_rate", "threads"):
             _refuse_unless(getattr(self, name) > 0, f"{name} above 0", f"{name} is {getattr(self, name)}")
-        _refuse_unless(bool(self.decays), "at least one weight decay", "decays is empty")
-        _refuse_unless(min(self.decays) >= 0, "weight decays of 0 or more", f"decays holds {min(self.decays)}")
+        _refuse_unless(bool(self.decays), "at least one weight decay", "there is none")
+        _refuse_unless(min(self.decays) >= 0, "weight decays of 0 or more", f"one is {min(self.decays)}")
         _refuse_unless(0 < self.inner_share < 1, "an inner_share between 0 and 1", f"it is {self.inner_share}")
         for name, among in (("arithmetic", ("auto", "torch")), ("precision", PRECISIONS)):
             value = getattr(self, name)
@@ -65,7 +65,7 @@ class TrainingSettings:
 
 def _refuse_unless(holds: bool, needed: str, found: str) -> None:
     if not holds:
-        raise TrainingError(f"training needs {needed}", found, "Correct the training settings.")
+        raise TrainingError(f"the training settings must have {needed}", found, "Correct the training settings.")
 
 
 LEAST_STEPS = 1000  # short recordings have few batches an epoch: they get more epochs

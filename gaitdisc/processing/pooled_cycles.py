@@ -37,14 +37,14 @@ class PooledCycles(Saved, file="cycles.json"):
     Parameters
     ----------
     subject, group, session, condition : str
-        Pseudonym, and the study's words for the others; empty if the study has no groups or sessions.
+        Pseudonym, and the study's names of group, session and condition; empty if the study has none.
     trials : int
         Number of trials with at least one cycle, kept or not.
     detectors : mapping of str to int
         Detector of the contacts -> number of trials.
     contact_offset_s, foot_off_offset_s : float, optional
-        Shift of contacts and foot offs from markers or angles [s], positive towards later times: the median difference
-        over steps that a plate or the file's events also recorded. None without a shift.
+        Shift of contacts and foot offs from markers or angles [s], positive towards later times: their median
+        difference from a plate or the file's events, over the steps that both contain. None without a shift.
     offset_steps : int
         Number of contacts that both detectors found.
     over_ground : bool

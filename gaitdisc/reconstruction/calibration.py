@@ -55,7 +55,7 @@ def first_strides(trials: Sequence[Samples], count: int, reach_s: float) -> Firs
     first, rest = (stride >= 0) & (stride < count), stride >= count
     if not first.any() or not rest.any():
         raise StrideError(
-            f"calibration needs {count} strides, and further strides for the test",
+            f"there must be {count} strides for calibration, and further strides for the test",
             f"{windows.subject or 'the person'} has {len(np.unique(stride[stride >= 0]))} strides",
             "Calibrate on fewer strides, or record longer.",
         )

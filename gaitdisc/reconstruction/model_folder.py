@@ -114,7 +114,7 @@ def load_model(folder: Path) -> SensingModel:
     try:
         data = read_sealed(folder / NAME)
         if data["format"] != FORMAT:
-            raise ValueError(f"it has format {data['format']}; this version reads {FORMAT}")
+            raise ValueError(f"it has format {data['format']}, but this version reads {FORMAT}")
         check_files(folder, data["sha256"])
         held = data["sensing"]
         what = Sensing(tuple(held["sensors"]), tuple(held["states"]), Lags(**held["lags"]), held["rate_hz"])
@@ -177,7 +177,7 @@ def load_weights(path: Path, build: Callable[[int, int], Any] | None = None) -> 
             arrays = {name: file[name] for name in file.files}
         names = json.loads(str(arrays["names"]))
         if names["format"] != FORMAT:
-            raise ValueError(f"it has format {names['format']}; this version reads {FORMAT}")
+            raise ValueError(f"it has format {names['format']}, but this version reads {FORMAT}")
         named = tuple(names["inputs"]), tuple(names["outputs"])
         if build is None:
             scales = Scale(arrays["x_mean"], arrays["x_sd"]), Scale(arrays["y_mean"], arrays["y_sd"])

@@ -51,10 +51,10 @@ def models_table(done: Reconstruction) -> Table:
     with_sensors = "“with sensors”: sensors are included as states without error, as in Table 5.2; " if angles else ""
     people = counted(len(done.participants), "participant")
     caption = (
-        f"Models on the test windows: mean over n = {people} [95 % interval of the mean], {_what_is_tested(done)}. "
+        f"Models on the test windows: errors of {_what_is_tested(done)}, mean over n = {people} [95 % CI of the mean]. "
         f"Split: {done.split}. Relative L2: norm of the error divided by norm of the measured values about zero; "
-        f"{with_sensors}R²: median over reconstructed channels; coverage: share inside the 90 % interval; seconds: "
-        "processor time of a fit. * recommended: the cheapest model within 2 % of the smallest error on the validation "
+        f"{with_sensors}R²: median over reconstructed channels; coverage: share of samples inside the 90 % interval; "
+        "fit: processor time. * recommended: the cheapest model within 2 % of the smallest error on the validation "
         "windows."
     )
     return Table("models", caption, tuple(shown), rows, numbers)
@@ -266,11 +266,11 @@ def search_table(found: pd.DataFrame) -> Table:
         for k, row in found.reset_index(drop=True).iterrows()
     )
     caption = (
-        "Best set of sensors of every size, by ridge regression on their history, all participants together: all sets "
-        "of up to three sensors were tried, then the sensor with the largest gain was added. Chosen by the RMSE of all "
-        "angles on the validation windows, with exact sensors; the other column: RMSE of the unmeasured angles on the "
-        f"test windows. * the smallest set that one more sensor improves by less than {100 * WORTH:.0f} %; otherwise "
-        "the largest."
+        "Best set of sensors of every size for all participants together, by ridge regression on the sensors' history. "
+        "All sets of up to three sensors were tried; then the sensor with the largest gain was added. Sets were chosen "
+        "by the RMSE of all angles on the validation windows, with exact sensors. Not measured: RMSE of such angles "
+        f"on the test windows. * the smallest set that one more sensor improves by less than {100 * WORTH:.0f} %; "
+        "otherwise the largest."
     )
     columns = ("sensors", "which", "all angles [deg]", "not measured [deg]", "regressions", "processor time [s]")
     return Table("search", caption, columns, rows, found)
@@ -285,7 +285,7 @@ def search_sentences(found: pd.DataFrame) -> list[str]:
     if chosen + 1 < len(found):
         less = 1 - (float(found["loss"].iloc[chosen + 1]) / float(row["loss"])) ** 0.5
         said = f"{counted(size, 'sensor').capitalize()} {'is' if size == 1 else 'are'} enough: {names}. One more "
-        said += f"reduces the error of all angles by {100 * less:.0f} %"
+        said += f"sensor reduces the error of all angles by {100 * less:.0f} %"
     else:
         said = f"The best set of {counted(size, 'sensor')} is {names}; it may not be enough, because no larger set "
         said += "was tried"
@@ -327,7 +327,7 @@ def method_sentences(done: Reconstruction) -> list[str]:
         "windows, which are separated from the others by the length of a window and 0.3 s.",
         "All recordings were low-passed by a zero-lag filter, which uses future samples. A live reconstruction would "
         "be delayed by the filter's length, or would be noisier.",
-        "RMSE is in the unit of the state. The 95 % interval of the RMSE comes from 1,000 resamples of the strides. "
-        "Angles and positions are never averaged together.",
+        "RMSE is in the unit of the state. The 95 % confidence interval of the RMSE comes from 1,000 resamples of the "
+        "strides. Angles and positions are never averaged together.",
         *(f"{name}: {words}." for name, words in done.models.items()),
     ]

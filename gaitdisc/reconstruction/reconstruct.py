@@ -95,8 +95,8 @@ def phase_average(trials: Sequence[Samples]) -> PhaseAverage:
     filled = counts > 0
     if not len(durations) or filled.mean() < LEAST_FILLED:
         raise StrideError(
-            "the mean stride needs strides in the training part",
-            f"it has {len(durations)} strides, and {int((counts == 0).sum())} of {POINTS} points have no sample",
+            "the training part must have strides that fill the mean stride",
+            f"the number of strides is {len(durations)}, and {int((counts == 0).sum())} of {POINTS} points are empty",
             "Record longer, or reconstruct the present state (ahead 0).",
         )
     sums = np.zeros((POINTS, y.shape[1]))

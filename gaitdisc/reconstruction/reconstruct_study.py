@@ -118,7 +118,7 @@ def _test(walks: Sequence[SensedWalk], person: str, condition: str) -> list[int]
     tested = [k for k, word in enumerate(words) if word == condition]
     if not tested or len(tested) == len(words):
         raise SchemaError(
-            "a split across conditions needs walks of the tested condition and others for training",
+            "a split across conditions must have walks of the tested condition, and others for training",
             f"--condition is {condition!r}, but {person} has only {', '.join(sorted(set(words)))}",
             "Name a condition with --condition, or use another split.",
         )
@@ -231,7 +231,7 @@ def reconstruct_recording(
     known = np.isfinite(states.values).all(axis=1)
     if known.sum() < 2:
         raise SamplingError(
-            f"a reconstruction needs {what.reach_s:.2f} s of sensor data without gaps",
+            f"the sensors must have a period of {what.reach_s:.2f} s without gaps",
             f"{file.name} lasts {kinematics.duration_s:.2f} s, and every such period has a missing value",
             "Record longer, or fill the gaps.",
         )

@@ -89,7 +89,7 @@ class Reconstruction(Saved, file="reconstruction.json"):
         return str(loss.index[np.sqrt(loss / loss.min()) <= NEAR][0])
 
     def over_participants(self) -> pd.DataFrame:
-        """Mean of each measure over participants, and its 95 % interval (Student's t, n of 3 or more), by model."""
+        """Mean of each measure over participants, by model, with its 95 % CI (Student's t, from 3 participants on)."""
         found: dict[object, dict[str, float]] = {}
         for model, rows in self.summary.groupby("model", sort=False):
             found[model] = {"n": len(rows)}

@@ -122,8 +122,8 @@ class Reconstructor(Saved, file="model.json"):
             _check_same_times(trial_of_x, trial_of_y, self.rate_hz)
         if len(readings) != len(states):
             raise ShapeError(
-                "the numbers of trials of readings and of states must be equal",
-                f"there are {len(readings)} of readings and {len(states)} of states",
+                "readings and states must have the same number of trials",
+                f"the readings have {len(readings)}, the states {len(states)}",
                 "Give one array of states for each array of readings.",
             )
         sensors, targets = readings[0].names_or("sensor"), states[0].names_or("state")
@@ -247,7 +247,7 @@ class Reconstructor(Saved, file="model.json"):
         if self._model is None:
             known = sys.modules.get("sklearn.exceptions")  # whose tools look for its own class
             UnfittedError = type("TrainingError", (TrainingError, *([known.NotFittedError] if known else [])), {})
-            raise UnfittedError("a prediction needs a fitted model", "fit was not called", "Call fit(x, y) first.")
+            raise UnfittedError("the model must be fitted to predict", "fit was not called", "Call fit(x, y) first.")
         return self._model
 
     @property
@@ -267,8 +267,8 @@ class Reconstructor(Saved, file="model.json"):
         values = readings.in_order(sensors)
         if values.shape[1] != len(sensors):
             raise ShapeError(
-                f"the model needs {len(sensors)} sensors",
-                f"the array has {values.shape[1]} columns",
+                f"the array must have one column per sensor of the model ({len(sensors)})",
+                f"the number of columns is {values.shape[1]}",
                 "Give the sensors of fit, in the same order.",
             )
         return Recording(np.arange(len(values)) / self.rate_hz, values, _signals(sensors))
@@ -322,7 +322,7 @@ class Given(NamedTuple):
         absent = [name for name in wanted if name not in self.names]
         if absent:
             raise ShapeError(
-                f"the model needs the columns {', '.join(wanted)}",
+                f"the table must have the columns {', '.join(wanted)}",
                 f"{absent[0]!r} is not among {', '.join(self.names[:8])}",
                 "Use the column names of fit, or an array in the order of fit.",
             )
@@ -373,7 +373,7 @@ def _check_same_times(readings: Given, states: Given, rate_hz: float) -> None:
 def _check_rate(rate_hz: float, found_hz: float, what: str) -> None:
     if abs(found_hz - rate_hz) > 1e-3 * rate_hz:
         raise SamplingError(
-            f"the model needs {rate_hz:g} samples per second",
-            f"the {what} has {found_hz:g}",
+            f"the {what} must have {rate_hz:g} samples per second, the rate of the model",
+            f"its rate is {found_hz:g} samples per second",
             "Resample it, or state its rate: Reconstructor(rate_hz=...).",
         )

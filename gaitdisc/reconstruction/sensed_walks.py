@@ -105,8 +105,8 @@ def read_walks(study: Study, sensors: Sequence[str], condition: str = "", target
                 files |= {s.source.file: s.source.sha256 for s in trial.streams.values() if s.source.sha256}
     if not walks:
         raise ChannelError(
-            "reconstruction needs at least one usable walk",
-            f"all are refused, the first: {refusals[0].reason}" if refusals else "the study has none",
+            "at least one walk must be usable for the reconstruction",
+            f"all walks are refused. The first: {refusals[0].reason}" if refusals else "the study has no walks",
             "Correct what the message names, or choose other sensors.",
         )
     _refuse_units([walk for found in walks.values() for walk in found])
@@ -242,8 +242,8 @@ def _moving(walks: Sequence[SensedWalk], sensors: Sequence[str]) -> tuple[tuple[
         why = f"does not vary in {len(still)}" if still else f"is missing in {len(lacking)}"
         what = f"{channel.name} {why} of {len(walks)} walks"
         if channel.name in sensors:
-            raise ChannelError("a sensor must vary in every walk", what, "Choose another sensor.")
-        findings.append(Finding("note", "left out", "the study", what, "this state; it is left out", channel.name))
+            raise ChannelError("a sensor must exist and vary in every walk", what, "Choose another sensor.")
+        findings.append(Finding("note", "left out", "the study", what, "this state, which is left out", channel.name))
     return tuple(kept), findings
 
 
@@ -271,7 +271,7 @@ def _refuse_rates(people: dict[str, tuple[SensedWalk, ...]]) -> None:
     if len(rates) > 1:
         (one, first), (other, second) = list(rates.items())[:2]
         raise SamplingError(
-            "all walks must have the same rate for reconstruction",
+            "all walks must have the same sampling rate for reconstruction",
             f"{first} was recorded at {one:g} Hz, {second} at {other:g} Hz",
             "Resample the kinematics to one rate.",
         )

@@ -38,8 +38,8 @@ def search_sensors(people: Sequence[Parts], channels: Sequence[Channel], most: i
     """
     if most < 1 or len(channels) < 2:
         raise ChannelError(
-            "a search needs at least one sensor, and two channels to choose from",
-            f"{most} sensors are requested, from {len(channels)} channels",
+            "a search must be for at least one sensor, among at least two channels",
+            f"the number of sensors is {most}, that of channels {len(channels)}",
             "Use --search 1 or more, and recordings with more channels.",
         )
     begun = time.process_time()

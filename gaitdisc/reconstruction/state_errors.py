@@ -160,8 +160,8 @@ def half_widths(errors: Values, level: float = INTERVAL_LEVEL) -> Values:
     if int(np.ceil((n + 1) * level - 1e-9)) > n:
         least = int(np.ceil(level / (1 - level) - 1e-9))
         raise SamplingError(
-            f"an interval of {100 * level:g} % needs at least {least} validation windows",
-            f"there are {n}",
+            f"for an interval of {100 * level:g} %, there must be at least {least} validation windows",
+            f"the number of windows is {n}",
             "Record longer, or use a lower level.",
         )
     ranks = np.ceil(n * level * (1 + 1 / effective_number(errors)) - 1e-9).astype(int)

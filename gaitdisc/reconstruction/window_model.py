@@ -130,13 +130,13 @@ def sensing(all_states: tuple[str, ...], sensors: tuple[str, ...], lags: Lags, r
     states = all_states if lags.ahead else tuple(name for name in all_states if name not in sensors)
     if not sensors or len(set(sensors)) < len(sensors):
         raise ChannelError(
-            "reconstruction needs at least one sensor, each listed once",
+            "a reconstruction must have at least one sensor, and each only once",
             f"found {', '.join(sensors) or 'none'}",
             "Name channels of the recording with --sensors.",
         )
     if not states:
         raise ChannelError(
-            "reconstruction needs at least one state that no sensor measures",
+            "a reconstruction must have at least one state that no sensor measures",
             f"{', '.join(all_states)} are all sensors",
             "Remove a sensor, or record more channels.",
         )

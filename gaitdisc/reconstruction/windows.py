@@ -38,9 +38,9 @@ class Lags:
         """Refuse a window without a reading."""
         if self.count < 1 or self.spacing < 1 or self.ahead < 0:
             raise ShapeError(
-                "a window needs at least one sample, lags at least one sample apart, and a state that is not in the "
-                "past",
-                f"it has {self.count} samples, {self.spacing} samples apart, {self.ahead} ahead",
+                "a window must have at least one sample, samples at least one time step apart, and a state that is not "
+                "in the past",
+                f"count is {self.count}, spacing {self.spacing}, ahead {self.ahead}",
                 "Correct the lags.",
             )
 
@@ -130,9 +130,9 @@ class Parts:
         for name in ("training", "check", "test"):
             if not any(len(each) for each in getattr(self, name)):
                 raise SamplingError(
-                    f"the split {self.rule!r} needs windows in all three parts",
-                    f"none remains for {name}: the trials are too short for their windows and the gaps between the "
-                    "parts",
+                    f"the split {self.rule!r} must leave windows in all three parts",
+                    f"none remains for the part {name!r}: the trials are too short for windows and for gaps between "
+                    "the parts",
                     "Use a shorter history, or longer trials.",
                 )
 
@@ -174,8 +174,8 @@ def split_by_subject(people: Sequence[Sequence[Samples]], tested: int) -> Parts:
     """Leave one person out of at least three; models are chosen by the next one in the list, fitted to all others."""
     if len(people) < 3:
         raise SamplingError(
-            "a population model needs at least three people: for training, validation and testing",
-            f"there are {len(people)}",
+            "a population model must have at least three people: for training, validation and testing",
+            f"the number of people is {len(people)}",
             "Add participants, or fit each participant separately.",
         )
     checked = (tested + 1) % len(people)

@@ -97,7 +97,7 @@ class Recording:
     channels : sequence of Channel
         One channel per column, with different names.
     subject, condition : str
-        Pseudonym of the person; condition, as `nominal`, `exo` or another word of the study.
+        Pseudonym of the person, and the condition, such as `nominal` or `exo`.
     source : Source
         File, hash and reader.
     suspect : ndarray of bool (time, channel), optional

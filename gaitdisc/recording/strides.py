@@ -135,7 +135,7 @@ class Strides:
         """Every stride of a recording on 0 to 100 % in 101 points, (stride, phase, channel) [channel's unit].
 
         Linear interpolation; NaN next to a missing sample or outside the recording. A heading that passes 180 deg
-        continues within its stride, and all strides are brought into one turn.
+        continues within its stride, and all strides are shifted by whole turns to one range.
 
         Parameters
         ----------

@@ -143,7 +143,7 @@ class Surface:
 
 @dataclass(frozen=True)
 class Event:
-    """An event that is stored in the file.
+    """A gait event that the trial's file contains.
 
     Parameters
     ----------

@@ -143,7 +143,7 @@ def pick_held_out(held_out: Trajectory, settings: ResponseSettings) -> Samples:
         raise TrainingError(
             f"a model must be tested on at least {LEAST_HELD_OUT} held-out samples",
             f"the last {len(held_out.time) / held_out.rate_hz:.2f} s: {excluded.line()}",
-            "Hold out a longer part, or correct or remove the channels named.",
+            "Hold out a longer part, or correct the channels that the message names.",
         )
     return samples
 
@@ -170,7 +170,7 @@ def _scores(
 def _check_pair(nominal: Trajectory, exo: Trajectory) -> None:
     if nominal.subject and exo.subject and nominal.subject != exo.subject:
         raise ChannelError(
-            "a response needs two walks of one participant",
+            "both walks of a response must be of one participant",
             f"the walks are of {nominal.subject} and {exo.subject}",
             "Pair the trials by participant in the study.",
         )
@@ -178,7 +178,7 @@ def _check_pair(nominal: Trajectory, exo: Trajectory) -> None:
         apart = sorted(set(nominal.names) ^ set(exo.names))
         found = f"they differ in {', '.join(apart[:5])}" if apart else "they differ in order or unit"
         raise ChannelError(
-            "a response needs the same channels in both walks",
+            "both walks of a response must have the same channels",
             f"{nominal.subject}: {len(nominal.names)} channels in {nominal.condition or 'nominal'}, "
             f"{len(exo.names)} in {exo.condition or 'exo'}, {found}",
             "Remove channels that one walk lacks.",

@@ -204,8 +204,8 @@ def _residual_figure(response: ParticipantResponse, numbers: pd.DataFrame, name:
         f"{MODEL_WORDS[str(model)]} {100 * ((curves['low'] > 0) | (curves['high'] < 0)).mean():.0f} %"
         for model, curves in numbers.groupby("model", sort=False)
     ]
-    shares = f"Share of the stride where the interval of the mean excludes zero: {', '.join(parts)}."
-    few = "There are too few strides for an interval of the mean."
+    shares = f"Share of the stride in which the confidence interval of the mean excludes zero: {', '.join(parts)}."
+    few = "There are too few strides for a confidence interval of the mean."
     alt = (
         f"Residuals over the stride of {response.participant}, {counted(len(names), 'variable')}. "
         f"{shares if numbers['low'].notna().any() else few}"

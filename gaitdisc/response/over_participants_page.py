@@ -96,7 +96,7 @@ def reduction_figure(run: ResponseRun) -> Figure | None:
     key = models_key(tuple(OFFSETS), linestyle="", ms=4, mew=0)
     if len(tests):
         bar = {"marker": "|", "color": "#111111", "ms": 8, "mew": 1.6, "linewidth": 1.4}
-        key += legend_lines({"estimate, 95 % interval": bar})
+        key += legend_lines({"estimate, 95 % CI": bar})
     legend(drawn, key)
     caption = (
         "Residual (measured minus predicted second derivative) averaged over the held-out strides of the device walk "
@@ -126,7 +126,7 @@ def reduction_table(run: ResponseRun) -> Table | None:
                 cells.append(f"{middle}{'*' if test['different'] else ''}\n[{low}, {high}]")
         rows.append((label(str(variable)), str(of_variable["rms_reduction"].count()["augmented"]), *cells))
     interval = (
-        "Hodges-Lehmann [95 % interval, not corrected]; *: differs from 0, exact two-sided signed-rank test, "
+        "Hodges-Lehmann [95 % CI, not corrected]; *: differs from 0, exact two-sided signed-rank test, "
         "Holm-Sidak over the variables, alpha = 0.05"
         if len(tests)
         else "median over participants; too few for a test"
@@ -198,7 +198,7 @@ def baseline_table(run: ResponseRun) -> Table | None:
     rows.sort(key=lambda row: order.index(row[0]))
     caption = (
         "R² [1] of the network minus R² of a baseline without a network, on the held-out device walk, n = "
-        f"{counted(len(run.responses), 'participant')}: Hodges-Lehmann shift [95 % interval, not corrected]; higher or "
+        f"{counted(len(run.responses), 'participant')}: Hodges-Lehmann shift [95 % CI, not corrected]; higher or "
         "lower: exact two-sided signed-rank test, Holm-Sidak over the variables of one model and baseline, alpha = "
         "0.05. The ridge regression of the other tables is the one with phase harmonics."
     )

@@ -110,7 +110,7 @@ def method_sentences(run: ResponseRun) -> list[str]:
     held_out, markers = tail_words(run), []
     computed = sum(any(finding.kind == "marker set" for finding in walk.findings) for walk in run.walks)
     if computed:
-        walks = "the one walk" if len(run.walks) == 1 else f"{computed} of {len(run.walks)} walks"
+        walks = "the only walk" if len(run.walks) == 1 else f"{computed} of {len(run.walks)} walks"
         markers.append(
             f"Joint angles of {walks} are computed from markers, calibrated with the person's static trial, before "
             "they are filtered. “Findings” lists the marker set, the distance of the markers from their static "

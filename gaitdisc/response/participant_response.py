@@ -121,7 +121,7 @@ class ParticipantResponse:
         arrays = pick_arrays(self.weights, f"{name}_")
         if not arrays:
             raise SchemaError(
-                "a prediction needs the weights of `nominal`, `exo`, `discrepancy` or `augmented`",
+                "a model of a prediction must be `nominal`, `exo`, `discrepancy` or `augmented`, with its weights",
                 f"the response of {self.participant} has no weights of {name!r}",
                 "Choose one of these, or fit again a response that an older version saved without weights.",
             )
@@ -209,7 +209,7 @@ class ResponseRun(StudyRun):
     provenance : Provenance
         Settings, seed, files, versions.
     units : mapping of str to tuple
-        Saved units, by the file of their kind: `walks`, `responses`, `tests`, `quantities`, `over`, `cycles`.
+        Saved parts of the result, by name: `walks`, `responses`, `tests`, `quantities`, `over`, `cycles`.
     unfitted : tuple of Refusal
         In a study with a device: participants with pooled cycles but without fitted models, with reasons.
     renewed : tuple of str
@@ -280,7 +280,7 @@ class ResponseRun(StudyRun):
         own = [response for response in self.responses if participant in ("", response.participant)]
         if len(own) != 1:
             found = f"found {participant!r}; the run has {', '.join(self.reported) or 'none'}"
-            raise SchemaError("a prediction needs one participant of the run", found, "Name one of them.")
+            raise SchemaError("a prediction must name one participant of the run", found, "Name one of them.")
         response, settings = own[0], self.provenance.settings
         chosen = {key: settings[key] for key in PROCESSING if key in settings}
         study = Study.model_validate_json(json.dumps({**chosen, "participants": [{"id": response.participant}]}))

@@ -47,12 +47,12 @@ def study_sentences(run: ResponseRun) -> list[str]:
     if len(ridge):
         wins = int((ridge >= MARGIN).sum())
         sentences.append(
-            "Ridge regression with phase harmonics instead of the networks gives the Augmented model "
+            "Ridge regression with phase harmonics instead of the networks gives the Augmented model R² = "
             f"{_median_iqr(table['ridge_augmented_on_exo'])} and exceeds the network in {wins} of "
             f"{counted(len(ridge), 'participant')}."
         )
     if table["null_on_exo"].notna().any():
-        sentences.append(f"Band-limited noise alone would reach {_median_iqr(table['null_on_exo'])}.")
+        sentences.append(f"Band-limited noise alone would reach R² = {_median_iqr(table['null_on_exo'])}.")
     return sentences
 
 
@@ -78,7 +78,7 @@ def participant_sentences(response: ParticipantResponse) -> list[str]:
     ]
     if np.isfinite(middle["nominal_on_nominal"]):
         sentences.append(
-            "On held-out walking without the device, on which it was trained, the Nominal model reaches "
+            "On held-out walking without the device, on which it was trained, the Nominal model reaches R² = "
             f"{number(middle['nominal_on_nominal'])}."
         )
     sentences.append(_verdict(table, "median of the differences; better in", 1e-12, "variable", _say_closed(middle)))
@@ -115,8 +115,8 @@ def _ridge(middle: pd.Series) -> str:
     ridge = {model: value for model, value in ridge.items() if np.isfinite(value)}
     if not ridge:
         return ""
-    said = listing([f"{MODEL_WORDS[model]} {number(value)}" for model, value in ridge.items()])
-    start = f"Ridge regression with phase harmonics on the same samples, without any network, reaches {said}"
+    said = listing([f"{number(value)} ({MODEL_WORDS[model]})" for model, value in ridge.items()])
+    start = f"Ridge regression with phase harmonics on the same samples, without any network, reaches R² = {said}"
     wins = [model for model, value in ridge.items() if value - middle[_ON_EXO[model]] >= MARGIN]
     if wins:
         beaten = listing([f"{MODEL_WORDS[m]} ({number(ridge[m])} against {number(middle[_ON_EXO[m]])})" for m in wins])
@@ -126,14 +126,14 @@ def _ridge(middle: pd.Series) -> str:
     gain = float(middle["augmented_on_exo"]) - ridge["augmented"]
     if gain < MARGIN:
         return f"{start}: the networks are no better."
-    return f"{start}: the networks add {number(gain)} to the Augmented model."
+    return f"{start}: the networks add {number(gain)} to R² of the Augmented model."
 
 
 def _null(table: pd.DataFrame, middle: pd.Series) -> str:
     null = float(middle["null_on_exo"])
     if not np.isfinite(null):
         return ""
-    start = f"Band-limited noise alone would reach {number(null)}"
+    start = f"Band-limited noise alone would reach R² = {number(null)}"
     below = [MODEL_WORDS[m] for m, column in _ON_EXO.items() if middle[column] <= null + MARGIN]
     if below:
         return f"{start}; the {listing(below)} {'model does' if len(below) == 1 else 'models do'} not exceed it."

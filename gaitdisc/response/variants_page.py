@@ -115,7 +115,7 @@ def modalities_sentences(run: VariantRun) -> tuple[str, ...]:
         most = [f"{family_words(str(name))} ({number(fall, 3)})" for name, fall in middle.head(3).items()]
         sentences.append(f"Among {words}, the Augmented model loses most R² (medians) without {listing(most)}.")
     sentences.append(
-        "A fall shows information that the other inputs cannot replace. Joint angles and EMG of one walk are "
+        "A fall of R² shows information that the other inputs cannot replace. Joint angles and EMG of one walk are "
         "correlated, so an input family may be informative even if R² does not fall without it. The falls of two "
         "families do not add up."
     )

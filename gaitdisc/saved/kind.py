@@ -141,13 +141,13 @@ def find_kind(folder: Path, drawn: bool = False) -> Kind[Any]:
         FolderError = SchemaError if folder.exists() else type("SchemaError", (SchemaError, FileNotFoundError), {})
         raise FolderError(
             f"a saved result must be a folder with one of {', '.join(KINDS)}",
-            f"{folder.name} {'holds ' + list_names(held) if folder.is_dir() else 'is not a folder'}",
+            f"{folder.name} {'contains ' + list_names(held) if folder.is_dir() else 'is not a folder'}",
             "Name the folder that the command or .save(folder) wrote.",
         )
     kind = load_word(KINDS[file])
     if drawn and not kind.page:
         raise SchemaError(
-            "pages and citations need a saved result",
+            "pages and citations must come from a saved result",
             f"{folder.name} contains {file}, a fitted model",
             "Name the folder of `gaitdisc reconstruct`, or apply the model to a recording: `gaitdisc apply`.",
         )

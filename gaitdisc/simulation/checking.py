@@ -46,7 +46,7 @@ def _check_size(simulation: Simulation) -> None:
     if parts > MOST_PARTS:
         raise SimulationError(
             f"a simulation file may have at most {MOST_PARTS} parts",
-            f"this one has {parts}",
+            f"this file has {parts}",
             "Write a model of this size as a PythonSimulation.",
         )
     characters = sum(len(text) for _, text in simulation.expressions())
@@ -70,7 +70,7 @@ def _check_names(simulation: Simulation) -> None:
             )
         if name in RESERVED:
             raise SimulationError(
-                "a name must not be that of a function, nor t", f"found {name!r}", "Rename it.", (section, name)
+                "a name must not be t or that of a function", f"found {name!r}", "Rename it.", (section, name)
             )
         if name in owner:
             raise SimulationError(
@@ -232,9 +232,9 @@ def _check_inputs(simulation: Simulation) -> None:
         place, errors = ("inputs", one.name), one.gain is not None or one.sd is not None
         _check_positive(one, {"gain": "1", "sd": one.unit, "wander": "s"}, place)
         if one.wander is not None and not errors:
-            raise SimulationError("an input with wander must also have gain or sd", "it has neither", "Add one.", place)
+            raise SimulationError("an input with wander must have gain or sd", "it has neither", "Add one.", place)
         if errors and one.wraps:
-            raise SimulationError("the phase of the stride must be exact", "it has gain or sd", "Remove them.", place)
+            raise SimulationError("the phase of the stride must be exact", "it has gain or sd", "Remove both.", place)
 
 
 def _check_positive(part: Input | Sensor, units: dict[str, str], place: tuple[str, ...]) -> None:
@@ -242,4 +242,4 @@ def _check_positive(part: Input | Sensor, units: dict[str, str], place: tuple[st
         number = getattr(part, key)
         if number is not None and not (math.isfinite(number) and number > 0):
             found = f"found {key} = {number:g}"
-            raise SimulationError(f"{key} must be a number above 0 [{unit}]", found, "Correct or remove it.", place)
+            raise SimulationError(f"{key} must be a number above 0 [{unit}]", found, f"Correct or remove {key}.", place)

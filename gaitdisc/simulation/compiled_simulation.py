@@ -41,7 +41,7 @@ class Drive:
                 "a drive must have inputs (trial, sample, input), a first time and a length for each trial, and a rate",
                 f"the inputs have shape {inputs.shape}, the times {time0.shape}; lengths {samples.tolist()[:5]}, rate "
                 f"{self.rate}",
-                "Build it from a list of trials with Drive.of.",
+                "Build the drive from a list of trials with Drive.of.",
             )
         for name, value in (("rate", float(self.rate)), ("time0", time0), ("inputs", inputs), ("samples", samples)):
             object.__setattr__(self, name, value)

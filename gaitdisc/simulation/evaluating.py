@@ -63,7 +63,7 @@ def evaluate_many(simulation: Simulation, expressions: Sequence[str], points: Po
         return at_points(program, columns, None, count)
     if points.rate <= 0:
         raise SimulationError(
-            "delay(signal, seconds) needs consecutive samples of one trial",
+            "delay(signal, seconds) must have consecutive samples of one trial",
             "the points have no rate",
             "Give Points(..., rate=...) with the samples of a single trial.",
         )
@@ -144,7 +144,7 @@ def refuse_own_delays(
             )
         if abs(seconds) >= shortest_s:
             raise SimulationError(
-                f"a delay must be shorter than every trial; the shortest, {trial!r}, lasts {shortest_s:.4g} s"
+                f"a delay must be shorter than the shortest trial ({trial!r}, {shortest_s:.4g} s)"
                 if trial
                 else f"a delay must be shorter than a day ({shortest_s:g} s)",
                 said,

@@ -57,7 +57,7 @@ def on_even_time(
         driving, observed = (np.full((count, each.shape[1]), np.nan) for each in (even.inputs, even.observed))
         driving[place], observed[place] = even.inputs, even.observed
         even = TrialColumns(even.name, even.time[0] + np.arange(count) / rate, driving, observed)
-        what = f"trial {trial.name!r}: {missing} rows of {len(even.time)} are missing"
+        what = f"trial {trial.name!r} lacks {missing} of {len(even.time)} rows"
         findings.append(Finding("warning", "gap in time", source, what, "the missing period, which is excluded"))
     return _bridge_inputs(even, inputs, rate, source, findings), rate, findings
 
@@ -73,7 +73,7 @@ def clock_findings(trials: list[TrialColumns], rate: float, source: str) -> list
 
 def _refuse_short(trial: TrialColumns, where: str) -> None:
     if len(trial.time) < SHORTEST:
-        raise SamplingError(f"a trial needs {SHORTEST} samples", f"{where} has {len(trial.time)}", "Record longer.")
+        raise SamplingError(f"a trial must have {SHORTEST} samples", f"{where} has {len(trial.time)}", "Record longer.")
     steps = np.diff(trial.time)
     back = int(np.argmin(steps))
     if steps[back] <= 0:
@@ -116,9 +116,9 @@ def _uneven(time: Values, where: str) -> SamplingError:
     worst = int(np.argmax(np.abs(steps - np.median(steps))))
     return SamplingError(
         f"the sampling interval of a trial must be constant within {JITTER:g} of a step",
-        f"{where}: a step of {steps[worst]:.6g} s after t = {time[worst]:.6g} s; the median is {np.median(steps):.6g} "
-        f"s (steps from {steps.min():.6g} to {steps.max():.6g} s)",
-        "Resample it to an even rate, or split it there into two trials.",
+        f"{where}: a step of {steps[worst]:.6g} s after t = {time[worst]:.6g} s (median {np.median(steps):.6g} s, "
+        f"range {steps.min():.6g} to {steps.max():.6g} s)",
+        "Resample the trial to an even rate, or split it there into two trials.",
     )
 
 
@@ -135,8 +135,8 @@ def _resample(trial: TrialColumns, time: Values, inputs: tuple[str, ...]) -> tup
         observed=_along(trial.observed, trial.time, late_s, (False,) * trial.observed.shape[1]),
     )
     if _roughness(moved.observed, trial.observed) <= _roughness(trial.observed, trial.observed):
-        return moved, "the samples are resampled to even spacing"
-    return even, "the samples are evenly spaced, so their times are corrected"
+        return moved, "the samples were resampled to even spacing"
+    return even, "the samples are evenly spaced, so their times were corrected"
 
 
 def _along(values: Values, time: Values, late_s: Values, wraps: tuple[bool, ...]) -> Values:
@@ -183,8 +183,8 @@ def _bridge_inputs(
             )
         whole = _between(np.arange(len(empty), dtype=float), ~empty, filled[:, column], name == "phase")
         filled[:, column] = whole % 1.0 if name == "phase" else whole
-        what = f"trial {trial.name!r}: {int(empty.sum())} samples are missing, at most {longest / rate:.3g} s in a row"
-        findings.append(Finding("warning", "bridged", source, what, "the simulated motion in this gap", name))
+        what = f"trial {trial.name!r} lacks {int(empty.sum())} samples, at most {longest / rate:.3g} s in a row"
+        findings.append(Finding("warning", "bridged", source, what, "the simulated motion in these gaps", name))
     return replace(trial, inputs=filled)
 
 

@@ -165,12 +165,12 @@ class _Conversion:
         if isinstance(node, ast.Call):
             return self._call(node, depth)
         kind = type(node.op) if isinstance(node, ast.BinOp | ast.UnaryOp) else type(node)
-        found, remedy = _WORDS.get(kind, (f"{kind.__name__}, which is not arithmetic", f"Only {_ALLOWED}."))
+        found, remedy = _WORDS.get(kind, (f"{kind.__name__}, which is not arithmetic", f"Use {_ALLOWED}."))
         raise self._refuse(node, found, remedy)
 
     def _number(self, node: ast.Constant) -> Number:
         if type(node.value) not in (int, float):
-            raise self._refuse(node, f"{node.value!r}, which is not a number", "Write it as a decimal number.")
+            raise self._refuse(node, f"{node.value!r}, which is not a number", "Write a decimal number.")
         try:
             value = float(node.value)  # pyright: ignore[reportArgumentType]
         except OverflowError:
@@ -181,10 +181,10 @@ class _Conversion:
 
     def _call(self, node: ast.Call, depth: int) -> Operation:
         if not isinstance(node.func, ast.Name) or node.keywords:
-            raise self._refuse(node, "a call of something other than a named function", f"Only {_ALLOWED}.")
+            raise self._refuse(node, "a call of something other than a named function", f"Use only {_ALLOWED}.")
         name, count = node.func.id, len(node.args)
         if name not in FUNCTIONS:
-            remedy = f"{did_you_mean(name, FUNCTIONS)} Only {_ALLOWED}.".lstrip()
+            remedy = f"{did_you_mean(name, FUNCTIONS)} Use only {_ALLOWED}.".lstrip()
             raise self._refuse(node, f"the unknown function {name!r}", remedy)
         fewest, most = FUNCTIONS[name]
         if not fewest <= count <= most:
@@ -205,8 +205,8 @@ def _refusal(text: str, at: int, found: str, remedy: str) -> SimulationError:
 
 def _remedy(strange: str) -> str:
     if strange.isdigit() or len(strange) > 1:  # full-width digits, hexadecimal ones, 1_000
-        return "Write it as a decimal number, such as 16 or 1.6e1."
-    return _SIGNS.get(strange, f"Only {_ALLOWED}.")
+        return "Write a decimal number, such as 16 or 1.6e1."
+    return _SIGNS.get(strange, f"Use only {_ALLOWED}.")
 
 
 def _too_large(text: str) -> SimulationError:

@@ -90,10 +90,10 @@ def simulation_from_function(
     taken = _by_name(function) if not states else _as_vectors(function, states, inputs, dict(parameters or {}))
     count = taken.derivatives
     if count > len(taken.signals) or (states and count != len(states)):
-        given = f"{len(states)} states" if states else f"{len(taken.signals)} arguments without a default"
+        given = f"states: {len(states)}" if states else f"arguments without a default: {len(taken.signals)}"
         raise SimulationError(
             "the first arguments of a simulation's function must be its states, one for each derivative",
-            f"{taken.title} returns {count} derivatives and has {given}",
+            f"derivatives that {taken.title} returns: {count}; {given}",
             "Give every state its own argument, before the inputs.",
         )
     unit, known = dict(units or {}), (*taken.signals, *taken.numbers, *taken.ports)
@@ -288,7 +288,7 @@ def _by_name(function: Callable[..., Any]) -> _Taken:
             raise SimulationError(
                 "a simulation's function must name each of its states, inputs and parameters as an argument",
                 f"{_title(function)} has {str(one)!r}",
-                "Write one argument for each. If it takes vectors, name their elements: "
+                "Write one argument for each. If the function takes vectors, name their elements: "
                 "simulation_from_function(function, states=[...], inputs=[...], parameters={...}).",
             )
     plain = [one.name for one in arguments.values() if one.default is one.empty and one.kind is not one.KEYWORD_ONLY]
@@ -339,7 +339,7 @@ def _as_vectors(
         return (*([value(TIME)] if len(taken) > wanted else []), *vectors, *dicts), {}
 
     swapped = len(taken) > wanted and taken[0].name != TIME and any(one.name == TIME for one in taken)
-    remedy = f"The time comes first: def {_title(function)}(t, {taken[0].name}): ..." if swapped else _Taken.remedy
+    remedy = f"Put the time first: def {_title(function)}(t, {taken[0].name}): ..." if swapped else _Taken.remedy
     return _Taken(function, (*states, *inputs), numbers, (), from_values, remedy)
 
 

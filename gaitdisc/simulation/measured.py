@@ -77,7 +77,7 @@ def check_measured(
     """Measured trials, checked; one that is too short is left out with a finding where there are others."""
     if not trials:
         raise SamplingError(
-            f"a trial needs {SHORTEST} samples", f"{source} has no rows", "Export it again with its samples."
+            f"a trial must have {SHORTEST} samples", f"{source} has no rows", "Export the samples again."
         )
     short = [trial for trial in trials if len(trial.time) < SHORTEST]
     if 0 < len(short) < len(trials):
@@ -92,7 +92,7 @@ def check_measured(
         raise SamplingError(
             "all trials must have the same rate",
             f"{source}, trial {trials[0].name!r} has {rates[0]:.6g} Hz, "
-            f"trial {trials[apart].name!r} {rates[apart]:.6g}",
+            f"trial {trials[apart].name!r} has {rates[apart]:.6g} Hz",
             "Resample them to one rate.",
         )
     longest = max(len(trial.time) for trial in trials)
@@ -137,7 +137,7 @@ def _empty(trials: Sequence[TrialColumns], channels: Sequence[str], source: str)
         worst = max(missing, key=lambda trial: missing[trial])
         if missing[worst]:
             rows = sum(len(trial.time) for trial in trials)
-            what = f"{sum(missing.values())} of {rows} samples are missing, most in trial {worst!r} ({missing[worst]})"
+            what = f"missing samples: {sum(missing.values())} of {rows}, most in trial {worst!r} ({missing[worst]})"
             found.append(Finding("note", "empty cells", source, what, "nothing: empty cells are excluded", name))
     return found
 

@@ -80,7 +80,7 @@ def gather_recordings(recordings: Sequence[Recording], simulation: Simulation) -
             values = _convert(recording, wanted, simulation, name, findings)
             doubtful = int(np.count_nonzero(np.asarray(recording.suspect)[:, recording.names.index(wanted)]))
             if doubtful:
-                what = f"{doubtful} of {len(values)} samples are marked as unreliable"
+                what = f"samples marked as unreliable: {doubtful} of {len(values)}"
                 findings[f"{name} {wanted}"] = Finding(
                     "warning", "suspect", name, what, "results that depend on these samples", wanted
                 )
@@ -102,7 +102,7 @@ def _table(path: Path) -> pd.DataFrame:
 
     if path.suffix.lower() not in ENDINGS:
         found = f"{path.name} is a folder" if path.is_dir() else f"{path.name} ends in {path.suffix!r}"
-        remedy = "Export it as CSV, with all trials in one table and a column 'trial'."
+        remedy = "Export the data as CSV, with all trials in one table and a column 'trial'."
         raise ReadError("measured data must be one CSV or Parquet table", found, remedy)
     try:
         check_regular(path, LARGEST_TEXT_BYTES)
@@ -132,7 +132,7 @@ def _table(path: Path) -> pd.DataFrame:
         raise kind("measured data must be a table", found, "Check the path.") from error
     except Exception as error:  # pandas and pyarrow have no common ancestor of theirs
         found = f"{path.name}: {str(error).splitlines()[0][:200] if str(error) else type(error).__name__}"
-        raise ReadError("measured data must be a CSV or Parquet table", found, "Export it again.") from error
+        raise ReadError("measured data must be a CSV or Parquet table", found, "Export the file again.") from error
 
 
 def _refuse_doubled(head: Sequence[str], file: str) -> None:
@@ -160,14 +160,14 @@ def _missing(name: str, columns: Sequence[str], file: str) -> ChannelError:
     timed = next((column for column in columns if _OTHER_TIME.fullmatch(column)), None) if name == "time" else None
     if timed is not None:
         return ChannelError(
-            "the simulation needs a measured column 'time' in seconds",
+            "the measured data must have a column 'time' in seconds",
             f"{file} has {timed!r}",
-            "Convert it to seconds and call the column 'time'.",
+            "Convert this column to seconds and call it 'time'.",
         )
     hint = hint_nearest(name, columns)
     listed = ", ".join(columns[:20]) + (", ..." if len(columns) > 20 else "")
     return ChannelError(
-        f"the simulation needs a measured column {name!r}",
+        f"the measured data must have a column {name!r}",
         f"{file} has {listed}{hint}",
         f"Rename the column to {name!r}, or change the simulation file.",
     )
@@ -217,7 +217,7 @@ def _report_left_out(
     unused = [column for column in columns if column not in wanted]
     if absent and unused:
         raise ChannelError(
-            "every column must be used if an observation has no column, because its name may be misspelt",
+            "if an observation has no column, every column must be used: an unused one may be misnamed",
             f"{file} has no column {', '.join(absent)}, and these are not used: {', '.join(unused[:10])}",
             "Rename or remove these columns, or list the measured channels under [observations].",
         )
@@ -242,7 +242,7 @@ def _convert(
     factor = None if to is None or unstated else unit_factor(channel.unit, to)
     if factor is None:
         what = (
-            f"{channel.unit!r} cannot be compared with the simulation's {to!r}"
+            f"{channel.unit!r} cannot be compared with the simulation's unit, {to!r}"
             if to
             else f"{channel.unit!r} is used unchanged"
         )

@@ -41,7 +41,7 @@ def compile_simulation(simulation: Simulation | PythonSimulation) -> Compiled:
         raise SimulationError(
             "a simulation must have its own equations to be run",
             f"the equations of {simulation.title!r} are in {simulation.model}",
-            "Give its path to gaitdisc discover, which uses the engine.",
+            "Give the path of this model to `gaitdisc discover`, which uses the engine.",
         )
     states = tuple(state.name for state in simulation.states)
     inputs = tuple(each.name for each in simulation.inputs)
@@ -138,7 +138,7 @@ def refuse_divergence(compiled: Compiled, drive: Drive, rows: Rows, states: Valu
         return
     first, *others = divergences(compiled, drive, rows, states, ok)
     more = f"; so do {len(others)} more of {len(ok)} runs" if others else ""
-    driven = f"{first.parameter!r}, which affects its rate most, and " if first.parameter else ""
+    driven = f"{first.parameter!r}, which affects this state most, and " if first.parameter else ""
     late = " (the time must be in seconds, not in milliseconds)" if drive.rate < SLOW_HZ else ""
     raise SimulationError(
         "every state of a simulation must stay within 1e6",

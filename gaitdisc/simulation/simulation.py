@@ -114,7 +114,7 @@ class Simulation:
         return tuple(each for each in self.inputs if not each.computed)
 
     def expressions(self) -> Iterator[tuple[tuple[str, str], str]]:
-        """Every expression, after section and key of the simulation file; effects by their number."""
+        """Every expression with its section and key in the simulation file; the key of an effect is its number."""
         for section in ("definitions", "equations", "observations"):
             for name, text in getattr(self, section):
                 yield (section, name), text

@@ -81,7 +81,7 @@ def read_simulation(path: Path | str) -> Simulation:
     except UnicodeDecodeError as error:
         raise ReadError(
             "a simulation file must be UTF-8 text",
-            f"{path.name} has another byte at offset {error.start}",
+            f"{path.name} has an invalid byte at offset {error.start}",
             "Save it as UTF-8.",
         ) from error
     return parse_simulation(text, path.name, path)
@@ -121,7 +121,7 @@ def names_engine(path: Path | str) -> bool:
 
 
 def _not_toml(file: str, found: str) -> ReadError:
-    return ReadError(f"{file} must be a TOML file", found, "Correct it there. docs/simulation.md shows the form.")
+    return ReadError(f"{file} must be a TOML file", found, "Correct the file. docs/simulation.md shows the form.")
 
 
 def _simulation(table: Mapping[str, Any], text: str, source: Path | None) -> Simulation:
@@ -172,7 +172,9 @@ def _sensor(name: str, entry: Mapping[str, Any]) -> Sensor:
     place = ("observations", name)
     _check_keys(entry, ("expression", *SENSOR), place)
     if "expression" not in entry:
-        raise SimulationError("an observation needs an expression", "it has none", 'Write expression = "...".', place)
+        raise SimulationError(
+            "an observation must have an expression", "it has none", 'Write expression = "...".', place
+        )
     return Sensor(name, **_fields({key: entry[key] for key in SENSOR if key in entry}, place))
 
 
@@ -211,7 +213,7 @@ def _check_keys(table: Mapping[str, Any], known: tuple[str, ...], place: tuple[s
 
 def _table(value: Any, place: tuple[str, ...]) -> Mapping[str, Any]:
     if not isinstance(value, dict):
-        raise SimulationError("it must be a table", f"found {str(value)[:60]!r}", "Write [section.name].", place)
+        raise SimulationError("the entry must be a table", f"found {str(value)[:60]!r}", "Write [section.name].", place)
     return value
 
 
@@ -228,7 +230,7 @@ def _number(table: Mapping[str, Any], key: str, place: tuple[str, ...]) -> float
     value = table[key]
     if type(value) not in (int, float) or abs(value) > 1e300 or not math.isfinite(value):
         found = f"found {str(value)[:60]}" if type(value) is not int else "the number exceeds 1e300"
-        raise SimulationError(f"{key} must be a finite number", found, "Write it without quotes.", place)
+        raise SimulationError(f"{key} must be a finite number", found, "Write a number without quotes.", place)
     return float(value)
 
 
@@ -236,9 +238,7 @@ def _expression(value: Any, place: tuple[str, ...]) -> str:
     if type(value) in (int, float) and abs(value) < 1e300 and math.isfinite(value):
         return repr(value)
     if not isinstance(value, str):
-        raise SimulationError(
-            "expressions must be text", f"found {str(value)[:60]}", 'Write it in quotes: "..."', place
-        )
+        raise SimulationError("expressions must be text", f"found {str(value)[:60]}", 'Write "..." with quotes.', place)
     return value
 
 
@@ -278,7 +278,7 @@ def bundled(name: str) -> Simulation:
     Parameters
     ----------
     name : str
-        `pendulum`, `lorenz` or another; the refusal of an unknown name lists all.
+        Name such as `pendulum` or `lorenz`; the error for an unknown name lists all names.
 
     Raises
     ------

@@ -98,7 +98,7 @@ class Quantity:
         return lambda: _ARITHMETIC[name](self)
 
     def __float__(self) -> float:
-        raise NotTraced("it converts a number into a float")
+        raise NotTraced("the function converts a number into a float")
 
 
 class Condition(Quantity):
@@ -139,7 +139,7 @@ def trace_equations(function: Callable[..., Any], arguments: Callable[[Callable[
         nonlocal called
         called += 1
         if called > MOST_WAYS:
-            raise NotTraced(f"it branches in more than {MOST_WAYS} ways")
+            raise NotTraced(f"the function branches in more than {MOST_WAYS} ways")
         plain, named = arguments(lambda name: Quantity(Name(name), decided))
         try:
             return [_tree(one) for one in flat(on_quantities(*plain, **named))]
@@ -152,7 +152,7 @@ def trace_equations(function: Callable[..., Any], arguments: Callable[[Callable[
                 raise there
             return [Operation("+", (one, Operation("log", (never,)))) for one in there]
         if len(yes) != len(no):
-            raise NotTraced("the number of derivatives that it returns varies")
+            raise NotTraced("the number of returned derivatives varies")
         return [_either(condition, one, other) for one, other in zip(yes, no, strict=True)]
 
     def gone(decided: dict[Tree, bool]) -> list[Tree] | Exception:

@@ -46,7 +46,7 @@ def unit_findings(simulation: Simulation) -> tuple[Finding, ...]:
             findings.append(Finding("note", "unit", file, what, "the check of units in sums", part.name))
 
     def report(what: str) -> None:
-        findings.append(Finding("warning", "unit", file, what, "the numbers there, if the units are right"))
+        findings.append(Finding("warning", "unit", file, what, "the numbers in this sum, if the units are right"))
 
     known = _list_units(simulation, report)
     units = {part.name: part.unit for part in parts}
@@ -171,7 +171,7 @@ def refuse_units(simulation: Simulation) -> None:
         tree = parse(text)
         found = powers_in(tree, _list_units(simulation), None)
         if found is not None and find_dimension(found) != wanted:
-            raise _unlike(sensor, f"{text!r} has a unit of another dimension", "Correct the unit or expression.")
+            raise _unlike(sensor, f"{text!r} has a unit of another dimension", "Correct the unit or the expression.")
         _refuse_factor(simulation, sensor, tree)
 
 
@@ -185,7 +185,7 @@ def _refuse_factor(simulation: Simulation, sensor: Sensor, tree: Tree) -> None:
         return
     text = written(name)
     if math.isnan(factor):
-        raise _unlike(sensor, f"{text!r} has a unit of another dimension, {unit}", "Correct the unit or expression.")
+        raise _unlike(sensor, f"{text!r} has a unit of another dimension, {unit}", "Correct unit or expression.")
     if abs(abs(number) / factor - 1) > ROUNDED and (abs(number) == 1.0 or _is_of_units(abs(number), unit)):
         raise _unlike(sensor, f"{text!r} is in {unit}", f"Write {math.copysign(factor, number):.6g}*{text}.")
 

@@ -24,7 +24,7 @@ _REPLACED = "replaced_"  # begins the name of the definition that an input of a 
 
 
 def write_simulation(simulation: Simulation | PythonSimulation, path: Path | str, overwrite: bool = False) -> Path:
-    r"""Write a simulation file; never a partial one.
+    r"""Write a simulation file, completely or not at all.
 
     Parameters
     ----------

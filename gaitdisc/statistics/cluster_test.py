@@ -46,8 +46,8 @@ def sign_flips(n: int, plan: PermutationPlan) -> tuple[NDArray[np.float64], bool
     count = len(turned) + 1
     if plan.alpha * count < 1:
         raise ComparisonError(
-            f"a permutation test at level {plan.alpha:g} needs at least {int(np.ceil(1 / plan.alpha))} permutations",
-            f"{count} are requested",
+            f"a test at level {plan.alpha:g} must have at least {int(np.ceil(1 / plan.alpha))} permutations",
+            f"the requested number is {count}",
             "Raise the number of permutations, or the level.",
         )
     signs = np.ones((len(turned), n))
@@ -223,13 +223,13 @@ def _check(curves: NDArray[np.float64], fewest: int) -> None:
     if curves.ndim != 3 or not np.isfinite(curves).all():
         missing = int(np.sum(~np.isfinite(curves)))
         raise ShapeError(
-            "a test over the stride needs complete curves (unit, phase, channel)",
+            "the curves of a test over the stride must be complete and of shape (unit, phase, channel)",
             f"found {curves.shape}" + (f", {missing} values missing" if missing else ""),
-            "Exclude strides or channels with gaps by name.",
+            "Exclude strides or channels with gaps, and state which.",
         )
     if len(curves) < fewest:
         raise ComparisonError(
-            f"a permutation test at the 5 % level needs at least {fewest} units in a set",
+            f"a permutation test at the 5 % level must have at least {fewest} units in each set",
             f"found {len(curves)}",
-            "Record more strides or people. With fewer, no result can be significant.",
+            "Record more strides or people. With fewer units, no result can be significant.",
         )

@@ -51,9 +51,9 @@ def find_groups(features: NDArray[np.float64], clouds: int = 199, seed: int = 0)
     if features.ndim != 2 or len(features) < FEWEST or not np.isfinite(features).all():
         missing = int(np.sum(~np.isfinite(features)))
         raise ComparisonError(
-            f"sub-groups need at least {FEWEST} participants with complete features",
+            f"to find sub-groups, at least {FEWEST} participants must have complete features",
             f"found features of shape {features.shape}" + (f", {missing} values missing" if missing else ""),
-            "Exclude participants with missing features by name.",
+            "Exclude participants with missing features, and state who.",
         )
     rng = np.random.default_rng(seed)
     labels, silhouette = best_cut(features)

@@ -64,7 +64,7 @@ def why_no_r2(measured: NDArray[np.float64], predicted: NDArray[np.float64]) -> 
     """
     if np.ndim(measured) != 2 or np.shape(measured) != np.shape(predicted):
         raise ShapeError(
-            "R2 needs measured and predicted values of the same shape (sample, column)",
+            "for R², measured and predicted values must have the same shape (sample, column)",
             f"their shapes are {np.shape(measured)} and {np.shape(predicted)}",
             "Give one prediction per sample and column.",
         )
@@ -76,7 +76,7 @@ def _reason(measured: NDArray[np.float64], predicted: NDArray[np.float64]) -> st
         return f"too few samples (n = {len(measured)})"
     missing = int(np.sum(~np.isfinite(measured) | ~np.isfinite(predicted)))
     if missing:
-        return f"{missing} of {len(measured)} samples are missing"
+        return f"values are missing in {missing} of {len(measured)} samples"
     if measured.std() <= ROUNDING * np.abs(measured).max():
         return f"the measured values do not vary: {measured[0]:.6g} in all {len(measured)} samples"
     return ""

@@ -161,7 +161,7 @@ def _differences(
 ) -> NDArray[np.float64]:
     if first.ndim != 1 or first.shape != second.shape:
         raise ShapeError(
-            "a paired test needs two rows of numbers of the same length",
+            "a paired test must have two rows of numbers of the same length",
             f"their shapes are {first.shape} and {second.shape}",
             "Give one number per participant and condition.",
         )
@@ -170,14 +170,14 @@ def _differences(
     missing = np.flatnonzero(kept & ~np.isfinite(differences))
     if len(missing):
         raise ComparisonError(
-            "a paired test needs both numbers of every pair",
-            f"{len(missing)} of {len(first)} pairs lack one (pair {', '.join(str(i + 1) for i in missing)})",
-            "Exclude these pairs by name and state the reason.",
+            "a paired test must have both numbers of every pair",
+            f"a number is missing in {len(missing)} of {len(first)} pairs ({', '.join(str(i + 1) for i in missing)})",
+            "Exclude these pairs, and state which and why.",
         )
     if not kept.any():
         raise ComparisonError(
-            "a paired test needs at least one pair",
-            f"there are {len(first)}, {len(first) - int(kept.sum())} of them excluded",
+            "a paired test must have at least one pair",
+            f"pairs given: {len(first)}; excluded: {len(first) - int(kept.sum())}",
             "Add participants.",
         )
     return differences[kept]
@@ -230,5 +230,5 @@ def check_numbers(table: pd.DataFrame, words: str) -> None:
             raise ShapeError(
                 f"every column must be one of the {words} and contain numbers",
                 f"column {name!r} contains other values ({kind})",
-                'Remove it. Participant names go into the index: table.set_index("participant").',
+                'Remove this column. Participant names go into the index: table.set_index("participant").',
             )

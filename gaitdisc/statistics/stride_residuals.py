@@ -104,7 +104,7 @@ def mean_over_strides(curves: NDArray[np.float64], level: float = 0.95) -> Strid
     """
     if len(curves) < LEAST_STRIDES:
         raise StrideError(
-            f"the mean over strides and its interval need at least {LEAST_STRIDES} complete strides",
+            f"the mean over strides and its interval must come from at least {LEAST_STRIDES} complete strides",
             f"found {len(curves)}",
             "Hold out a longer part of the trial.",
         )

@@ -100,7 +100,7 @@ def test_it_says_that_this_installation_works(called):
 
 def test_what_is_wrong_is_named_and_the_exit_code_says_so(called):
     with patch.object(installation, "checks", lambda: iter([Check("reads C3D", "wrong", "ReadError: no")])):
-        assert says(called("doctor", ends=1).stderr, "wrong", "C3D")
+        assert says(called("doctor", ends=1).stderr, "Not working", "C3D")
 
 
 def test_each_exit_code_says_something_else():

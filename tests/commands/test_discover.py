@@ -181,7 +181,7 @@ def test_the_answer_stands_before_its_twins_are_searched(lab, tmp_path, monkeypa
 def test_twins_are_refused_where_an_engine_runs_the_model(lab, tmp_path, called):
     done = called("discover", lab / "leg.xml", lab / "good.csv", "--twins", "2", "--out", tmp_path, ends=REFUSED)
     assert says(
-        done.stderr, "twins and a plan need a simulation file or a Python function", "leg.xml", "Leave them out"
+        done.stderr, "twins and a plan need a simulation file or a Python function", "leg.xml", "Leave both out"
     )
 
 
@@ -228,14 +228,14 @@ def test_simulations_that_are_refused(lab, refusal, simulation, said):
 
 
 def test_a_simulation_that_blows_up_names_the_parameter(refusal):
-    assert says(refusal("wild.toml", "good.csv"), "'k'", "affects its rate most")
+    assert says(refusal("wild.toml", "good.csv"), "'k'", "affects this state most")
 
 
 @pytest.mark.parametrize(
     ("data", "said"),
     [
-        ("column", "the simulation needs a measured column 'x'; column.csv has trial, time, y."),
-        ("short", "a trial needs 20 samples; short.csv, trial '1' has 10."),
+        ("column", "the measured data must have a column 'x'; column.csv has trial, time, y."),
+        ("short", "a trial must have 20 samples; short.csv, trial '1' has 10."),
         ("constant", "the observed channel 'x' must vary; constant.csv has 1 in every sample."),
         ("nan", "nan.csv, line 9 (trial '1'), column 'x'"),
         ("absent", "measured data must be a table; absent.csv: No such file"),

@@ -37,7 +37,7 @@ def test_the_saved_model_is_of_the_kind_that_the_page_recommends(study, tmp_path
 
 def test_without_sensors_it_is_refused(study, called):
     done = called("reconstruct", study, ends=REFUSED)
-    assert "reconstruction needs at least one sensor" in done.stderr
+    assert "reconstruction must have at least one sensor" in done.stderr
 
 
 def test_a_search_chooses_the_sensors_and_stands_in_the_report(study, tmp_path, called):

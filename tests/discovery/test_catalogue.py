@@ -59,9 +59,9 @@ def _refusal(tmp_path, text):
     ("text", "words"),
     [
         ("[[shape]", "a catalogue must be a TOML file of [[shape]] entries; mine.toml: "),
-        ("", "a catalogue must contain only [[shape]] entries; mine.toml holds nothing"),
-        ('name = "x"', 'mine.toml holds name. Begin each effect with a line "[[shape]]"'),
-        ("shape = [1]", "mine.toml, shape 1 is not one"),
+        ("", "a catalogue must contain only [[shape]] entries; mine.toml has no entries"),
+        ('name = "x"', 'mine.toml has name. Begin each effect with a line "[[shape]]"'),
+        ("shape = [1]", "mine.toml, shape 1 is none"),
         ('[[shape]]\nname = "a"\npiece = ["x"]', "mine.toml, shape 1 has 'piece'. Did you mean pieces?"),
         (
             '[[shape]]\nname = "a"\npieces = ["z"]\nstates = ["z"]',
@@ -70,7 +70,7 @@ def _refusal(tmp_path, text):
         ('[[shape]]\nname = "a"\npieces = ["z"]\nstates = { z = "v - z/tau" }', "has 'tau'"),
         ('[[shape]]\nname = "a"\ncolour = 1', "mine.toml, shape 1 has 'colour'. Remove it."),
         ('[[shape]]\nname = "My Effect"\npieces = ["x"]', "mine.toml, shape 1 has 'My Effect'"),
-        ('[[shape]]\nname = "a"\npieces = "x"', "the pieces of a shape must be a list; mine.toml, shape 1 has 'x'"),
+        ('[[shape]]\nname = "a"\npieces = "x"', "pieces must be a list of expressions; mine.toml, shape 1 has 'x'"),
         ('[[shape]]\nname = "a"\npieces = ["x*d"]\nconstants = { d = "guess" }', "has {'d': 'guess'}. Choose one"),
         ('[[shape]]\nname = "a"\npieces = ["x"]\nneeds = "luck"', "mine.toml, shape 1 has 'luck'. Remove the line."),
         (

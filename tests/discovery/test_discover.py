@@ -272,7 +272,7 @@ def test_where_the_last_quarter_of_one_trial_alone_shows_a_gap_the_first_is_held
     assert _named(found) == ("wrong_parameter", [("wrong_parameter", "tau")])
     assert found.effects[0].estimates["value"].low < 400 < found.effects[0].estimates["value"].high
     note = next(finding for finding in found.findings if finding.kind == "held out")
-    assert says(note.what, "last quarter shows a gap that the training data do not show", "first quarter is held out")
+    assert says(note.what, "the training data do not show the gap of", "last quarter", "held out", "first quarter")
     assert found.held_out.alpha == 0.025  # two splits share the rate of false finds
 
 
@@ -363,7 +363,7 @@ def test_a_term_goes_before_the_random_pushes_beside_it():
 def test_the_answer_says_how_large_an_error_of_an_input_would_explain_it_as_well():
     found, _ = _found(with_load("-1.5*sign(v)"))
     (exact,) = (one for one in found.findings if one.kind == "exact inputs")
-    assert says(exact.what, "'push'", "Coulomb friction", " N (rms)")
+    assert says(exact.what, " N (rms)", "'push'", "Coulomb friction")
     size = float(exact.what.split(", ")[1].split(" ")[0])
     assert size == pytest.approx(1.5, rel=0.03)
 

@@ -116,5 +116,5 @@ def test_what_is_held_out_in_place_of_what_is_noted(case):
     other = replace(case, learned=case.held_out, held_out=case.learned[:1])
     note = noted(case, other).measured.findings[-1]
     blind, instead = (case.measured.trials[one.held_out[0]] for one in (case, other))
-    assert f"trial {blind} has the same simulated motion" in note.what and f"trial {instead} is held out" in note.what
-    assert f"trial {blind} has the same simulated motion" in noting_alike(case).measured.findings[-1].what
+    assert f"simulated motion of trial {blind};" in note.what and f"held out trial {instead}" in note.what
+    assert f"not change the simulated motion of trial {blind};" in noting_alike(case).measured.findings[-1].what

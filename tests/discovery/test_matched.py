@@ -53,11 +53,11 @@ WRONG = {
     ),
     "trial twice": (
         lambda m: replace(m, trials=("1", "1")),
-        r"each trial must have its own name; walk.csv has trial '1' twice. Rename one.",
+        r"each trial must have its own name; walk.csv has '1' twice. Rename one trial.",
     ),
     "inputs": (
         lambda m: with_inputs(m, np.zeros((2, 200, 3))),
-        r"needs 1 inputs: push; walk.csv has 3. Give one column for each input, in this order.",
+        r"must have the inputs of .*: push; the number of inputs in walk.csv is 3. Give one column for each input",
     ),
     "input gap": (
         gap_in_push,
@@ -65,13 +65,13 @@ WRONG = {
     ),
     "no value": (
         lambda m: with_value(m, np.nan, 1),
-        r"an observed channel must have values in every trial; walk.csv, trial '2' has none of 'x'. Remove the trial",
+        r"channel must have values in every trial; walk.csv, trial '2' has no value of 'x'. Remove the trial",
     ),
     "constant": (
         lambda m: with_value(m, 0.25, slice(None)),
         r"the observed channel 'x' must vary; walk.csv has 0.25 in every sample. Remove the channel",
     ),
-    "short": (short, r"a trial must have at least 16 samples; walk.csv, trial '1' has 9. Remove it, or record longer."),
+    "short": (short, r"a trial must have at least 16 samples; walk.csv, trial '1' has 9 samples. Remove this trial"),
 }
 
 

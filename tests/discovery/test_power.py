@@ -27,13 +27,13 @@ def test_a_normal_distribution_of_log_size_is_recovered():
 
 def test_the_sentence_says_where_the_sizes_end():
     found, seldom = (
-        f"Viscous damping at load is {word} in 19 of 20 records like these" for word in ("found", "not found")
+        f"Viscous damping at load is found in {word}19 of 20 records like these" for word in ("", "fewer than ")
     )
     assert counted(0, 4, 10).sentence.startswith(f"{found} if the damping is at least ")
     assert counted(10, 10, 10).sentence == f"{found} even with a damping of 1.0 N s/m."
-    assert counted(0, 1, 9).sentence == f"{seldom} with a damping of up to 4.0 N s/m."
+    assert counted(0, 1, 9).sentence == f"{seldom}, up to a damping of 4.0 N s/m."
     assert counted(0, 0, 0, instead="gravity@load").sentence == (
-        f"{seldom} with a damping of up to 4.0 N s/m; in most records with 4.0 N s/m the answer is gravity@load."
+        f"{seldom}, up to a damping of 4.0 N s/m; in most records with 4.0 N s/m the answer is gravity@load."
     )
 
 
@@ -60,5 +60,5 @@ def test_records_have_more_and_more_of_the_effect(monkeypatch):
 
 
 def test_a_plan_needs_effects():
-    with pytest.raises(SchemaError, match=r"a plan needs the effects .*; none is given\. Name them: --effects"):
+    with pytest.raises(SchemaError, match=r"plan must name the effects .*; no effect is given\. Name the effects: --"):
         find_power(mass(), record(mass(), 3, Experiment(trials=2, seconds=6.0)), Request(twins=2))

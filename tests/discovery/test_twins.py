@@ -120,14 +120,14 @@ def test_the_change_that_distinguishes_best_is_said(tied, monkeypatch):
     source, rival = tied
     monkeypatch.setattr("gaitdisc.discovery.twins.CLEARLY", 1e9)
     least = say_apart(source, [rival])
-    assert least.startswith("None of 6 simulated changes of the measurement would distinguish it from what is tied")
-    most = int(least.rpartition(" ")[2][:-1])
+    assert least.startswith("None of 6 simulated changes of the measurement would distinguish the tied explanations")
+    most = int(least.rpartition(" ")[2][:-2])
     monkeypatch.setattr("gaitdisc.discovery.twins.CLEARLY", 0.99 * most)
     said = say_apart(source, [rival])
-    assert " times as large would best distinguish it from linear stiffness at the load port: expected " in said
+    assert " times as large would best distinguish the answer from linear stiffness at the load port: expected " in said
     assert f"evidence {most}, now " in said
     monkeypatch.setattr("gaitdisc.discovery.twins.FLED", -1.0)  # no run stays
-    assert say_apart(source, [rival]).endswith("evidence of at most 0.")
+    assert say_apart(source, [rival]).endswith("evidence: at most 0).")
 
 
 def test_a_walks_phase_is_not_sped_up(source):
@@ -150,6 +150,6 @@ def test_inputs_that_are_faster_go_back_at_the_end():
 
 def test_what_an_engine_runs_has_no_twins():
     with pytest.raises(
-        SchemaError, match=r"twins and a plan need a simulation file .*; leg.xml is neither. Leave them out"
+        SchemaError, match=r"twins and a plan need a simulation file .*; leg.xml is neither. Leave both out"
     ):
         refuse_twins("leg.xml")

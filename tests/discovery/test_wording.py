@@ -25,7 +25,7 @@ def sentence(base=None, parts=(ENGAGED,), **changes):
 
 def test_the_issues_own_sentence():
     said = sentence()
-    assert says(said, "a one-sided spring", "ankle_moment", "286 N m/rad", "279-293", "2.0 deg of dorsiflexion")
+    assert says(said, "a one-sided spring", "ankle_moment", "286 N m/rad", "279 to 293", "2.0 deg of dorsiflexion")
     assert says(said, "12 and 55 %") and said.endswith(SHOWN)
 
 
@@ -33,7 +33,7 @@ def test_a_coupling_says_to_what():
     effect = FoundEffect("equation", "v", "linear_coupling", "", {"coupling": Estimate(0.2, 0.1, 0.3, "1/s^2")})
     part = Candidate("missing_physics", "equation", "v", "linear_coupling", ("x",), means="a linear coupling", role="x")
     said = sentence(mass(), (part,), effects=(effect,), where=())
-    assert says(said, "coupling", "equation", "0.2 1/s^2 (95 % 0.1-0.3)")
+    assert says(said, "coupling", "equation", "0.2 1/s^2 (95 % CI 0.1 to 0.3)")
 
 
 @pytest.mark.parametrize(
@@ -46,7 +46,7 @@ def test_where_units_are_not_mechanical_an_effect_is_named_by_its_form(unit, wor
         "missing_physics", "port", "leak", "linear_stiffness", ("(h_2)",), means="a linear spring", role="h_2"
     )
     said = sentence(parse_simulation(tank), (part,), effects=(effect,), where=())
-    assert says(said, f"lacks {words} at the leak port: 0.9 (95 % 0.8-1.0)")
+    assert says(said, f"lacks {words} at the leak port: 0.9 (95 % CI 0.8 to 1.0)")
 
 
 @pytest.mark.parametrize(
@@ -70,7 +70,7 @@ def test_where_nothing_meets_the_criteria_the_listed_explanation_that_removes_mo
     listed = (Explanation((SPRING,), replace(left, p=0.2)), Explanation((replace(SPRING, name="hysteresis"),), left))
     none = {"verdict": "unexplained", "effects": (), "parts": (), "where": (), "rivals": (), "held_out": size}
     said = sentence(**none, explanations=listed)
-    assert says(said, "no tested explanation meets the criteria", "hysteresis", "removes most: 88 %", "New trials")
+    assert says(said, "no tested explanation meets the criteria", "removes most", "hysteresis", "88 %", "New trials")
     assert "removes most" not in sentence(**none, explanations=listed[:1])
 
 
@@ -100,21 +100,21 @@ def test_two_effects_are_both_told():
     friction = FoundEffect("port", "load", "coulomb_friction", "", {"friction": Estimate(3.0, 2.8, 3.2, "N m")})
     other = Candidate("missing_physics", "port", "load", "coulomb_friction", means="dry (Coulomb) friction")
     said = sentence(parts=(ENGAGED, other), effects=(SPRING, friction))
-    assert says(said, "friction", "load port: 3.0 N m", "(95 % 2.8-3.2)")
+    assert says(said, "friction", "load port: 3.0 N m", "(95 % CI 2.8 to 3.2)")
 
 
 @pytest.mark.parametrize(
     ("name", "number", "said"),
     [
-        ("input_delay", (0.04, 0.03, 0.05, "s"), "x acts later than recorded, by 0.04 s"),
-        ("input_delay", (-0.04, -0.05, -0.03, "s"), "driving signal x acts earlier than recorded, by 0.04 s"),
-        ("input_gain", (1.2, 1.1, 1.3, "1"), "x acts 1.2 (95 % 1.1-1.3) times as strongly"),
-        ("input_saturation", (0.7, 0.6, 0.8, "1"), "driving signal x saturates below 0.7 (95 % 0.6-0.8)"),
-        ("sensor_gain", (1.2, 1.1, 1.3, "1"), "x reads 1.2 (95 % 1.1-1.3) times the true value"),
+        ("input_delay", (0.04, 0.03, 0.05, "s"), "x acts 0.04 s (95 % CI 0.03 to 0.05) later than recorded"),
+        ("input_delay", (-0.04, -0.05, -0.03, "s"), "x acts 0.04 s (95 % CI 0.03 to 0.05) earlier than recorded"),
+        ("input_gain", (1.2, 1.1, 1.3, "1"), "x acts 1.2 (95 % CI 1.1 to 1.3) times as strongly"),
+        ("input_saturation", (0.7, 0.6, 0.8, "1"), "driving signal x saturates below 0.7 (95 % CI 0.6 to 0.8)"),
+        ("sensor_gain", (1.2, 1.1, 1.3, "1"), "x reads 1.2 (95 % CI 1.1 to 1.3) times the true value"),
         ("sensor_gain", (0.0178, 0.0175, 0.0181, "1"), "true value, as if radians were read as"),
         ("sensor_gain", (-1.01, -1.03, -0.99, "1"), "times the true value, as if its sign were reversed"),
-        ("sensor_offset", (-0.2, -0.3, -0.1, "m"), "x reads low by 0.2 m (95 % 0.1-0.3)"),
-        ("sensor_drift", (0.2, 0.1, 0.3, "m/s"), "measured x drifts high by 0.2 m/s"),
+        ("sensor_offset", (-0.2, -0.3, -0.1, "m"), "x reads 0.2 m (95 % CI 0.1 to 0.3) too low"),
+        ("sensor_drift", (0.2, 0.1, 0.3, "m/s"), "measured x drifts upwards by 0.2 m/s"),
         ("sensor_lag", (0.04, 0.03, 0.05, "s"), "measured x lags by 0.04 s"),
     ],
 )
@@ -193,8 +193,8 @@ def test_what_is_not_borne_out_says_by_which_test():
 @pytest.mark.parametrize(
     ("bounds", "said"),
     [
-        ((), "The parameter k is 31.2 N/m (95 % 30.8-31.6), but 24 N/m in the file"),
-        ((20.0, 28.0), "is 31.2 N/m (95 % 30.8-31.6), but 24 N/m in the file, outside its bounds, 20 to 28 N/m."),
+        ((), "The parameter k is 31.2 N/m (95 % CI 30.8 to 31.6), but 24 N/m in the file"),
+        ((20.0, 28.0), "is 31.2 N/m (95 % CI 30.8 to 31.6), but 24 N/m in the file, outside its bounds, 20 to 28 N/m."),
         ((-float("inf"), 28.0), "but 24 N/m in the file, above its bound, 28 N/m."),
         ((35.0, float("inf")), "but 24 N/m in the file, below its bound, 35 N/m."),
         ((20.0, 40.0), "but 24 N/m in the file. With it"),

@@ -88,5 +88,5 @@ def test_an_angle_in_the_middle_near_a_right_angle_is_refused(bodies):
     ball, _ = bodies
     states = np.zeros((1, 5, 20))
     states[0, 2, 7] = -STEEPEST - 0.05
-    with pytest.raises(SchemaError, match=r"'hip about x' must stay within 1.4 rad.*'hip_about_x' makes it 1.45 rad"):
+    with pytest.raises(SchemaError, match=r"'hip about x' must stay within 1.4 rad.*'hip_about_x' reaches 1.45 rad"):
         refuse_other_units(draft(ball), ball, None, states)  # pyright: ignore[reportArgumentType]

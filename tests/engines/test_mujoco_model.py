@@ -82,7 +82,7 @@ def test_an_activation_lags_as_its_actuator_says(pendulum):
     [
         (("<worldbody>", "<worldbod>"), "must be able to read"),
         (('gear="5.0"', 'gear="5.0" unheard="1"'), "Correct the part that the message names"),
-        (("</worldbody>", '</worldbody><equality><joint name="held" joint1="pivot"/></equality>'), "'held' makes one"),
+        (("</worldbody>", '</worldbody><equality><joint name="held" joint1="pivot"/></equality>'), "'held' makes"),
     ],
 )
 def test_what_has_no_place_is_refused_in_words(pendulum, change, words):

@@ -76,9 +76,9 @@ def test_what_does_not_fit_is_refused():
         gd.Reconstructor().fit(X[:, 0], Y)
     with pytest.raises(ShapeError, match=r"\(2000, 1\).*\(1999, 2\)"):
         gd.Reconstructor(rate_hz=50.0).fit(X, Y[1:])
-    with pytest.raises(ShapeError, match=r"trials of readings and of states.*2.*1"):
+    with pytest.raises(ShapeError, match=r"readings and states must have the same.*2.*1"):
         gd.Reconstructor(rate_hz=50.0).fit([X, X], [Y])
-    with pytest.raises(ShapeError, match=r"1 sensors.*2 columns"):
+    with pytest.raises(ShapeError, match=r"model \(1\);.*columns is 2"):
         fitted().predict(Y)
 
 

@@ -204,7 +204,7 @@ def test_two_walks_become_a_run_that_is_saved_and_drawn(long, tmp_path):
 
 
 def test_an_output_that_is_no_angle_of_both_and_a_share_in_percent_are_refused(long):
-    with pytest.raises(ChannelError, match="'ankle_angle_q' is not among hip_flexion_r"):
+    with pytest.raises(ChannelError, match=r"'ankle_angle_q' is not among .* .hip_flexion_r"):
         gd.fit_response(long["nominal"], long["exo"], ("ankle_angle_q",))
     with pytest.raises(SamplingError, match=r"held_out_share.*0.*12.5"):
         gd.fit_response(long["nominal"], long["exo"], held_out_share=12.5)

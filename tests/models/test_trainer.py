@@ -197,13 +197,13 @@ def test_the_penalty_is_weak_without_noise_and_strong_for_nothing_but_noise():
 @pytest.mark.parametrize(
     ("wrong", "words"),
     [
-        ({"epochs": 0}, "needs epochs above 0; epochs is 0"),
-        ({"learning_rate": -1.0}, "needs learning_rate above 0; learning_rate is -1"),
-        ({"decays": ()}, "needs at least one weight decay; decays is empty"),
-        ({"decays": (0.1, -0.2)}, "needs weight decays of 0 or more; decays holds -0.2"),
-        ({"inner_share": 1.0}, "needs an inner_share between 0 and 1; it is 1.0"),
-        ({"arithmetic": "fast"}, "needs arithmetic 'auto' or 'torch'; it is 'fast'"),
-        ({"precision": "float16"}, "needs precision 'float32' or 'bfloat16'; it is 'float16'"),
+        ({"epochs": 0}, "must have epochs above 0; epochs is 0"),
+        ({"learning_rate": -1.0}, "must have learning_rate above 0; learning_rate is -1"),
+        ({"decays": ()}, "must have at least one weight decay; there is none"),
+        ({"decays": (0.1, -0.2)}, "must have weight decays of 0 or more; one is -0.2"),
+        ({"inner_share": 1.0}, "must have an inner_share between 0 and 1; it is 1.0"),
+        ({"arithmetic": "fast"}, "must have arithmetic 'auto' or 'torch'; it is 'fast'"),
+        ({"precision": "float16"}, "must have precision 'float32' or 'bfloat16'; it is 'float16'"),
     ],
 )
 def test_settings_that_train_nothing_are_refused(wrong: dict[str, Any], words):

@@ -114,7 +114,7 @@ def test_damaged_and_foreign_files(pair, saved, untrained, tmp_path):
         (lambda data: data.update(half_widths=[0.5, 0.5]), "it has 2 interval half-widths for 1 states"),
         (lambda data: data["channels"][1].update(name="later"), "its channels differ from its sensors and states"),
         (lambda data: data.pop("kind"), "it lacks 'kind'"),
-        (lambda data: data["sensing"]["lags"].update(spacing=0), "a window needs at least one sample"),
+        (lambda data: data["sensing"]["lags"].update(spacing=0), "a window must have at least one sample"),
         (lambda data: data.update(sha256=[]), "model saved by gaitdisc; .*Run `gaitdisc reconstruct` again"),
     ],
 )

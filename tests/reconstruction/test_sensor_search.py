@@ -75,5 +75,5 @@ def test_people_are_searched_together(parts, channels):
 
 
 def test_no_sensor_is_refused_in_words(parts, channels):
-    with pytest.raises(ChannelError, match=r"least.*0.*5 channels"):
+    with pytest.raises(ChannelError, match=r"least.*0.*channels 5"):
         search_sensors([parts], channels, 0)

@@ -54,7 +54,7 @@ def test_trials_left_out():
 def test_refusals():
     with pytest.raises(SchemaError, match="'shuffled'"):
         split_within([walk()], "shuffled", REACH_S)
-    with pytest.raises(SamplingError, match=r"needs windows in.*none"):
+    with pytest.raises(SamplingError, match=r"leave windows in.*none"):
         split_within([walk(5.0)], "temporal", REACH_S)
     with pytest.raises(SamplingError, match="at least three people"):
         split_by_subject([[walk()], [walk()]], 0)

@@ -39,7 +39,7 @@ from gaitdisc.saved.provenance import provenance_now
 def test_an_angle_is_given_in_degrees_too():
     rows = estimates_table(manufactured()).rows
     assert rows[0][2:] == ("stiffness", "286 N m/rad", "279 N m/rad", "293 N m/rad", "")
-    assert rows[1][-1] == "2.0 deg (95 % 1.9-2.1)"
+    assert rows[1][-1] == "2.0 deg (95 % CI 1.9 to 2.1)"
 
 
 def test_where_no_number_is_an_angle_no_column_is_in_degrees():
@@ -113,8 +113,8 @@ def test_the_test_says_on_how_many_pieces_and_of_what_where_nothing_is_named():
     size = GapSize(1, 1, 1, 0.34, {"theta": (0.054, 0.054, 0.0087)}, 9)
     table = gap_table(manufactured(verdict="no_gap", effects=(), held_out=size))
     assert says(table.caption, "9 independent samples")
-    assert says(table.caption, "no effect is named", "of cubic stiffness", "ankle_moment")
-    assert "If no effect is named" not in gap_table(manufactured()).caption
+    assert says(table.caption, "No effect is named", "cubic stiffness", "ankle_moment")
+    assert "No effect is named" not in gap_table(manufactured()).caption
 
 
 def test_every_held_out_trial_has_its_errors():

@@ -41,7 +41,7 @@ def response(response_maker):
 def test_the_device_model_helps(response):
     headline, without, verdict, ridge, null = participant_sentences(response)
     assert says(headline, "P01", "0.87", "(R²", "3 variables", "7.5 s, n = 749", "samples", "0.94", "0.97")
-    assert "the Nominal model reaches 0.96" in without
+    assert "the Nominal model reaches R² = 0.96" in without
     assert "helps: R² rises by 0.07" in verdict
     assert says(verdict, "better", "3 of 3 variables), 70", "%")
     assert says(ridge, "0.77", "0.84", "0.87", "0.10")

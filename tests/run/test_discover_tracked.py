@@ -82,7 +82,7 @@ def test_without_muscles_forces_only_the_residuals_speak(lab):
     from gaitdisc import discover
 
     found, _ = discover(str(lab / "subject01_metabolics.osim"), str(kinematics))
-    assert says(found.sentence, "no", "gives the muscles'")
+    assert says(found.sentence, "no", "gives the muscle forces")
     assert "N at pelvis_ty" in found.sentence and not found.effects
 
 

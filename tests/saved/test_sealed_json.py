@@ -183,7 +183,7 @@ def test_every_unit_of_a_run_is_of_a_kind():
 
 
 def test_no_result_is_refused(tmp_path):
-    with pytest.raises(SchemaError, match="holds nothing"):
+    with pytest.raises(SchemaError, match="contains nothing"):
         load_saved(tmp_path)
 
 

@@ -29,9 +29,9 @@ def _made(**changed):
         (
             {"parameters": (Parameter("sin", 1.0), *PLAIN["parameters"])},
             ("parameters", "sin"),
-            "not be that of a function",
+            "not be t or that of a function",
         ),
-        ({"parameters": (Parameter("t", 1.0), *PLAIN["parameters"])}, ("parameters", "t"), "nor t"),
+        ({"parameters": (Parameter("t", 1.0), *PLAIN["parameters"])}, ("parameters", "t"), "not be t"),
         ({"states": (*PLAIN["states"], State("__class__"))}, ("states", "__class__"), "a name must be a letter"),
         ({"states": (*PLAIN["states"], State("lambda"))}, ("states", "lambda"), "not a Python keyword"),
         ({"states": (*PLAIN["states"], State("µ"))}, ("states", "µ"), "a name must be a letter"),

@@ -68,7 +68,7 @@ def test_missing_rows_are_empty_in_the_channels_and_bridged_in_the_inputs():
     assert np.flatnonzero(np.isnan(even.observed[:, 0])).tolist() == [100, 101, 102, 250]
     np.testing.assert_allclose(even.inputs[:, 0], np.cos(np.arange(COUNT) / RATE), atol=1e-3)
     assert [one.kind for one in findings] == ["gap in time", "bridged"]
-    assert says(findings[0].what, "4 rows", "400") and "at most 0.03 s in a row" in findings[1].what
+    assert says(findings[0].what, "4 of 400 rows") and "at most 0.03 s in a row" in findings[1].what
 
 
 def test_a_gap_of_percent_stride_is_bridged_through_its_turn():

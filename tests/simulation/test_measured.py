@@ -37,7 +37,7 @@ def test_trials_that_are_too_short_are_left_out_with_a_finding():
     (finding,) = measured.findings
     assert finding.what == "fewer than 20 samples in 2 trials: 'c' (12), 'd' (19)"
     assert [one.kind for one in alone.findings] == ["short trial", "one trial"] and alone.trials == ("b",)
-    with pytest.raises(SamplingError, match=r"needs 20 samples; walk\.csv, trial 'a' has 19"):
+    with pytest.raises(SamplingError, match=r"have 20 samples; walk\.csv, trial 'a' has 19"):
         _measured(_trial("a", 19), _trial("b", 12))
 
 
@@ -66,7 +66,7 @@ def test_printed_times_are_even_enough():
         ([_trial(time=np.sort(np.random.default_rng(0).uniform(0, 1, 50)))], "interval of a trial must be constant"),
         ([_trial(time=np.repeat(np.arange(25) / 100, 2))], "t = 0 s"),
         ([_trial(time=np.arange(50) % 25 / 100)], r"t = 0.24 s is followed by 0 s \(sample 26"),
-        ([_trial("a"), _trial("b", rate=50.0)], "trial 'a' has 100 Hz, trial 'b' 50"),
+        ([_trial("a"), _trial("b", rate=50.0)], "trial 'a' has 100 Hz, trial 'b' has 50 Hz"),
     ],
 )  # fmt: skip
 def test_clocks_that_do_not_run_are_refused(trials, words):
@@ -93,7 +93,7 @@ def test_empty_cells_are_left_out_with_one_finding():
     measured = _measured(_trial("a", observed=observed), _trial("b"))
     assert np.isnan(measured.observed[0, [3, 4, 30], 0]).all()
     (finding,) = measured.findings
-    assert says(finding.line(), "walk.csv", "3 of 100 samples", "'a' (3)")
+    assert says(finding.line(), "walk.csv", "missing samples: 3 of 100", "'a' (3)")
 
 
 def test_a_channel_that_is_as_good_as_empty_is_refused():

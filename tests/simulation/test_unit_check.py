@@ -111,7 +111,7 @@ def test_units_that_fit(ankle, expression, unit):
         ("theta", "deg", r"its column, 'deg'; 'theta' is in rad. Write 57.2958\*theta."),
         ("-theta", "deg", r"'theta' is in rad. Write -57.2958\*theta."),
         ("57.2958*theta", "rad", r"its column, 'rad'; 'theta' is in rad. Write 1\*theta."),
-        ("theta", "m", r"its column, 'm'; 'theta' has a unit of another dimension. Correct the unit or expression."),
+        ("theta", "m", r"its column, 'm'; 'theta' has a unit of another dimension. Correct the unit or the."),
         ("tau*omega", "N m", r"'tau\*omega' has a unit of another dimension"),
     ],
 )
