@@ -100,7 +100,7 @@ def test_a_file_that_is_absent_empty_or_of_another_kind(folder, file, content, s
 def test_a_column_missing(walk, folder, refusal):
     write_storage(walk.stream("kinematics").selected(ANGLES[:4]), folder / "bad.mot")
     said = refusal("bad.mot")
-    assert says(said, "knee_angle_l; bad.mot", "4 channels")
+    assert says(said, "bad.mot", "4 channels", "not knee_angle_l;")
 
 
 def test_units_absent(walk, folder, refusal):

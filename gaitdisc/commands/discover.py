@@ -61,7 +61,7 @@ def discover(  # noqa: PLR0913, PLR0917 these are the options of a command
     """Identify the effect that the simulation lacks, add it, and report the error on held-out data."""
     if measured is None and not participant:
         raise SchemaError(
-            "a discovery must have a simulation file and measured trials, or a study and a participant",
+            "discover must be given a simulation file and measured trials, or a study and a participant",
             f"only {simulation.name} is given",
             "Name the measured table after it: gaitdisc discover SIMULATION.toml MEASURED.csv. For a study, add "
             "--participant.",

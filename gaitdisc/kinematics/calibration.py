@@ -159,7 +159,7 @@ class _Builder:
             return davis_hip(width, (legs["l"] + legs["r"]) / 2, legs[side], self._radius(), side)
         if "harrington" not in methods:
             raise ChannelError(
-                "the hip joint centre after Davis must have the lengths of both legs",
+                "for the hip joint centre after Davis, the lengths of both legs must be known",
                 f"{self.file} and the measures have {f'only that of side {next(iter(legs))}' if legs else 'none'}",
                 'Provide leg_length_m, or use hip = "harrington".',
             )
@@ -195,7 +195,7 @@ class _Builder:
             self._note("width", f"the width of {joint}_{side}, between its two markers, is {width * 1000:.0f} mm")
             return width
         raise ChannelError(
-            f"a {joint} joint centre from one lateral marker must have the width of the {joint}",
+            f"for a {joint} joint centre from one lateral marker, the width of the {joint} must be known",
             f"neither {self.file} nor the measures have it for side {side!r}",
             f"Provide {joint}_width_m, or add a medial marker in the static trial.",
         )

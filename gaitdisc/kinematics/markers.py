@@ -121,14 +121,14 @@ def check_right_handed(pelvis: Values, up: Values, file: str = "") -> None:
     >>> check_right_handed(np.eye(3)[None], np.array([0.0, -1.0, 0.0]), "a.c3d")  # doctest: +ELLIPSIS
     Traceback (most recent call last):
     ...
-    gaitdisc.errors.ShapeError: the laboratory's axes must ... up points down (cosine -1.00): ...
+    gaitdisc.errors.ShapeError: the laboratory's axes must ... axis points down (cosine -1.00): ...
     """
     upright = float(np.nanmedian(pelvis[:, :, 1] @ up))
     if not upright > 0:
         raise ShapeError(
             "the laboratory's axes must be right-handed, and the names of left and right markers correct",
-            f"{file or 'the recording'}: with the right iliac spine on the right and the sacrum behind, up points down "
-            f"(cosine {upright:.2f}): the frame is mirrored, or left and right are exchanged",
+            f"{file or 'the recording'}: with the right iliac spine on the right and the sacrum behind, the upward "
+            f"axis points down (cosine {upright:.2f}): the frame is mirrored, or left and right are exchanged",
             "Correct the axes of the export, or the labels.",
         )
 

@@ -87,7 +87,7 @@ def move_body(
     """
     if static is None:
         raise ChannelError(
-            "angles from markers must have a static trial of the person",
+            "for angles from markers, a static trial of the person must be given",
             "none is given",
             "Record a static trial with all markers of the set, or name such a trial.",
         )
@@ -271,7 +271,7 @@ def segment_angles(segments: Recording) -> tuple[Recording, tuple[Finding, ...]]
     lacking = [label for label in LABELS.values() if label not in there]
     if lacking:
         raise ChannelError(
-            "angles from segments must have pelvis, thighs, shanks and feet, as pelvis, l_thigh, ...",
+            "for angles from segments, the file must have pelvis, thighs, shanks and feet, as pelvis, l_thigh, ...",
             f"{file} has no {', '.join(lacking)}; it has {', '.join(sorted(there))}",
             "Export these segments too, or export the joint angles.",
         )

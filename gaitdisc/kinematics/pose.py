@@ -261,8 +261,8 @@ def chord_centre(proximal: Values, wand: Values, lateral: Values, distance_m: fl
     area = float(np.linalg.norm(normal))
     if not length > distance_m or not area > 1e-4 * length**2:
         raise ShapeError(
-            "for a joint centre from one lateral marker, it must be farther from the proximal joint than half the "
-            "joint's width, and the wand marker must lie off the line between them",
+            "for a joint centre from one lateral marker, this marker must lie farther from the proximal joint than "
+            "half the joint's width, and the wand marker must lie off the line between them",
             f"the marker is {length:.4g} m from the proximal joint, half the width is {distance_m:.4g} m, and the "
             f"wand marker is {area / max(length, 1e-09):.4g} m off the line",
             "Check the markers of the static trial and the width.",

@@ -37,7 +37,7 @@ class Person:
     def __post_init__(self) -> None:
         if self.mass_kg is None or not np.isfinite(self.mass_kg):
             raise UnitError(
-                "moments and powers per kg must have the person's body mass [kg]",
+                "for moments and powers per kg, the person's body mass [kg] must be known",
                 "neither the study nor the file states one",
                 "Write the mass in the study's participants, or in PROCESSING:BODYMASS of the C3D file.",
             )

@@ -140,7 +140,7 @@ def platforms(trial: Trial) -> list[Platform]:
     found = [_plate(forces, name, surfaces) for name in plates] + [_foot_force(forces, name) for name in feet]
     if not found:
         raise ChannelError(
-            "joint moments must have force and moment of the ground in three directions",
+            "for joint moments, force and moment of the ground must be given in three directions",
             f"{forces.source.file or trial.name} has {', '.join(forces.names[:6])}",
             "Provide plates with FORCE_PLATFORM (C3D), or ground_force_r_vx to ground_torque_r_z (.mot).",
         )
@@ -160,7 +160,7 @@ def platforms(trial: Trial) -> list[Platform]:
 def _plate(forces: Recording, name: str, surfaces: dict[str, Surface]) -> Platform:
     if name not in surfaces:
         raise ChannelError(
-            f"the wrench of {name} must have the corners of its surface",
+            f"for the wrench of {name}, the corners of its surface must be given",
             f"{forces.source.file or 'the trial'} has corners for {', '.join(surfaces) or 'no plate'}",
             "Keep the corners of the trial's plates, or correct FORCE_PLATFORM:CORNERS.",
         )

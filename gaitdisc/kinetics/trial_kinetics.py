@@ -79,7 +79,7 @@ def force_balance(
     """
     if set(found) != {"l", "r"}:
         raise ChannelError(
-            "the balance of forces must have both legs and the pelvis",
+            "for the balance of forces, both legs and the pelvis must be given",
             f"found {'only leg ' + ', '.join(found) if found else 'no leg'}",
             "Provide the markers of both legs.",
         )
@@ -138,7 +138,7 @@ def trial_kinetics(
     if not any(step.clean for step in steps):
         reasons = "; ".join(f"{one.platform} at {one.start:.2f} s: {one.reason}" for one in steps[:3])
         raise ChannelError(
-            "joint moments must have a step of one foot alone on a force plate",
+            "for joint moments, one foot must step alone on a force plate",
             f"{file}: {reasons or 'no platform is loaded'}",
             "Exclude the trial from kinetics, or use one in which each foot hit its own plate.",
         )

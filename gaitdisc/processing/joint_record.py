@@ -141,7 +141,7 @@ def _envelopes(trial: Trial, study: Study, side: str, time: Values) -> tuple[Val
     own = own.selected([name for name in own.names if name not in lost])
     if not own.names:
         raise ChannelError(
-            f"a moment model driven by EMG must have usable EMG from side {side!r}",
+            f"for a moment model driven by EMG, EMG of side {side!r} must be usable",
             f"{trial.name} has {'only dead channels: ' + ', '.join(sorted(lost)) if lost else 'none'}",
             "Name the muscles in [channels], or set side in [strides] to the leg with electrodes.",
         )

@@ -104,7 +104,7 @@ def processed(trial: Trial, study: Study, body_weight_n: float | None = None) ->
     side = study.strides.side
     if side not in choice.contacts:
         raise StrideError(
-            f"percent stride of side {side!r} must have contacts of this side",
+            f"for percent stride of side {side!r}, contacts of this side must be found",
             f"{trial.name}: {choice.detector} finds contacts of side {', '.join(choice.contacts)} only",
             "Change side in [strides].",
         )
@@ -192,7 +192,7 @@ def _state(trial: Trial, raw: Recording, study: Study) -> Recording:
     dead = [finding for finding in emg_findings(emg) if finding.severity == "refused"] if is_raw(emg) else []
     if dead:
         raise ChannelError(
-            f"the models must have usable EMG of {', '.join(f.channel for f in dead)}",
+            f"EMG of {', '.join(f.channel for f in dead)} must be usable for the models",
             f"{emg.source.file or trial.name}: " + "; ".join(f"{f.channel} is {f.kind}: {f.what}" for f in dead),
             "Remove the muscle from [models], or remove the trial.",
         )
@@ -324,7 +324,7 @@ class ReadWalk:
         """Filtered walk, cut into strides, under the settings of a study."""
         if self.without_angles:
             raise ChannelError(
-                "models must have joint angles, from the files or computed from markers and a static trial",
+                "for the models, joint angles must be in the files or computed from markers and a static trial",
                 f"{self.trial.name} has markers but no angles: {self.without_angles}",
                 'Add the standing trial with condition = "static", or the file with the angles.',
             )

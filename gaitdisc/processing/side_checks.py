@@ -62,7 +62,7 @@ def _feet_on_plates(trial: Trial) -> tuple[dict[str, FootPath], list[Platform], 
     heels, pelvis = find_marker_names(markers)
     if toes is None or "forces" not in trial.streams:
         raise ChannelError(
-            "a comparison of plates with the feet must have toe markers and forces",
+            "to compare plates with the feet, there must be toe markers and forces",
             f"{trial.name} lacks toe markers or forces",
             "Name the markers in [channels].",
         )

@@ -128,7 +128,7 @@ def _cluster(address: str) -> Iterator[None]:
         client = Client(address, timeout=CONNECT_S)
     except (OSError, ValueError) as error:
         raise ClusterError(
-            "a cluster must have a Dask scheduler that responds",
+            "a Dask scheduler must respond at the address of --cluster",
             f"{address}: {str(error)[:200] or type(error).__name__}",
             "Start a scheduler with `dask scheduler`, correct the address, or omit --cluster.",
         ) from error

@@ -264,7 +264,7 @@ def force_contacts(forces: Recording, body_weight_n: float | None = None) -> dic
     sides = {c.name: c.side for c in forces.channels if c.quantity == "vertical_force" and c.side}
     if not sides:
         raise ChannelError(
-            "contacts from force must have a vertical force for each foot",
+            "for contacts from force, each foot must have a vertical force",
             f"{forces.source.file or 'the recording'} has {', '.join(forces.names) or 'no channel'}",
             "Name the foot of each plate or belt in [channels], or add markers, which show the foot.",
         )

@@ -57,7 +57,7 @@ def test_a_walk_of_more_frames_than_16_bits_count_is_refused(reader, tmp_path):
 
 def test_two_time_bases_are_refused(tmp_path):
     emg, force = recording(EMG, np.ones((100, 2))), recording(FORCE, np.ones((200, 1)), 2000.0)
-    with pytest.raises(SamplingError, match=r"emg_sol_r.*100 samples.*1000 Hz, ground_force_r_vy.*200.*2000 Hz"):
+    with pytest.raises(SamplingError, match=r"emg_sol_r.*100 samples.*1000 Hz, and ground_force_r_vy.*200.*2000 Hz"):
         write_c3d([emg, force], tmp_path / "walk.c3d")
     assert not list(tmp_path.iterdir())
 

@@ -217,8 +217,8 @@ ANGLES = move_body(markers_of(known_angles(60), RAJAGOPAL), static_of(RAJAGOPAL)
 @pytest.mark.parametrize(
     ("markers", "static", "given_set", "words"),
     [
-        (WALK, None, None, r"must have a static.*none"),
-        (WALK, None, "rajagopal", r"must have a static.*none"),
+        (WALK, None, None, r"a static trial .*must be given; none"),
+        (WALK, None, "rajagopal", r"a static trial .*must be given; none"),
         (STRANGE, STRANGE, None, r"plug_in_gait.*LKNE, RTHI"),
         (static_of(PLUG_IN_GAIT), static_of(PLUG_IN_GAIT), "gait2354", r"gait2354; static\.c3d.*no L\.ASIS.*1"),
         (

@@ -98,7 +98,7 @@ def test_a_turn_keeps_the_clean_step_and_names_the_other(gait_data):
 
 def test_a_trial_without_a_clean_step_or_without_forces_is_refused(gait_data):
     trial = read_c3d(gait_data / "young_static" / "HC030A" / "HC030A01.c3d")
-    with pytest.raises(ChannelError, match=r"one foot alone.*HC030A01.c3d.*plate_1.*0.00 s"):
+    with pytest.raises(ChannelError, match=r"one foot must step alone.*HC030A01.c3d.*plate_1.*0.00 s"):
         trial_kinetics(trial, {}, feet(trial), Person(45.8))
     trial = read_c3d(gait_data / "young_straight_and_turn" / "HC030A" / "straight" / "HC030A05.c3d")
     markers = replace(trial, streams={"markers": trial.stream("markers")})

@@ -59,7 +59,7 @@ def test_a_plate_of_another_gain_contradicts_the_person_s_weight(plates):
     for plate, gain, start in ((1, 1.3, 0.70), (2, 1.3, 0.18), (1, 0.77, 0.70), (2, 0.77, 0.18)):
         (said,) = plate_words(gained(walk, plate, gain))
         assert (said.severity, said.kind, said.file) == ("warning", "plate step", "HC030A05.c3d")
-        shown = re.search(rf"plate_{plate} .* shows (\S+) .*449 N", said.what)
+        shown = re.search(rf"plate_{plate} .* force is (\S+) .*449 N", said.what)
         assert shown and float(shown[1]) == pytest.approx(gain, abs=0.04)
         assert said.spans[0][0] == pytest.approx(start, abs=0.02)  # s
 
