@@ -131,8 +131,8 @@ class Parts:
             if not any(len(each) for each in getattr(self, name)):
                 raise SamplingError(
                     f"the split {self.rule!r} must leave windows in all three parts",
-                    f"none remains for the part {name!r}: the trials are too short for windows and for gaps between "
-                    "the parts",
+                    f"none remains for {name.replace('check', 'validation')}: the trials are too short "
+                    "for windows and for gaps between the parts",
                     "Use a shorter history, or longer trials.",
                 )
 
