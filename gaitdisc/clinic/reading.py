@@ -108,7 +108,7 @@ def choose_light(pooled: PooledCycles, legs: dict[str, LegCurves]) -> tuple[str,
     if not legs:
         return "red", tuple(refusal.reason for refusal in pooled.refusals) or (NO_CYCLE,)
     reasons = []
-    few = [f"{pooled.counted(side)} {SIDE_WORDS[side]}" for side in FEET if pooled.counted(side) < FEW]
+    few = [f"{SIDE_WORDS[side]} leg {pooled.counted(side)}" for side in FEET if pooled.counted(side) < FEW]
     if few:
         gone = len({refusal.condition for refusal in pooled.refusals})
         words = f" ({gone} {'trial is' if gone == 1 else 'trials are'} left out)" if gone else ""

@@ -42,7 +42,7 @@ def values_table(reading: ClinicalReading) -> Table:
             record |= {"reference_mean": limits.mean, "reference_sd": limits.sd, "reference_people": limits.people}
         records.append(record)
     people = max((one.people for one in reading.spatiotemporal.values()), default=0)
-    known = f"reference mean ± standard deviation over legs (people: {people})" if people else "no reference"
+    known = f"reference mean ± standard deviation over legs (n = {people} people)" if people else "no reference"
     caption = (
         f"Mean ± standard deviation (number of cycles), if at least {FEW} cycles are kept; {known}; asymmetry: left "
         "minus right, divided by the mean of the two."

@@ -60,7 +60,7 @@ def export(
     if not labels:
         together, count = with_public_labels(together)
         if count:
-            LOG.info(f"Labels outside the vocabulary were numbered ({count}); --labels keeps them.")
+            LOG.info(f"Labels outside the vocabulary were replaced by numbered names ({count}); see --labels.")
     write_recording(together, out)
     typer.echo(f"{out}: {len(together.names)} channels, {len(together.time)} samples at {together.rate_hz:g} Hz")
 

@@ -99,7 +99,7 @@ def compare_walks(
         raise ComparisonError(
             f"{names[1]}, the reference walk, must have at least {fewest} strides, because they give the spread",
             f"it has {len(other)}, and {names[0]} has {len(one)}",
-            "Record longer. Give a walk of a single stride, such as a periodic simulation, as the first of both.",
+            "Record longer. If one walk is a single stride, such as a periodic simulation, give it as the first.",
         )
     correlation, shortest = stride_correlation(other), len(other)
     if not as_curve:

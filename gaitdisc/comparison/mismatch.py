@@ -97,10 +97,10 @@ class Mismatch(Saved, file="mismatch.json"):
     summary : DataFrame
         One row per channel, columns `CHANNEL_COLUMNS`: whether it differs; largest gap and its place; rms over the
         stride of the gap and of the second walk's SD; p of the largest |t|, corrected; `within`, the largest gap that
-        the band allows; `visible`, the gap that four of five such comparisons would detect; `shift_percent`, the
+        the band allows; `visible`, the gap that is detected with a power of 80 %; `shift_percent`, the
         best-fitting delay of the first walk's curve, and `rms_shifted`, the rms gap after this shift; `limit`, the
-        smallest difference that is named; `offset`, the mean gap over the stride, and `shape`, the largest gap without
-        the offset; `too_small`, significant but smaller than `limit`.
+        smallest difference that is reported; `offset`, the mean gap over the stride, and `shape`, the largest gap
+        without the offset; `too_small`, whether it is significant but below `limit`.
     exchange : Exchange
         Units and permutations of the test.
     findings : tuple of Finding

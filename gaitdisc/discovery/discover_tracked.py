@@ -157,9 +157,9 @@ def make_discovery(base: Simulation, joints: list[JointFinding]) -> Discovery:
     if best.gained > 0:
         fitted, held = (amount(float(np.sqrt(np.mean((left - one) ** 2)))) for one in (best.explained, best.predicted))
         sentence = (
-            f"Not proven: {named_at(rivals[0])} reduces the residual of {size} to {fitted} {unit} in the fit and "
-            f"to {held} {unit} on held-out time. Its evidence is {best.gained:.0f}; a name needs {CRITERIA.margin:.0f} "
-            f"and a held-out squared residual smaller by {100 * CLOSED:.0f} %. A longer or a second walk can decide."
+            f"Not proven: {named_at(rivals[0])} reduces the residual of {size} to {fitted} {unit} in the fit and to "
+            f"{held} {unit} on held-out time; its evidence is {best.gained:.0f}. A name requires {CRITERIA.margin:.0f} "
+            f"or more, and {100 * CLOSED:.0f} % less squared residual on held-out time. Another walk can decide."
         )
     return replace(found, verdict="unexplained", sentence=sentence)
 
@@ -243,7 +243,7 @@ def _simulation(walk: Pass) -> Simulation:
     """The walk as a simulation: what its muscles' groups may do otherwise, and a port at each joint."""
     plain, numbers = draft(walk.engine), []
     for name in walk.groups:
-        numbers.append(Parameter(f"{name}_strength", 1.0, "1", 1 - STRENGTH, 1 + STRENGTH, "factor of the force"))
+        numbers.append(Parameter(f"{name}_strength", 1.0, "1", 1 - STRENGTH, 1 + STRENGTH, "factor on the force"))
         numbers.append(Parameter(f"{name}_delay", 0.0, "s", meaning="delay of these muscles compared with the file"))
     seen, sensors = [], []
     for k in walk.joints:

@@ -92,7 +92,7 @@ class EngineFit:
                 column = called.index(part.candidate.place)
                 lags[column] = seconds = max(part.values["seconds"], 0.1 / data.rate)
                 controls[:, :, column] = lag_signal(controls[:, :, column], seconds * data.rate)
-                lag = f"a first-order lag of {part.candidate.place} ({seconds:.4g} s) cannot be written in a mapping: "
+                lag = f"a first-order lag of {part.candidate.place} ({seconds:.4g} s) cannot be written to a mapping: "
                 written = replace(written, notes=(*written.notes, f"{lag}only discovery.json contains it"))
         recorded = self.low_pass.filtered
         driven = Driven(written.engine, augmented, controls, forces, lags, recorded=recorded, progress=self.progress)

@@ -34,8 +34,8 @@ class Idle:
         """One for each kind."""
         idle = (
             ("warning", kind, self.places, "the search, which cannot identify an effect there"),
-            ("note", "parameter", self.parameters, "nothing; these data do not determine the value"),
-            ("note", "state", self.states, "nothing; these data do not determine the initial value"),
+            ("note", "parameter", self.parameters, "nothing; these data cannot determine such a parameter"),
+            ("note", "state", self.states, "nothing; these data cannot determine such an initial value"),
         )
         found = []
         for severity, part, names, spoils in idle:

@@ -277,8 +277,8 @@ def stride_trials(walk: ProcessedWalk, name: str, strides: int = MOTION_STRIDES)
         first += strides if whole else 1
     if len(trials) < FEWEST_TRIALS:
         raise StrideError(
-            f"a walk must have {FEWEST_TRIALS * strides} strides, in {FEWEST_TRIALS} series of {strides} in a row",
-            f"{walk.trial.name} has {len(own)} strides, with {len(trials)} such series",
+            f"a walk must have at least {FEWEST_TRIALS} separate series of {strides} consecutive strides",
+            f"{walk.trial.name} has {len(own)} strides, which give {len(trials)} such series",
             "Record a longer walk, or use fewer strides per series.",
         )
     return check_measured(trials, ("phase",), ("theta",), walk.trial.name)

@@ -28,14 +28,14 @@ SHORT_RUNS = (
     WEIGHED,
     EVIDENCE,
     "The identified effect had to reduce the squared error on the held-out data, also in combination with another "
-    "effect. Only the initial states were fitted to these data. The change had to correlate with the residual "
-    "(one-sided test, each sample weighted by its size, with the autocorrelation of the residual: Newey and West "
-    "1987). The intervals follow from the curvature of the likelihood under that noise.",
+    "effect. Only the initial states were fitted to these data. The change of the prediction by this effect had to "
+    "correlate with the residual (one-sided test; samples are weighted by the size of the change; Newey and West "
+    "1987 for autocorrelation). The intervals follow from the curvature of the likelihood.",
     "The noise floor is the sensor noise, estimated from the data without a model: the residual of a cubic fitted "
-    "to seven samples. Up to four explanations are the answer if their residual does not exceed this floor. "
-    "Otherwise, sets of explanations were compared by the share of the gap that they close on held-out runs, minus "
-    "a complexity penalty per term. It is 3 % of the gap for a simple term, and up to 10 % for a term that can imitate "
-    "many others (a delay, a product, a periodic force). Terms that close less than 5 % are listed as small.",
+    "to seven samples. If a set of up to four explanations leaves a residual at or below this floor, it is the answer. "
+    "Otherwise, sets were compared by the share of the gap that they close on held-out runs, minus a penalty for each "
+    "explanation. The penalty is 3 % of the gap for a simple one, and up to 10 % for one that can imitate many others "
+    "(a delay, a product, a periodic force). Explanations that close less than 5 % of the gap are listed as small.",
     UNNAMED,
 )
 BY_ENGINE = (
@@ -81,7 +81,7 @@ OF_A_DEVICE = (
     WEIGHED,
     EVIDENCE,
     "The identified effect had to reduce the squared error of the moment on the last quarter of the walk: p < 0.05 "
-    "in a one-sided test, each sample weighted by its size. The interval combines the noise and resampled strides of "
+    "in a one-sided test, weighted by the size of the change. The interval combines the noise and resampled strides of "
     "both walks. It also contains the effects of another speed at which muscles lose their force, another lag, less "
     "similar gains and a shift of the mean stride by one degree.",
     "If the ankle shows no effect, a mass added to the foot is estimated from the knee moment. The mass is named if "

@@ -39,7 +39,7 @@ def draft_tracked(
         raise SchemaError(
             "a tracked walk must have recorded ground forces",
             f"{'--forces' if forces else '--actuators'} is given without --external-loads",
-            "Add --external-loads grf.xml, the file of OpenSim's inverse dynamics.",
+            "Add --external-loads grf.xml, the external-loads file of the inverse dynamics.",
         )
     for path in (model, loads, forces, actuators):
         if path is not None and not path.is_file():

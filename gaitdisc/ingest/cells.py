@@ -193,7 +193,7 @@ def even_time(time: Values, digit_s: float, file: str, lines: NDArray[np.intp] |
     if not np.isfinite(time).all():
         row = int(np.argmax(~np.isfinite(time)))
         raise SamplingError(
-            f"{file}: every sample must have a time", f"{place(row)} has {time[row]}", "Export it again."
+            f"{file}: every sample must have a time", f"{place(row)} has {time[row]}", "Export the file again."
         )
     steps = np.diff(time)
     if steps.min() <= 0:

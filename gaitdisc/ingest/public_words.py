@@ -26,7 +26,7 @@ if TYPE_CHECKING:
 
 Result = TypeVar("Result")
 HIDDEN = "…"
-WHERE = f"({HIDDEN}: a label of the recording; `gaitdisc check` shows it.)"
+WHERE = f"({HIDDEN} stands for a label of the recording; `gaitdisc check` shows it.)"
 _TEXT = re.compile(r"\"\"\".*?\"\"\"|(?<![\"'])#[^\n]*", re.DOTALL)  # docstrings and comments, which cite people
 _LITERAL = re.compile(r"\"([^\"\n]*)\"|'([^'\n]*)'")
 _WORD = re.compile(r"\w+")

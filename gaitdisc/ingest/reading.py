@@ -122,7 +122,7 @@ def read_planned_trial(
 ) -> Trial:
     """Trial as a study plans it, named by pseudonym, session, condition, and a number where there are several."""
     if planned.leave_out:
-        raise StrideError("this trial is left out by the study", planned.leave_out, "Remove leave_out to use it.")
+        raise StrideError("the study file leaves out this trial", planned.leave_out, "To use it, remove leave_out.")
     paths = [study.path_of(file) for file in planned.files]
     trial = read_trial(
         paths, study.channels, participant.id, planned.condition, planned.crop_s, reader=reader, part=planned.part

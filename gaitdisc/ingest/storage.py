@@ -280,7 +280,7 @@ def _map_column(label: str, name: str, unit: str | None, title: str, file: str) 
         return Column(label, replace(channel, unit="1"), "1")
     if channel.quantity != "signal" or unit:
         return column_in_unit(label, channel, unit or channel.unit, file)
-    return replace(_guess(label, name, title), guessed="[channels] gives the name but not the unit")
+    return replace(_guess(label, name, title), guessed="[channels] gives the name but no unit, so the unit is guessed")
 
 
 def _vocabulary_column(label: str, plain: str, title: str, of_emg: bool) -> Column:

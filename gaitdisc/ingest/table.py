@@ -292,4 +292,4 @@ def _event(line: int, kind: str, side: str, text: str, unit_s: float, file: str)
         return Event(kind, side, unit_s * float(text.replace(",", ".")))
     except ValueError as error:
         needed = f"{where}: the time of an event must be a number"
-        raise ReadError(needed, f"found {text[:40]!r}", "Write seconds, such as 1.23.") from error
+        raise ReadError(needed, f"found {text[:40]!r}", "Write a number in the column's unit, such as 1.23.") from error

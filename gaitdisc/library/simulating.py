@@ -67,8 +67,8 @@ def simulate(
     Parameters
     ----------
     model : path, Simulation or callable
-        A simulation file, the result of `read_simulation`, or a Python function (`simulation_from_function`); a MuJoCo
-        or OpenSim model, or its mapping, which the engine runs.
+        A simulation file, the result of `read_simulation`, a Python function (see `simulation_from_function`), or a
+        MuJoCo or OpenSim model or its mapping file (docs/engines.md), which the engine runs.
     time : array_like (time,) [s]
         Times, evenly spaced and increasing.
     inputs : Recording, DataFrame or mapping of str to array_like (time,), optional
@@ -162,7 +162,7 @@ def _driven(simulation: Simulation, time: Values, inputs: Any) -> Values:
     if not isinstance(given, Recording | Mapping) and not hasattr(given, "columns"):
         raise SimulationError(
             f"{simulation.title or 'the simulation'!r} must have the inputs {', '.join(names)}",
-            f"the inputs are a {type(given).__name__} without names",
+            f"the inputs were given as {type(given).__name__} without names",
             f"Name the inputs: inputs={{{names[0]!r}: values}}, or use a DataFrame or Recording with these columns.",
         )
     table: Any = given

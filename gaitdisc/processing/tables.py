@@ -161,7 +161,7 @@ def offset_words(pooled: PooledCycles) -> str:
     if not late:
         return NONE
     if pooled.contact_offset_s is None:
-        return "not shifted: no plate recorded a step"
+        return "not shifted: no step was recorded by a plate or marked by an event"
     steps = counted(pooled.offset_steps, "step")
     return f"{1000.0 * pooled.contact_offset_s:+.0f} ms ({steps} recorded by a plate or marked by an event)"
 

@@ -46,7 +46,7 @@ class Reconstructor(Saved, file="model.json"):
     history_s : float
         Length of the history in a window [s].
     spacing_s : float
-        Time between two readings of a window [s].
+        Time between consecutive readings in a window [s].
     ahead_s : float
         Time from the last reading to the estimated state [s]; 0 for the current state.
     seed : int
@@ -243,7 +243,7 @@ class Reconstructor(Saved, file="model.json"):
 
     @property
     def model(self) -> SensingModel:
-        """The fitted model; it also accepts a Recording."""
+        """The fitted model; it can be called with a Recording."""
         if self._model is None:
             known = sys.modules.get("sklearn.exceptions")  # whose tools look for its own class
             UnfittedError = type("TrainingError", (TrainingError, *([known.NotFittedError] if known else [])), {})

@@ -21,7 +21,7 @@ RANDOM = "random (leaks)"
 RULES = {
     "temporal": "first 70 % of each trial training, next 10 % validation, last 20 % test; no window crosses a border",
     "blocked": "ten blocks of each trial: seven training, one validation, two test; no window crosses a border",
-    RANDOM: "windows drawn at random, with neighbours of test windows in the training part: the error is far too small",
+    RANDOM: "windows drawn at random, with neighbours of test windows in the training part: the error is too small",
 }
 
 
@@ -131,8 +131,8 @@ class Parts:
             if not any(len(each) for each in getattr(self, name)):
                 raise SamplingError(
                     f"the split {self.rule!r} must leave windows in all three parts",
-                    f"none remains for the part {name!r}: the trials are too short for windows and for gaps between "
-                    "the parts",
+                    f"none remains for {name.replace('check', 'validation')}: the trials are too short "
+                    "for windows and for gaps between the parts",
                     "Use a shorter history, or longer trials.",
                 )
 

@@ -187,7 +187,7 @@ class Field:
         Parameters
         ----------
         chosen : slice or ndarray of int
-            Snapshots to keep, in order of time.
+            Snapshots to keep, in chronological order.
         """
         return replace(self, time=self.time[chosen], values=self.values[chosen])
 

@@ -125,7 +125,7 @@ class Samples:
         return replace(self, x=self.x[chosen], y=self.y[chosen], time=self.time[chosen], phi=self.phi[chosen])
 
     def with_outputs(self, y: Values) -> Samples:
-        """Return the same inputs with other outputs of the same names.
+        """Return samples with the same inputs and output names, but new output values.
 
         Parameters
         ----------
@@ -182,9 +182,9 @@ class Samples:
                 row, column = (int(k) for k in np.argwhere(bad)[0])
                 raise TrainingError(
                     "all samples of a fit must be finite",
-                    f"{who}: {names[column]} has {int(bad[:, column].sum())} missing or infinite samples of "
-                    f"{len(self)} (first: {self.time[row]:.3f} s)",
-                    "Mark these samples as not usable; the fit then excludes them.",
+                    f"{who}: {int(bad[:, column].sum())} of {len(self)} samples of {names[column]} are missing or "
+                    f"infinite (first: {self.time[row]:.3f} s)",
+                    "Mark these samples as unusable; the fit then excludes them.",
                 )
         still = fit_scale(self.y).constant
         if still.any():

@@ -44,11 +44,11 @@ def quantity_figure(run: ResponseRun) -> Figure | None:
     parts = sorted({quantity.part for quantity in run.quantities})
     edge = f" Values below {number(low)} are cut off." if low == LOWEST else ""
     caption = (
-        f"R² [1] of the second derivative, median over variables, on the held-out device walk ({run.exo}) against the "
-        f"length of the training part (its {' or '.join(parts)} seconds), n = "
-        f"{counted(len(run.quantities), 'participant')}; split: last {tail_words(run)} s of each walk held out for "
-        f"all lengths. Thick lines: median over participants. Thin lines: each participant. Networks only.{edge} After "
-        "Fig. 4.4 of the dissertation."
+        f"R² [1] of the second derivative on the held-out device walk ({run.exo}) by training length; median over "
+        f"variables, n = {counted(len(run.quantities), 'participant')}. Only the {' or '.join(parts)} seconds of the "
+        f"training part are used; the last {tail_words(run)} s of each walk are held out at all lengths. Thick lines: "
+        f"median over participants. Thin lines: each participant. Networks only.{edge} After Fig. 4.4 of the "
+        "dissertation."
     )
     return Figure("quantity", caption, alt, numbers, drawn)
 
@@ -128,10 +128,10 @@ def length_table(run: ResponseRun) -> Table | None:
         parts = [_cells(of_length[of_length["second"] == second]) for second in ("exo", WHOLE)]
         rows.append((f"{length:g}", str(int(of_length["n"].max())), *parts[0], *parts[1]))
     caption = (
-        "R² [1] on the same held-out device walking by training length, paired over n = "
-        f"{counted(len(run.quantities), 'participant')}: exact two-sided signed-rank test, Holm-Sidak over the "
-        "variables of one length and comparison, alpha = 0.05. Largest shift: Hodges-Lehmann shift of the variable "
-        "with the largest change, second minus first. The CSV contains every test with its interval."
+        "Tests of R² [1] on the same held-out device walk by training length, paired over n = "
+        f"{counted(len(run.quantities), 'participant')}. Exact two-sided signed-rank test, Holm-Sidak correction over "
+        "the variables of a length and comparison, alpha = 0.05. Largest shift: Hodges-Lehmann estimate for the "
+        "variable with the largest change, second minus first. The CSV contains every test with its interval."
     )
     return Table("lengths", caption, _COLUMNS, tuple(rows), tests, _GROUPS)
 

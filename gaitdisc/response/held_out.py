@@ -118,10 +118,10 @@ def _caption(response: ParticipantResponse, rows: pd.DataFrame) -> str:
         band = f"Pale green: 90 % band of Augmented, from refits on blocks; share of samples in such a band: {said}. "
     return (
         f"{response.participant}: the last {WINDOW_S:g} s of the held-out device walk, n = "
-        f"{counted(len(rows), 'sample')} shown of {len(held.time)}; split: last {response.held_out_s:.4g} s held out, "
+        f"{len(rows)} of {counted(len(held.time), 'sample')} shown; split: last {response.held_out_s:.4g} s held out, "
         f"used by no model. Black: measured second derivative; {models}. Shaded: the residual of each model. {band}R² "
-        "(Nominal → Augmented) is over all held-out samples. Each panel has its own unit. Titles in red: left; in "
-        "blue: right."
+        "(Nominal → Augmented) is over all held-out samples. Each panel has its own unit. Red titles: left "
+        "side; blue: right."
     )
 
 
@@ -198,7 +198,7 @@ def _residual_figure(response: ParticipantResponse, numbers: pd.DataFrame, name:
         f"{response.participant}: residual of the second derivative, measured minus predicted, over the stride of the "
         f"held-out device walk, n = {counted(len(each), 'stride')}; split: last {response.held_out_s:.4g} s held out. "
         f"Black: mean; {interval}. Faint: every stride. A perfect model has a mean of zero. Each row has one scale "
-        "and one unit. Titles in red: left; in blue: right."
+        "and one unit. Red titles: left side; blue: right."
     )
     parts = [
         f"{MODEL_WORDS[str(model)]} {100 * ((curves['low'] > 0) | (curves['high'] < 0)).mean():.0f} %"

@@ -138,7 +138,7 @@ def responder_table(responses: Sequence[ParticipantResponse], seed: int = 0) -> 
     try:
         groups = find_groups(discrepancy_curves(complete), seed=seed)
     except ComparisonError as error:
-        return join_rows("responders"), f"Sub-groups were not tested: {error}"
+        return join_rows("responders"), f"Sub-groups were not tested: {str(error).removesuffix('.')}"
     numbers = (groups.count, groups.silhouette, groups.p, groups.stability)
     rows = [
         (response.participant, int(group), *numbers) for response, group in zip(complete, groups.labels, strict=True)

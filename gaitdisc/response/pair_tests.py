@@ -59,7 +59,7 @@ def comparison_sentences(run: ResponseRun) -> list[str]:
         "A non-significant difference does not show equality: the interval of the shift gives its possible size.",
         _floor(tests),
         _say_unexplained(tests),
-        f"Significant differences in {every} of three pairs, by family: {listing(differing)}. The first family counts.",
+        f"Significant differences in {every} of 3 pairs, by family: {listing(differing)}. The first family is used.",
     ]
 
 

@@ -83,7 +83,7 @@ class OverParticipants:
 
     def __post_init__(self) -> None:
         """Check columns once."""
-        again = "Compare the participants again: `gaitdisc run` on the study."
+        again = "Compare the participants again: run `gaitdisc run` on the study."
         check_columns(self, TABLES, "comparisons over participants must have", again)
 
     def enough_length(self, second: str = WHOLE) -> float | None:

@@ -39,8 +39,8 @@ def study_sentences(run: ResponseRun) -> list[str]:
     parts = [f"{MODEL_WORDS[model]} {_median_iqr(table[column])}" for model, column in _ON_EXO.items()]
     sentences = [
         who,
-        f"The models explain the following shares of the variance of held-out device walking ({run.exo}), median "
-        f"[quartiles] over participants of each participant's median over variables: {', '.join(parts)}.",
+        f"On held-out device walking ({run.exo}), the models explain these shares of the variance: {', '.join(parts)} "
+        "(medians [quartiles] over participants of each participant's median over variables).",
         _verdict(table, "median over participants; better in", MARGIN, "participant", ""),
     ]
     ridge = (table["ridge_augmented_on_exo"] - table["augmented_on_exo"]).dropna()

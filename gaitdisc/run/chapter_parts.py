@@ -40,7 +40,7 @@ PARTS = (
     Part(3, "further", "ch3_further", "further methods, noise, starts and trajectories of 3.4 and 3.5", 40, 0.5,
          quick_words=(OUT, "--seeds", "1", "--tables", "variance"), needs=METHODS),
     Part(4, "ankle_exo", "ch4_ankle_exo", "the entire chapter, Figs. 4.2-4.4", 9, 0.7),
-    Part(4, "bands", "ch4_further", "4.4, 6.2.2: bands, sparse terms, search, smooth curve (runners)", 4, 0.7,
+    Part(4, "bands", "ch4_further", "4.4, 6.2.2, runners: band coverage, sparse terms, network size, curve", 4, 0.7,
          words=(OUT, "--tables", "band", "people", "terms", "search", "curve"), data="gait/exotendon_run"),
     Part(4, "outcomes", "ch4_further", "6.2.2: joint moments and metabolic power of real people as outcomes", 0.1, 0.1,
          words=(OUT, "--tables", "moments", "energy"), data="gait/ankle_exo_emg_grf"),

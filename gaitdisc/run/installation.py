@@ -16,13 +16,13 @@ from gaitdisc.saved.provenance import list_versions
 
 EXTRAS = {
     "torch": "models of chapters 4 and 5",
-    "pysindy": "chapter 3 (extra chapter3)",
-    "pydmd": "chapter 3 (extra chapter3)",
-    "h5py": "HDF5 and .mat 7.3 files (extra fields)",
-    "xarray": "netCDF files (extra fields)",
-    "dask": "more than one machine (extra cluster)",
-    "typst": "PDF of a person's page (extra pdf)",
-    "openpyxl": "normal data of Polygon (extra xlsx)",
+    "pysindy": "chapter 3 (extra 'chapter3')",
+    "pydmd": "chapter 3 (extra 'chapter3')",
+    "h5py": "HDF5 and .mat 7.3 files (extra 'fields')",
+    "xarray": "netCDF files (extra 'fields')",
+    "dask": "more than one machine (extra 'cluster')",
+    "typst": "PDF of a person's page (extra 'pdf')",
+    "openpyxl": "normal data of Polygon (extra 'xlsx')",
 }
 
 

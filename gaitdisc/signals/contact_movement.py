@@ -65,7 +65,7 @@ def marker_contacts(
         swings = [peak for peak in peaks if _prominent(ahead, peak, FEWEST_SWING * swing)]
         times = np.array([markers.time[peak] + step * _vertex(ahead, peak) for peak in swings])
         times = _of_each_step(markers.time, swung, direction, times)
-        note = f"{heel} farthest in front of {', '.join(pelvis)}; {direction.how}"
+        note = f"contact if {heel} is farthest in front of {', '.join(pelvis)}; {direction.how}"
         found[side] = Contacts(times, side, "markers", note=note)
     return found
 

@@ -61,7 +61,7 @@ def envelopes(
     if emg.rate_hz <= 2 * highpass_hz:
         raise SamplingError(
             f"for an EMG high-pass of {highpass_hz:g} Hz, the rate must exceed {2 * highpass_hz:g} samples per second",
-            f"{file} has {emg.rate_hz:g}",
+            f"{file} has {emg.rate_hz:g} samples per second",
             "Export the raw EMG at its full rate (usually 1000 Hz). If this EMG is an envelope, apply a low-pass only.",
         )
     for column, channel in enumerate(emg.channels):

@@ -82,7 +82,7 @@ def gap_findings(recording: Recording) -> list[Finding]:
         fits = longest <= MAX_SPLINE_S + 1e-9  # at an end too: a recording that begins so much later lacks nothing
         gaps = counted(len(spans), "gap")
         what = f"{gaps}, {missing:.3f} s of {recording.duration_s:.2f} s, the longest {longest:.3f} s"
-        spoils = f"accelerations within {BESIDE_GAP_S:g} s of gaps longer than {MAX_SPLINE_S:g} s, which are excluded"
+        spoils = f"accelerations within {BESIDE_GAP_S:g} s of gaps longer than {MAX_SPLINE_S:g} s; they are excluded"
         if fits:
             spoils = "nothing: gaps are filled by a cubic spline and marked; gaps at the ends are excluded"
         name = channel.name.removesuffix(".x") if channel.quantity == "marker" else channel.name

@@ -166,7 +166,7 @@ def verify_walking(
     if found.regularity < LEAST_REGULARITY:
         fails.append(f"hip and knee angles repeat with a correlation of {found.regularity:.2f}")
     if found.knee_deg < LEAST_KNEE_DEG:
-        fails.append(f"the range of motion is {found.knee_deg:.0f} deg at the knee that moves more")
+        fails.append(f"the larger of the two knee ranges of motion is {found.knee_deg:.0f} deg")
     if fails:
         raise StrideError(
             f"a walk must have at least {counted(fewest, 'stride')} that cover {100 * least_coverage:.0f} % of "

@@ -14,7 +14,7 @@ ROUNDING = 1e-9  # of the largest value: a spread below it is rounding
 
 
 def r2(measured: ArrayLike, predicted: ArrayLike) -> NDArray[np.float64]:
-    """Coefficient of determination of every column, 1 - SSE / SST, SST about the mean of the measured values.
+    """Coefficient of determination of every column: 1 - SSE / SST, with SST about the mean of the measured values.
 
     It is 1 for a perfect prediction, 0 for one as good as the mean, and has no lower bound. It is NaN if it is
     undefined; `why_no_r2` gives the reason.

@@ -49,7 +49,7 @@ def test_the_light_says_why():
     gone = (Refusal("P01", "walk 3", "unread"),)
     few = read_beside(made_person(each=2, findings=found, refusals=gone), None)
     assert few.light == "amber" and len(few.reasons) == 5
-    assert says(few.reasons[0], "few cycles", "2 left, 2 right", "1 trial is left out", "3")
+    assert says(few.reasons[0], "few cycles", "left leg 2, right leg 2", "1 trial is left out", "3")
     assert says(few.reasons[1], "EMG", "tibialis anterior, left", "electrodes")
     assert says(few.reasons[2], "knee angle, left", "left out")
     assert few.reasons[3:] == ("gap: look at the curves before you use angles", "body weight: weigh again")

@@ -78,7 +78,7 @@ def test_dependent_strides_are_gathered_into_blocks():
 def test_too_few_strides_are_refused_in_words():
     with pytest.raises(ComparisonError, match=r"measured.*it has 1, and sim has 30") as refused:
         compare_walks(walk("sim", 30, 1), walk("measured", 1, 2))
-    assert "Give a walk of a single stride" in refused.value.remedy
+    assert "one walk is a single stride" in refused.value.remedy
 
 
 def test_people_are_units_and_paired():

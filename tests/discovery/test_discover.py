@@ -364,7 +364,7 @@ def test_the_answer_says_how_large_an_error_of_an_input_would_explain_it_as_well
     found, _ = _found(with_load("-1.5*sign(v)"))
     (exact,) = (one for one in found.findings if one.kind == "exact inputs")
     assert says(exact.what, " N (rms)", "'push'", "Coulomb friction")
-    size = float(exact.what.split(", ")[1].split(" ")[0])
+    size = float(exact.what.split("an error of ")[1].split(" ")[0])
     assert size == pytest.approx(1.5, rel=0.03)
 
 

@@ -53,7 +53,7 @@ def test_a_parameter_without_influence_is_no_candidate(measured):
 
 
 def test_where_no_port_shows_the_simulation_is_refused(measured):
-    with pytest.raises(SimulationError, match=r"\[ports\].*'load' affects none"):  # fmt: skip
+    with pytest.raises(SimulationError, match=r"\[ports\].*'load': no effect on"):  # fmt: skip
         discover(parse_simulation(MASS.replace("push + load", "push + 0*load")), measured)
 
 

@@ -106,7 +106,7 @@ def test_channels_are_found_by_name_whatever_their_order(measured):
         ),
         (
             "delay(x, 1e9)",
-            r"\[shape\] mine: .* the shortest, '1', lasts 4 s; 'delay\(x, .*\)' is 1e\+09 s. Write the delay",
+            r"\[shape\] mine: .* the shortest trial .'1', 4 s.; 'delay\(x, .*\)' is 1e\+09 s. Write the delay",
         ),
     ],
 )

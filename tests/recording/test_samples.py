@@ -43,7 +43,7 @@ def test_the_seam_before_the_last_block_is_left_away():
     ("outputs", "least", "words"),
     [
         (np.arange(10.0), 50, r"2 inputs.*1 outputs.*50 samples.*10 usable"),
-        (np.where(np.arange(10) == 3, np.nan, np.arange(10.0)), 5, r"1 missing.*10.*0\.030 s"),
+        (np.where(np.arange(10) == 3, np.nan, np.arange(10.0)), 5, r"1 of 10.*missing.*0\.030 s"),
         (np.full(10, 2.5), 5, r"2\.5.*10 samples"),
     ],
 )

@@ -44,7 +44,7 @@ def test_the_overview_counts_cycles_plates_and_muscles():
         ({}, "–"),
         ({"detectors": {"markers": 1}, "contact_offset_s": 0.0598, "offset_steps": 1}, "+60 ms (1 step recorded by"),
         ({"detectors": {"markers": 1}, "contact_offset_s": 0.04, "offset_steps": 3}, "+40 ms (3 steps recorded by"),
-        ({"detectors": {"angles": 1}}, "not shifted: no plate recorded a step"),
+        ({"detectors": {"angles": 1}}, "not shifted: no step was recorded by a plate or marked by an event"),
     ],
 )
 def test_by_how_much_contacts_were_moved_is_said(fields, said):

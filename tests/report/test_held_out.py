@@ -35,7 +35,7 @@ def test_the_last_seconds_are_drawn_as_the_csv_says(response):
 
 def test_words(response):
     [figure] = draw_held_out(response, "P01")
-    assert says(figure.caption, "n = 400 samples", "749", "7.5 s")
+    assert says(figure.caption, "n = 400 of 749 samples", "7.5 s")
     first, _, third = figure.drawn.axes[:3]
     assert first.get_ylabel() == "[deg/s²]\n↑ flexion"
     assert third.get_ylabel() == "[V/s²]"

@@ -173,7 +173,7 @@ def test_what_is_not_walking_is_refused_with_its_numbers(made):
     with pytest.raises(StrideError) as refusal:
         verify_walking(still, strides_of(contacts[:3]))
     assert says(refusal.value.needed, "3 strides", "60 %")
-    for words in ("2 strides, but 3", "strides cover 10 % of", "repeat with a correlation of", "range of motion is"):
+    for words in ("2 strides, but 3", "strides cover 10 % of", "repeat with a correlation of", "ranges of motion is"):
         assert words in refusal.value.found
 
 

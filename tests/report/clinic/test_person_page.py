@@ -152,7 +152,7 @@ def test_refused_first_then_amber_then_green_each_with_why_and_link(tmp_path):
         ("green", '<a href="people/P01.html">P01</a>'),
         ("green", '<a href="people/P03.html">P03</a>'),
     ]
-    assert says(text, "no walk. Record again") and says(text, "2 left, 2 right")
+    assert says(text, "no walk. Record again") and says(text, "left leg 2, right leg 2")
     stands_out = pd.read_csv(tmp_path / "tables" / "people.csv").set_index("person")["stands out"]
     assert "knee" not in stands_out["P02"] and says(stands_out["P03"].lower(), "■", "knee", "left", "4 cycles")
     assert says(text, "4 people; 1 refused, 1", "amber, 2 green")
