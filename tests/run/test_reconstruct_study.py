@@ -57,7 +57,7 @@ def test_a_gpu_that_is_not_there_is_refused_before_anything_is_fitted(study):
     [
         ({"split": "subject"}, SamplingError, r"least.*training.*2"),
         ({"history_s": 40.0}, SamplingError, r"39\.96 s.*29"),
-        ({"split": "condition"}, SchemaError, r"needs walks of.*condition.*--condition"),
+        ({"split": "condition"}, SchemaError, r"must have walks of.*condition.*--condition"),
     ],
 )
 def test_a_split_or_a_history_for_which_the_walks_do_not_do_is_refused(study, settings, error, words):
@@ -196,7 +196,7 @@ def test_one_condition_alone(study):
 
 
 def test_a_sensor_that_was_not_recorded(study):
-    with pytest.raises(ChannelError, match=r"refused, the first.*'knee_ange_r'"):
+    with pytest.raises(ChannelError, match=r"refused. The first: .*'knee_ange_r'"):
         read_walks(study, ("knee_ange_r",))
 
 
