@@ -107,5 +107,5 @@ def _refuse(path: Path, holder: str) -> NoReturn:
     raise WriteError(
         "",
         f"{holder} is writing to {what}",
-        f"Wait for it or choose another --out. If this process has ended, delete {path.name}.",
+        f"Wait for it or choose another --out. If that process ended, delete {path.name}.",
     )

@@ -75,7 +75,7 @@ def test_files_are_kept_in_what_the_answer_rests_on(given, tmp_path):
 def test_data_of_no_kind_or_without_a_column_are_refused(given):
     with pytest.raises(SimulationError, match="file or recordings"):
         gd.discover(cooling, 3)  # pyright: ignore[reportArgumentType]
-    with pytest.raises(ChannelError, match=r"have a column 'temperature'.*temprature"):
+    with pytest.raises(ChannelError, match=r"must have a column 'temperature'.*temprature"):
         gd.discover(cooling, table().rename(columns={"temperature": "temprature"}))
 
 

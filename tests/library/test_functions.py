@@ -58,7 +58,7 @@ def test_observations_may_be_expressions():
         (lambda *x: x, r"name each of its states.*'\*x'"),
         (lambda x, a="two": -x, "a number or a dict of numbers;.*a='two'"),
         (lambda x: x + x.missing, "a derivative for each state.*raised AttributeError.*Call the function yourself"),
-        (lambda x: (x, x), "one for each derivative; .* returns: 2; arguments without a default: 1"),
+        (lambda x: (x, x), "one for each derivative; .*returns: 2; arguments without a default: 1"),
         (lambda x, *, push=0.0: -x, "a port must be used in an equation"),
     ],
 )

@@ -47,7 +47,7 @@ def test_a_participant_of_a_study_and_too_few_participants(lab):
     assert found.ordered()[0].startswith("ankle")
     with pytest.raises(SchemaError, match=r"P02.*none.*'free', 1.*'exo'"):
         compare_study(study, "P02")
-    with pytest.raises(ComparisonError, match="these participants is 1"):
+    with pytest.raises(ComparisonError, match="number of these participants is 1"):
         compare_study(study)
 
 

@@ -47,5 +47,5 @@ def test_trials_are_whole_strides_of_the_device_walk(study):
 
 
 def test_too_few_strides_are_refused_with_their_number(nominal):
-    with pytest.raises(StrideError, match=r"4 series of 100 .*28 strides, with 0 such"):
+    with pytest.raises(StrideError, match=r"4 separate series of 100 .* 28 strides, which give 0 such series"):
         stride_trials(nominal, "ankle_angle_r", 100)
