@@ -269,7 +269,7 @@ def test_a_discovery_from_a_study_holds_none_of_them(study, tmp_path, monkeypatc
 def test_an_export_numbers_labels_of_no_vocabulary_unless_it_shall_keep_them(recordings, tmp_path, said, ending):
     folder = recordings / "Zqperson_aaa"
     files = [folder / f"Zqfile_exo_{kind}" for kind in ("ik.mot", "emg.c3d", "markers.trc")]
-    assert re.search(r"\d labels .*--labels", said("export", *files, "--out", tmp_path / f"all.{ending}", ends=0))
+    assert re.search(r"names \(\d\).*--labels", said("export", *files, "--out", tmp_path / f"all.{ending}", ends=0))
     assert found_in(tmp_path) == {}
     said("export", *files, "--out", tmp_path / f"kept.{ending}", "--labels", ends=0)
     assert {"Zqcolumn", "Zqmarker"} <= set(found_in(tmp_path)[f"kept.{ending}"])
