@@ -44,7 +44,7 @@ class PublicWords:
         """Sentence without a word of the recordings.
 
         >>> PublicWords().said("column 'Erika' has no unit")
-        "column '…' has no unit (…: a label of the recording; `gaitdisc check` shows it.)"
+        "column '…' has no unit (… stands for a label of the recording; `gaitdisc check` shows it.)"
         >>> PublicWords(files={"Erika.mot": "the recording"}).said("Erika.mot has no unit")
         'the recording has no unit'
         """

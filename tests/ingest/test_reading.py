@@ -116,7 +116,7 @@ def test_a_trial_that_the_study_leaves_out_is_not_read(tmp_path):
     planned = PlannedTrial(condition="walk", files=("walk.csv",), leave_out="tripped")
     person = Participant(id="P01", trials=(planned,))
     study = Study(conditions=Conditions(nominal="walk"), participants=(person,)).placed(tmp_path)
-    with pytest.raises(StrideError, match="left out by the study; tripped"):
+    with pytest.raises(StrideError, match="leaves out this trial; tripped"):
         read_planned_trial(study, person, planned)
 
 

@@ -120,7 +120,7 @@ def test_too_few_samples_constant_outputs_and_missing_numbers_are_refused(swing,
         train(swing.with_outputs(np.column_stack([swing.y[:, 0], np.full(2000, 3.0)])), FeedForward, quick)
     hole = swing.x.copy()
     hole[70, 1] = np.nan
-    with pytest.raises(TrainingError, match=r"1 missing.*2000.*0\.700 s"):
+    with pytest.raises(TrainingError, match=r"1 of 2000.*missing.*0\.700 s"):
         train(replace(swing, x=hole), FeedForward, quick)
 
 
