@@ -159,8 +159,7 @@ def search_expansion(fit: EngineFit, request: Request, read: dict[Path, str]) ->
         plain = one.kind != "port" or one.place not in roles or one.role in roles[one.place]
         return (one.kind, one.name) != ("port", "input_saturation") and (plain or one.name == "linear_coupling")
 
-    if not request.effects:
-        request = replace(request, possible=is_searched)
+    request = request if request.effects else replace(request, possible=is_searched)
     found, answer = find_missing(linear, driven, request, read)
     now, own = answer.values(), {k: one for k, one in mapping.values().items() if engine.as_force(k) is None}
     moved = {name: now[name] for name, value in own.items() if abs(now[name] - value) > MOVED * abs(value)}
@@ -173,8 +172,7 @@ def search_expansion(fit: EngineFit, request: Request, read: dict[Path, str]) ->
 
 def keep_borne_out(fit: EngineFit, found: Discovery, runs: OwnRuns, held: NDArray[np.bool_]) -> tuple[Part, ...]:
     """Return the explanations without which the engine's own runs err more; of given ones, all or none."""
-    both = zip(found.effects, fit.parts, strict=True)
-    kept = tuple(part for one, part in both if found.given or not one.small)
+    kept = tuple(part for one, part in zip(found.effects, fit.parts, strict=True) if found.given or not one.small)
     if not errs_less(runs, runs.before, held):
         return ()
     for part in kept if len(kept) > 1 and not found.given else ():

@@ -26,6 +26,7 @@ SURE = 4.0  # times the noise's power at the cut-off, up to which a signal there
 FELT = 1e-3  # times the noise's power at the cut-off, from which on a signal there may be in the way
 ALIKE = 1.3  # between the cut-offs of channels that went through one filter
 OVERLAP = 4  # times as long a run is as what it shares with the next on either side
+MOTION = {"m", "mm", "deg", "rad"}  # units of what one system records
 ROUGH = 1.0  # times the noise's power at the cut-off, from which on a signal there makes the number a rough one
 
 
@@ -42,7 +43,8 @@ def find_record_filter(
     units = [simulation.sensor(name).unit for name in measured.channels]
     seen = {number: found for number in unknown if (found := find_filter(_trials(measured, number), measured.rate))}
     for number in [number for number in unknown if number not in seen]:  # its own spectrum shows none clearly
-        beside = [one.cutoff_hz for k, one in seen.items() if units[k] == units[number] and one.signal <= ROUGH]
+        alike = MOTION if units[number] in MOTION else {units[number]}
+        beside = [one.cutoff_hz for k, one in seen.items() if units[k] in alike and one.signal <= ROUGH]
         if beside and (found := find_filter(_trials(measured, number), measured.rate, at_hz=geometric_mean(beside))):
             seen[number] = found
     felt = any(one.signal > FELT for one in seen.values())

@@ -170,8 +170,9 @@ class EngineFit:
 
 def errs_less(runs: OwnRuns, without: Values, held: NDArray[np.bool_]) -> bool:
     """Whether runs without some of the answer (run, sample, channel) miss more by no chance, and held (run,) ones."""
-    test = compare_errors(without, runs.after, runs.floor)
-    before, after = (np.nansum((each[held] / runs.floor) ** 2) for each in (without, runs.after))
+    both = [each[:, :: runs.every] for each in (without, runs.after)]  # of filtered noise, more say no more
+    test = compare_errors(*both, runs.floor)
+    before, after = (np.nansum((each[held] / runs.floor) ** 2) for each in both)
     return bool(test.bears_out and test.fall > CRITERIA.margin and after <= before)
 
 
@@ -191,8 +192,7 @@ def base_runs(engine: Engine, fit: EngineFit) -> OwnRuns:
     sensors = {name: mapping.sensor(name) for name in data.channels}
     given = np.array([sensor.sd or np.nan for sensor in sensors.values()], float)
     units, passed = {name: one.unit for name, one in sensors.items()}, fit.low_pass
-    floor, count = sensor_noise(data.observed), fit.states.shape[2]
-    runs = OwnRuns(left, left, at, engine.called, units, floor=floor, states=count)
+    runs = OwnRuns(left, left, at, engine.called, units, sensor_noise(data.observed), fit.states.shape[2])
     if passed.margin:  # a filter hides the size of the noise: what is within windows shows it
         runs = replace(runs, every=passed.every, memory=passed.autocorrelation(at.length))
         hidden = np.sqrt(np.nanmean(runs.variances(left)[1], axis=(0, 1)))
@@ -205,8 +205,8 @@ def held_out(found: Discovery, runs: OwnRuns, data: Measured) -> NDArray[np.bool
     """Which of the engine's runs (run,) the search held out."""
     drawn = zip(found.runs.trial, found.runs.time[:, 0], strict=True) if found.runs.time.size else ()
     begun = {trial_called(data, found.runs.names[k]): time for k, time in reversed([*drawn])}
-    times = zip(runs.at.trial, data.drive.time0[runs.at.trial] + (runs.at.first + 1) / data.rate, strict=True)
-    return np.array([time > begun.get(trial, np.inf) for trial, time in times])
+    times = data.drive.time0[runs.at.trial] + (runs.at.first + runs.at.margin + 1) / data.rate
+    return np.array([time > begun.get(trial, np.inf) for trial, time in zip(runs.at.trial, times, strict=True)])
 
 
 def with_own_runs(found: Discovery, runs: OwnRuns, fit: EngineFit, base: Simulation) -> Discovery:

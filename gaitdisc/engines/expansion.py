@@ -53,14 +53,12 @@ def expand(
     at = Motion(*(np.concatenate([getattr(one, name) for one in motions]) for name in fields))
     paths = [np.gradient(one.v, 1 / drive.rate, axis=0) for one in motions]
     stride = 1 if at.z is None else max(round(drive.rate / SLOPES_HZ), 1)
-    begun = np.cumsum(drive.samples) - drive.samples
-    points = [
-        np.unique(np.append(np.arange(0, n, stride), n - 1)) + k for k, n in zip(begun, drive.samples, strict=True)
-    ]
+    ends = np.cumsum(drive.samples)
+    points = [np.unique(np.r_[end - n : end : stride, end - 1]) for end, n in zip(ends, drive.samples, strict=True)]
     columns = _Columns(engine)
     _expand(columns, simulation, _Along(at, np.concatenate(paths), np.concatenate(points)), own)
     inputs = (*simulation.inputs, *(Input(name, "", "computed along the record", True) for name in columns.values))
-    trials = np.split(np.column_stack([at.u, *columns.values.values()]), begun[1:])
+    trials = np.split(np.column_stack([at.u, *columns.values.values()]), ends[:-1])
     lines = tuple((state.name, columns.equations[state.name]) for state in simulation.states)
     linear = replace(simulation, inputs=inputs, equations=lines, definitions=(), model="", layout="", source=None)
     linear = linear if at.z is None else replace(linear, inexact=INEXACT)
@@ -213,8 +211,7 @@ def _slow_speeds(damping: Values) -> tuple[Values, Values]:
     """
     rates, ways = np.linalg.eig(damping)
     heavy = np.maximum(np.real(rates) / FASTEST, 1.0)
-    inverse = np.linalg.inv(ways)
-    factor, more = (np.real(ways @ (each[..., None] * inverse)) for each in (1.0 / heavy, heavy - 1.0))
+    factor, more = (np.real(ways @ (each[..., None] * np.linalg.inv(ways))) for each in (1.0 / heavy, heavy - 1.0))
     return factor, more
 
 
@@ -244,12 +241,8 @@ def _expand_parameters(
 
 def _nudge(engine: Engine, at: Motion, fields: str) -> Iterator[tuple[str, Values, Motion, Motion, float]]:
     """Yield each coordinate, speed, control and fibre with the motion a little to either side."""
-    names = {
-        "q": [one.name for one in engine.coordinates],
-        "v": [one.speed for one in engine.coordinates],
-        "u": [one.name for one in engine.controls],
-        "z": _fibres(at),
-    }
+    names = {"q": [one.name for one in engine.coordinates], "v": [one.speed for one in engine.coordinates]}
+    names |= {"u": [one.name for one in engine.controls], "z": _fibres(at)}
     for field in fields:
         whole = getattr(at, field)
         for column, name in enumerate(names[field]):

@@ -101,15 +101,13 @@ def check_mapping(mapping: Simulation, engine: Engine) -> None:
     }
     for kind, (parts, has) in known.items():
         given = tuple(one.name for one in parts)
-        for name in given:
-            if name not in has:
-                near = nearest_word(name, has)
-                hint = f"Did you mean {near!r}? " if near else ""
-                raise SchemaError(
-                    f"each {kind} of a mapping must exist in the model",
-                    f"{file} has no {name!r}",
-                    f"{hint}Known: {', '.join(has) or 'none'}.",
-                )
+        for name in (one for one in given if one not in has):
+            hint = f"Did you mean {near!r}? " if (near := nearest_word(name, has)) else ""
+            raise SchemaError(
+                f"each {kind} of a mapping must exist in the model",
+                f"{file} has no {name!r}",
+                f"{hint}Known: {', '.join(has) or 'none'}.",
+            )
         if kind not in ("parameter", "port") and given != has:
             raise SchemaError(
                 f"a mapping must list every {kind.partition(' or ')[0]} of the model, in the model's order",

@@ -23,6 +23,7 @@ SHORT, COVERED = 6, 0.95  # margins in a trial, at least; share of what runs can
 TURNS = 6
 SILENT_S = 10.0  # without progress, after which the number of finished runs is reported
 NUDGE = 1e-4
+TRIED = ((1.0, 1e-9), (0.3, 1e-9), (1.0, 1e-3), (1.0, 0.1))  # share of a step; damping by the greatest slope
 MERE_NOISE = 1.3  # times the variance of the sensors' noise: its own estimate errs
 WINDOWS = 10  # in a period: what is missing bends a run more slowly
 CHANCE = 0.05  # of runs of a perfect model that are not taken for mere noise, and searched
@@ -83,23 +84,31 @@ class OwnRuns:
         """
         from scipy.stats import f as variance_ratio
 
-        between, within, inner = self.variances(self.before / self.floor)
+        between, within, (outer, inner) = self.variances(self.before / self.floor)
         known = np.isfinite(between)
         if not known.any() or np.isinf(self.before).any():
             return False
         free, size = max(known.sum() - self.states * len(self.before), 1), within[known].mean()
         over = between[known].sum() / free / size
-        return bool(size < MERE_NOISE and variance_ratio.sf(over, free, known.sum() * inner) > CHANCE)
+        return bool(size < MERE_NOISE and variance_ratio.sf(over, free * outer, known.sum() * inner) > CHANCE)
 
-    def variances(self, left: Values) -> tuple[Values, Values, int]:
+    def variances(self, left: Values) -> tuple[Values, Values, tuple[float, float]]:
         """Variance of the noise by each window's mean and by its spread (run, window, channel), and their freedom."""
         size = max(round(self.at.period / self.every / WINDOWS), 3)
         some = left[:, :: self.every]
         parts = some[:, : some.shape[1] // size * size].reshape(len(left), -1, size, left.shape[2])
-        means, lags = parts.mean(axis=2), np.arange(1, size)[:, None]
-        alike = 1.0 if self.memory is None else 1 + 2 * ((1 - lags / size) * self.memory[1:size]).sum(axis=0)
-        within = ((parts - means[:, :, None]) ** 2).sum(axis=2) / (size - alike)
-        return size * means**2 / alike, within, size - 1
+        share, free = np.array(1 / size), (1.0, size - 1.0)  # of the variance, in the means
+        if self.memory is not None:  # not independent: Satterthwaite 1946, Biometrics Bulletin 2, 110
+            at, windows = np.arange(parts.shape[1] * size).reshape(-1, size), parts.shape[1]
+            alike = self.memory[np.abs(np.subtract.outer(at, at))]
+            outer, inner = alike.mean(axis=(1, 3)), alike - alike.mean(axis=1, keepdims=True)
+            inner, share = inner - inner.mean(axis=3, keepdims=True), outer[0, 0]
+            doubt = (
+                (outer**2).sum(axis=(0, 1)) / share**2,
+                (inner**2).sum(axis=(0, 1, 2, 3)) / (size - size * share) ** 2,
+            )
+            free = windows / float(doubt[0].mean()), windows / float(doubt[1].mean())
+        return parts.mean(axis=2) ** 2 / share, parts.var(axis=2) / (1 - share), free
 
     @property
     def before_at_noise(self) -> bool:
@@ -159,8 +168,7 @@ def residual_by(
     plain, expressions = replace(model.mapping, model=""), dict(model.mapping.observations)
     seen_as = [expressions[name] for name in measured.channels]
     size = np.nanstd(measured.observed, axis=(0, 1))
-    found = np.full((len(at.trial), at.length, len(size)), np.nan)
-    said = time.monotonic()
+    found, said = np.full((len(at.trial), at.length, len(size)), np.nan), time.monotonic()
     for row, (trial, first) in enumerate(zip(at.trial, at.first, strict=True)):
         if time.monotonic() - said > SILENT_S:
             model.progress(f"{row} of {len(at.trial)} runs by {engine.called} done")
@@ -205,8 +213,9 @@ def _find_start(left_from: Callable[[Values], Values], start: Values) -> tuple[V
             slopes, computed = ((left_from(start + NUDGE * np.eye(len(start))) - left) / NUDGE)[:, there], True
         if not np.isfinite(slopes).all():  # a run that leaves every bound has no slopes
             break
-        move = np.linalg.lstsq(slopes.T, -left[there], rcond=1e-9)[0]
-        for step in (move, 0.3 * move):
+        u, size, turned = np.linalg.svd(slopes.T, full_matrices=False)
+        for share, damped in TRIED:
+            step = share * (u.T @ -left[there] * size / (size**2 + (damped * size.max(initial=NUDGE)) ** 2)) @ turned
             tried = left_from((start + step)[None])[0]
             gain = (left[there] ** 2).sum() - (tried[there] ** 2).sum()
             if gain > 0:

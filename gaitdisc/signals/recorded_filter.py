@@ -159,7 +159,7 @@ class _Fit:
         low = self.frequency < 2 * cutoff[0] if cutoff else np.zeros(len(self.power), bool)
         level = np.log(np.median(self.power[low] if low.any() else self.power))
         floor = np.log(np.median(self.power[-12:]))
-        begun = np.array([level, np.log(self.power[:3].mean()), np.log(30.0), floor, *np.log(cutoff)])
+        begun = np.array([level, np.log(self.power[:3].mean()), np.log(100.0), floor, *np.log(cutoff)])
         return np.clip(begun, *np.array(BOUNDS[: len(begun)]).T)
 
     def _misfit(self, values: Values) -> tuple[float, Values]:

@@ -98,7 +98,7 @@ def test_a_cut_off_that_the_signal_hides_is_that_of_the_surer_channels_of_the_sa
     assert cutoffs == {0: 5.0, 1: 7.2, 2: pytest.approx(6.0), 3: 20.0}
 
 
-@pytest.mark.parametrize(("unit", "second"), [("m", 3.1), ("N", None)])
+@pytest.mark.parametrize(("unit", "second"), [("m", 3.1), ("deg", 3.1), ("N", None)])
 def test_what_a_spectrum_does_not_show_alone_is_sought_at_the_cut_off_of_channels_of_its_unit(
     monkeypatch, filtered, unit, second
 ):
