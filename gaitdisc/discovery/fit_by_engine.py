@@ -192,7 +192,7 @@ def base_runs(engine: Engine, fit: EngineFit) -> OwnRuns:
     sensors = {name: mapping.sensor(name) for name in data.channels}
     given = np.array([sensor.sd or np.nan for sensor in sensors.values()], float)
     units, passed = {name: one.unit for name, one in sensors.items()}, fit.low_pass
-    runs = OwnRuns(left, left, at, engine.called, units, sensor_noise(data.observed), fit.states.shape[2])
+    runs = OwnRuns(left, left, at, engine.called, units, floor=sensor_noise(data.observed), states=fit.states.shape[2])
     if passed.margin:  # a filter hides the size of the noise: what is within windows shows it
         runs = replace(runs, every=passed.every, memory=passed.autocorrelation(at.length))
         hidden = np.sqrt(np.nanmean(runs.variances(left)[1], axis=(0, 1)))

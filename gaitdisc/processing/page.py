@@ -185,8 +185,8 @@ def _figure(pooled: PooledCycles, numbers: pd.DataFrame, joints: list[str], name
         every = every[np.isfinite(every).any(axis=1)]
         mean, sd = curve["mean"].to_numpy(), curve["sd"].to_numpy() if len(every) > 2 else None
         lines = (*(Line(word, cycle, "single") for cycle in every[:MOST_SINGLE]), Line(word, mean, sd=sd))
-        empty = Panel(joint, label(joint), unit_text(str(unit)), upwards(str(channel)), "", "", (), foot_off=offs)
-        known = panels.get(joint, empty)
+        words = {"title": label(joint), "unit": unit_text(str(unit)), "up": upwards(str(channel))}
+        known = panels.get(joint, Panel(name=joint, **words, down="", note="", lines=(), foot_off=offs))
         panels[joint] = replace(known, lines=(*known.lines, *lines))
     counts = " and ".join(f"{counted(pooled.counted(side), 'cycle')} {SIDE_WORDS[side]}" for side in FEET)
     kinetic = pooled.kept[pooled.kept["kinetic"].astype(bool)]
