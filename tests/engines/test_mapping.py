@@ -75,7 +75,7 @@ def test_without_a_mapping_columns_and_numbers_are_the_models_and_another_number
 
 
 def test_a_mapping_is_no_simulation_that_runs_by_itself(pendulum):
-    with pytest.raises(GaitdiscError, match=r"pendulum.xml..*to gaitdisc discover"):
+    with pytest.raises(GaitdiscError, match=r"pendulum.xml.*to `gaitdisc discover`"):
         compile_simulation(draft(read_model(pendulum)))
 
 
