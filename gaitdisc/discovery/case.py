@@ -38,6 +38,7 @@ SHORT = 6  # margins in a trial, at least
 FIRST_SHARE = 0.3  # of that length, is fitted first, so that the fit of the whole begins near its end
 LENGTHENED = 3  # times as long, again and again, while a run stays with the data
 WHOLE_PERIOD = 0.8
+CUTOFF_ERRORS = (0.86, 0.9, 0.95, 1.05, 1.1, 1.16)  # within two of its standard deviations, 3 to 7 % (41 records)
 TRIED_SUBSTEPS = (2, 4, 8)  # integration steps a sample
 MOST_SEARCHED = 10_000  # samples, all runs together: what is found on them is fitted to all data
 
@@ -63,6 +64,17 @@ class Case:
     def guess(self) -> Values:
         """States of every trial, roughly (trial, sample, state); NaN beyond a trial's end."""
         return self.search.guess
+
+    @property
+    def at_other_cutoffs(self) -> list[Case]:
+        """The case with estimated cut-offs lower and higher by their error; none where the file states them."""
+        stated = [self.search.base.sensor(name).lowpass for name in self.measured.channels]
+        both = [*zip(self.record_filter.cutoffs_hz, stated, strict=True)]
+        passed = [
+            RecordFilter(tuple(hz if hz == own or hz is None else hz * by for hz, own in both), self.measured.rate)
+            for by in CUTOFF_ERRORS
+        ]
+        return [replace(self, record_filter=one) for one in passed if any(hz != own for hz, own in both)]
 
     @cached_property
     def sensor_noise(self) -> Values:

@@ -167,11 +167,7 @@ def prefer_on_held_out(case: Case, now: ScoredModel, near: tuple[ScoredModel, ..
 
 
 def search_runs(case: Case, as_read: ScoredModel) -> tuple[ScoredModel, ScoredModel, list[ScoredModel]]:
-    """Search on short runs, and on longer ones where these show nothing and the system is not chaotic.
-
-    returns as_read, named: the simulation as read and with what was selected, on the same runs
-    returns rivals: what else stood for the first place, best first
-    """
+    """Search on short runs, and on longer ones where these show nothing and the system is not chaotic."""
     named, rivals = select_forward(case.search, as_read, MOST, case.scale)
     if named.parts or not case.spans_a_period(as_read):
         return as_read, named, rivals
@@ -285,10 +281,7 @@ def refit_longer(case: Case, named: ScoredModel, rivals: list[ScoredModel]) -> t
 
 
 def runs_that_pushes_move(case: Case, as_read: ScoredModel) -> ScoredModel:
-    """Return the simulation as read on runs as long as pushes are weighed on: they add up, a start takes up few.
-
-    Where a small change of the start grows, the runs that the search began with.
-    """
+    """Return the simulation as read on runs as long as pushes are weighed on: they add up, a start takes up few."""
     fit = as_read.fit
     samples = min(case.longest, MOST_NUMBERS // fit.residual.shape[2])
     if samples < 2 * as_read.shooting.segments.span or not case.spans_a_period(as_read):

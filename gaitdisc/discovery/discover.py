@@ -74,6 +74,10 @@ def weigh_explanations(
     progress = case.search.progress
     progress(f"weighing {len(case.search.candidates)} explanations")
     verdict = decide(case, as_read)
+    for other in case.at_other_cutoffs if verdict.found.parts else ():
+        if other.leaves_noise(again := other.as_read()):
+            progress("another cut-off of the assumed low-pass leaves only noise without an effect")
+            return other, again, decide(other, again)
     while hangs_on_step(case, verdict.found) and case.substeps < TRIED_SUBSTEPS[-1]:
         progress("the identified effects depend on the integration step: repeating the search with half the step")
         case = replace(case, substeps=2 * case.substeps)

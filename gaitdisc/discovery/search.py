@@ -169,10 +169,7 @@ class Search:
 
 
 def is_certain(model: ScoredModel, first: int = 0, end: int | None = None) -> bool:
-    """Whether no explanation from `first` to before `end` could as well be idle, its number lost in its error.
-
-    A wrong parameter with bounds is idle at the nearer of these.
-    """
+    """Whether no explanation from `first` to before `end` could as well be idle, its number lost in its error."""
     variance = np.diag(model.fit.covariance)
     error = np.sqrt(np.where(variance >= 0, variance, np.inf))  # rounding makes that of what is not determined negative
     errors = dict(zip(model.fit.free, error, strict=True))

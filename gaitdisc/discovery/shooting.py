@@ -90,10 +90,7 @@ class Shooting:
         return seen.reshape(*states.shape[:3], -1)
 
     def whiten(self, residual: Values) -> Values:
-        """Return residuals whitened and flat (segment, sample times channel, ...).
-
-        What is not finite counts as none, and so does what was not measured.
-        """
+        """Return residuals whitened and flat (segment, sample times channel, ...); what is unknown counts as none."""
         if not np.isfinite(residual).all():
             residual = np.nan_to_num(residual, nan=0.0, posinf=0.0, neginf=0.0)
         white = self.noise.whiten(residual, None if self.known.all() else self.known)

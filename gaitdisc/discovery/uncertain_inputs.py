@@ -128,10 +128,7 @@ def cut_short(case: Case, now: ScoredModel, samples: int) -> ScoredModel:
 
 
 def beyond_errors(case: Case, now: Weighed) -> tuple[ScoredModel, Proof | None]:
-    """Return a model less what is not borne out: each explanation beside the others, and all together.
-
-    All together also take half of what the simulation as read leaves of unseen data beyond the stated errors.
-    """
+    """Return a model less what is not borne out: each explanation beside the others, and all together."""
     base, proof = weighed(case, case.search.with_others(now.now, ())), None
     while now.now.parts:
         parts = range(len(now.now.parts))

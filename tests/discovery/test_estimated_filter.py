@@ -9,7 +9,7 @@ from scipy.signal import butter, sosfiltfilt
 from texts import says
 
 from gaitdisc.discovery import estimated_filter
-from gaitdisc.discovery.case import set_up_case
+from gaitdisc.discovery.case import CUTOFF_ERRORS, set_up_case
 from gaitdisc.discovery.estimated_filter import _as_the_surer
 from gaitdisc.signals.recorded_filter import RecordedFilter
 from gaitdisc.simulation.compiled_simulation import Drive, Rows
@@ -28,20 +28,27 @@ def test_a_filter_that_the_file_does_not_tell_of_is_found_and_told(filtered):
     case = set_up_case(mass(), filtered)
     assert case.record_filter.cutoffs_hz[0] == pytest.approx(3.0, rel=0.15)
     (finding,) = (one for one in case.measured.findings if one.kind == "low-pass")
-    assert finding.channel == "x"
-    assert says(finding.what, "without lag (order 2") and "state lowpass" in finding.spoils
+    assert finding.channel == "x" and says(finding.what, "without lag (order 2") and "state lowpass" in finding.spoils
+    tried = [one.record_filter.cutoffs_hz[0] / case.record_filter.cutoffs_hz[0] for one in case.at_other_cutoffs]
+    assert tried == pytest.approx(CUTOFF_ERRORS)
+
+
+def test_an_error_of_the_cut_off_is_no_missing_effect():
+    case = set_up_case(mass(), record(mass(), 3, LONG))
+    wrong = replace(case, record_filter=replace(case.record_filter, cutoffs_hz=(3.4,)))
+    assert any(other.leaves_noise(other.as_read()) for other in wrong.at_other_cutoffs)
 
 
 def test_what_the_file_says_stands(filtered):
     case = set_up_case(mass().with_sensor(Sensor("x", lowpass=5.0)), filtered)
-    assert case.record_filter.cutoffs_hz == (5.0,)
+    assert case.record_filter.cutoffs_hz == (5.0,) and case.at_other_cutoffs == []
     assert not [one for one in case.measured.findings if one.kind == "low-pass"]
 
 
 @pytest.mark.parametrize("noise", [0.0, 0.02])
 def test_a_raw_record_went_through_none(noise):
     case = set_up_case(mass(), record(with_load("-14*x**3"), 3, Experiment(seconds=30.0, noise=noise)))
-    assert case.record_filter.cutoffs_hz == (None,)
+    assert case.record_filter.cutoffs_hz == (None,) and case.at_other_cutoffs == []
     assert not case.measured.findings
 
 

@@ -7,13 +7,7 @@ from made_clinic import made_controls, made_person
 from texts import says
 
 from gaitdisc.clinic.page_words import PageWords
-from gaitdisc.clinic.panels import (
-    contrast_sheet,
-    emg_sheet,
-    panel_numbers,
-    raw_numbers,
-    sheet,
-)
+from gaitdisc.clinic.panels import contrast_sheet, emg_sheet, panel_numbers, raw_numbers, sheet
 from gaitdisc.clinic.reading import contrast, read_beside
 from gaitdisc.processing.leg_curves import KINEMATICS, POWERS
 from gaitdisc.report.curve_panels import BOTTOM, LEFT, MARGIN, TOP, Band, Line, Panel, in_rows, svg, ticks

@@ -3,14 +3,7 @@ import xml.etree.ElementTree as ET
 from made_clinic import made_controls, made_person
 
 from gaitdisc.clinic.reading import read_beside
-from gaitdisc.clinic.values import (
-    LEFT,
-    RIGHT,
-    numbers_table,
-    profile_svg,
-    profile_table,
-    values_table,
-)
+from gaitdisc.clinic.values import LEFT, RIGHT, numbers_table, profile_svg, profile_table, values_table
 
 
 def test_values_of_both_legs_beside_the_reference_with_asymmetry():
