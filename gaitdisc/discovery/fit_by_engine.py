@@ -171,7 +171,7 @@ class EngineFit:
 def errs_less(runs: OwnRuns, without: Values, held: NDArray[np.bool_]) -> bool:
     """Whether runs without some of the answer (run, sample, channel) miss more by no chance, and held (run,) ones."""
     both = [each[:, :: runs.every] for each in (without, runs.after)]  # of filtered noise, more say no more
-    test = compare_errors(*both, runs.floor)
+    test = compare_errors(both[0], both[1], runs.floor)
     before, after = (np.nansum((each[held] / runs.floor) ** 2) for each in both)
     return bool(test.bears_out and test.fall > CRITERIA.margin and after <= before)
 

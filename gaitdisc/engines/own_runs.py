@@ -23,7 +23,6 @@ SHORT, COVERED = 6, 0.95  # margins in a trial, at least; share of what runs can
 TURNS = 6
 SILENT_S = 10.0  # without progress, after which the number of finished runs is reported
 NUDGE = 1e-4
-TRIED = ((1.0, 1e-9), (0.3, 1e-9), (1.0, 1e-3), (1.0, 0.1))  # share of a step; damping by the greatest slope
 MERE_NOISE = 1.3  # times the variance of the sensors' noise: its own estimate errs
 WINDOWS = 10  # in a period: what is missing bends a run more slowly
 CHANCE = 0.05  # of runs of a perfect model that are not taken for mere noise, and searched
@@ -214,7 +213,8 @@ def _find_start(left_from: Callable[[Values], Values], start: Values) -> tuple[V
         if not np.isfinite(slopes).all():  # a run that leaves every bound has no slopes
             break
         u, size, turned = np.linalg.svd(slopes.T, full_matrices=False)
-        for share, damped in TRIED:
+        # share of a step; damping by the greatest slope
+        for share, damped in ((1.0, 1e-9), (0.3, 1e-9), (1.0, 1e-3), (1.0, 0.1)):
             step = share * (u.T @ -left[there] * size / (size**2 + (damped * size.max(initial=NUDGE)) ** 2)) @ turned
             tried = left_from((start + step)[None])[0]
             gain = (left[there] ** 2).sum() - (tried[there] ** 2).sum()

@@ -180,13 +180,13 @@ def _figure(pooled: PooledCycles, numbers: pd.DataFrame, joints: list[str], name
     offs = tuple((side, percent) for side, percent in means.items() if np.isfinite(percent))
     panels = {}
     for (channel, unit, side), curve in shown.groupby(["channel", "unit", "side"], sort=False):
-        word, joint = str(side), sideless(str(channel))
+        word, joint, up = str(side), sideless(str(channel)), upwards(str(channel))
         every = curves[of_side[word], :, columns.index(str(channel))]
         every = every[np.isfinite(every).any(axis=1)]
         mean, sd = curve["mean"].to_numpy(), curve["sd"].to_numpy() if len(every) > 2 else None
         lines = (*(Line(word, cycle, "single") for cycle in every[:MOST_SINGLE]), Line(word, mean, sd=sd))
-        words = {"title": label(joint), "unit": unit_text(str(unit)), "up": upwards(str(channel))}
-        known = panels.get(joint, Panel(name=joint, **words, down="", note="", lines=(), foot_off=offs))
+        empty = Panel(joint, label(joint), unit_text(str(unit)), up, "", note="", lines=(), foot_off=offs)
+        known = panels.get(joint, empty)
         panels[joint] = replace(known, lines=(*known.lines, *lines))
     counts = " and ".join(f"{counted(pooled.counted(side), 'cycle')} {SIDE_WORDS[side]}" for side in FEET)
     kinetic = pooled.kept[pooled.kept["kinetic"].astype(bool)]
