@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import base64
 import csv
 from collections.abc import Mapping
 from dataclasses import asdict, dataclass, field
@@ -14,6 +13,7 @@ from gaitdisc.channel import schema_folder
 from gaitdisc.errors import SchemaError
 from gaitdisc.processing.leg_curves import BY_NAME
 from gaitdisc.processing.pooled_cycles import CYCLES
+from gaitdisc.report.figure import data_uri
 from gaitdisc.report.saved_page import find_page
 from gaitdisc.saved.kind import find_kind
 from gaitdisc.saved.study_run import StudyRun
@@ -25,7 +25,7 @@ FILE, TABLE = "clinic.toml", "clinical_axes.csv"
 FOLDER = "laboratory"  # of a run: what its pages were drawn with
 LARGEST_LOGO = 2**19  # [bytes] a page stays one file that can be mailed
 LONGEST = 1000  # letters of a comment
-PICTURES = {b"\x89PNG": "image/png", b"\xff\xd8\xff": "image/jpeg"}  # by their first bytes
+PICTURES = {b"\x89PNG": "png", b"\xff\xd8\xff": "jpeg"}  # by their first bytes
 FORM = f"{FILE} may have only laboratory, logo, pdf, [axes], and tables such as [people.P07] with affected and comment"
 KINDS: dict[str, type] = {"laboratory": str, "logo": str, "pdf": bool, "axes": dict, "people": dict}
 AFFECTED = ("left", "right", "both")
@@ -101,7 +101,7 @@ def _picture(path: Path) -> str:
             f"{path.name} is missing, larger, or of another format",
             "Save the logo again.",
         )
-    return f"data:{kind};base64,{base64.b64encode(content).decode()}"
+    return data_uri(kind, content)
 
 
 def _refusal(found: str) -> SchemaError:

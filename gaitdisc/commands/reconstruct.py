@@ -52,11 +52,7 @@ def reconstruct(  # noqa: PLR0913, PLR0917 these are the options of a command
     from gaitdisc.ingest.study_file import load_study
     from gaitdisc.own_files import claim_folder
     from gaitdisc.reconstruction.model_folder import save_model
-    from gaitdisc.reconstruction.page import (
-        reconstruction_sentences,
-        reconstruction_text,
-        write_reconstruction_report,
-    )
+    from gaitdisc.reconstruction.page import reconstruction_sentences, reconstruction_text, write_reconstruction_report
     from gaitdisc.reconstruction.reconstruct_study import ReconstructionSettings, reconstruct_study, search_study
     from gaitdisc.reconstruction.reconstruction import enough_sensors
     from gaitdisc.reconstruction.window_model import KINDS

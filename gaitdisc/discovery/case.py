@@ -70,11 +70,9 @@ class Case:
         """The case with estimated cut-offs lower and higher by their error; none where the file states them."""
         stated = [self.search.base.sensor(name).lowpass for name in self.measured.channels]
         both = [*zip(self.record_filter.cutoffs_hz, stated, strict=True)]
-        passed = [
-            RecordFilter(tuple(hz if hz == own or hz is None else hz * by for hz, own in both), self.measured.rate)
-            for by in CUTOFF_ERRORS
-        ]
-        return [replace(self, record_filter=one) for one in passed if any(hz != own for hz, own in both)]
+        scaled = [tuple(hz and (hz if hz == own else hz * by) for hz, own in both) for by in CUTOFF_ERRORS]
+        filters = [replace(self.record_filter, cutoffs_hz=cutoffs) for cutoffs in scaled]
+        return [replace(self, record_filter=one) for one in filters if one != self.record_filter]
 
     @cached_property
     def sensor_noise(self) -> Values:

@@ -73,8 +73,7 @@ def decide(case: Case, as_read: ScoredModel) -> Verdict:
         if unnamed:
             return unnamed
     if not names:
-        wrong = wrong_starts(case.search.base, as_read)
-        return Verdict(as_read, tuple(rivals), starts=wrong)
+        return Verdict(as_read, tuple(rivals), starts=wrong_starts(case.search.base, as_read))
     longer, rivals = refit_longer(case, named if exact else prune(case.search, named, np.inf, MOST_NAMES), rivals)
     kept = keep_useful(case, as_read, longer)
     if kept is not longer:  # named anew: the best of fewer is not the best less a part
@@ -167,7 +166,7 @@ def prefer_on_held_out(case: Case, now: ScoredModel, near: tuple[ScoredModel, ..
 
 
 def search_runs(case: Case, as_read: ScoredModel) -> tuple[ScoredModel, ScoredModel, list[ScoredModel]]:
-    """Search on short runs, and on longer ones where these show nothing and the system is not chaotic."""
+    """Search short runs, or longer ones if these show nothing without chaos: as read, named (same runs), rivals."""
     named, rivals = select_forward(case.search, as_read, MOST, case.scale)
     if named.parts or not case.spans_a_period(as_read):
         return as_read, named, rivals
@@ -223,8 +222,7 @@ def with_random_pushes(
     pushes = rank_process_noise(longer, case.search.places)
     if not pushes[0].rival - pushes[0].bic > CRITERIA.margin + 2 * np.log(len(pushes)):  # noise of the sensors does it
         return None
-    term = find_term_before(case, as_read, named, rivals)
-    return term or Verdict(as_read, tuple(rivals), pushes[0])
+    return find_term_before(case, as_read, named, rivals) or Verdict(as_read, tuple(rivals), pushes[0])
 
 
 def find_term_before(case: Case, as_read: ScoredModel, named: ScoredModel, rivals: list[ScoredModel]) -> Verdict | None:
@@ -281,7 +279,7 @@ def refit_longer(case: Case, named: ScoredModel, rivals: list[ScoredModel]) -> t
 
 
 def runs_that_pushes_move(case: Case, as_read: ScoredModel) -> ScoredModel:
-    """Return the simulation as read on runs as long as pushes are weighed on: they add up, a start takes up few."""
+    """Return the simulation as read on runs so long that pushes add up; in chaos, on those of the search."""
     fit = as_read.fit
     samples = min(case.longest, MOST_NUMBERS // fit.residual.shape[2])
     if samples < 2 * as_read.shooting.segments.span or not case.spans_a_period(as_read):

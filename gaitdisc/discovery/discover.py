@@ -23,6 +23,7 @@ from gaitdisc.discovery.spiked_samples import without_spikes
 from gaitdisc.discovery.symbolic_regression import read_instead, read_shape
 from gaitdisc.discovery.uncertain_inputs import weigh_input_errors, weigh_unstated_errors
 from gaitdisc.errors import SchemaError
+from gaitdisc.recording import Finding
 from gaitdisc.simulation.compiled_simulation import Rows
 from gaitdisc.simulation.measured import Measured
 from gaitdisc.simulation.running import compile_simulation, refuse_divergence
@@ -76,8 +77,11 @@ def weigh_explanations(
     verdict = decide(case, as_read)
     for other in case.at_other_cutoffs if verdict.found.parts else ():
         if other.leaves_noise(again := other.as_read()):
-            progress("another cut-off of the assumed low-pass leaves only noise without an effect")
-            return other, again, decide(other, again)
+            hz = ", ".join(f"{one:.3g}" for one in dict.fromkeys(other.record_filter.cutoffs_hz) if one)
+            what = f"at {hz} Hz, which is within the error of this estimate, only noise is left, so no effect is named"
+            spoils = "a small effect; if you know the cut-off, state lowpass in the simulation file"
+            finding = Finding("note", "low-pass", case.measured.source, what, spoils)
+            return other.noting(finding), again, Verdict(again, ())
     while hangs_on_step(case, verdict.found) and case.substeps < TRIED_SUBSTEPS[-1]:
         progress("the identified effects depend on the integration step: repeating the search with half the step")
         case = replace(case, substeps=2 * case.substeps)
@@ -164,5 +168,4 @@ def fit_given(case: Case, as_read: ScoredModel, effects: tuple[str, ...]) -> Ver
         or (count > 1 and not prove_held_out(case, search.without(now, number), now, as_read).bears_out)
         for number in range(count)
     ]
-    proof = prove_held_out(case, as_read, now)
-    return Verdict(now, (), proof=proof, given=tuple(idle))
+    return Verdict(now, (), proof=prove_held_out(case, as_read, now), given=tuple(idle))

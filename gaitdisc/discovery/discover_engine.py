@@ -225,10 +225,11 @@ def without_beside(found: Discovery, effects: tuple[FoundEffect, ...], idle: tup
 
 def withdraw_effects(found: Discovery, runs: OwnRuns) -> Discovery:
     """Take back what the engine's own runs do not bear out: an expansion or an integrator's step can err as well."""
-    named, it = " and ".join(f"the {named_at(effect)}" for effect in found.effects), "it" * (len(found.effects) < 2)
+    named = " and ".join(f"the {named_at(effect)}" for effect in found.effects)
+    it = "it" if len(found.effects) == 1 else "them"
     sentence = (
-        f"Not proven: {named}. {runs.engine}'s own runs have the same error without {it or 'them'}, above the sensor "
-        f"noise; only runs of the expanded model supported {it or 'them'}. Trials with other movement can decide."
+        f"Not proven: {named}. {runs.engine}'s own runs have the same error without {it}, above the sensor "
+        f"noise; only runs of the expanded model supported {it}. Trials with other movement can decide."
     )
     found = replace(found, effects=(), corrections=(), explanations=(), rivals=(*found.effects, *found.rivals))
     return replace(found, verdict="unexplained", sentence=sentence)

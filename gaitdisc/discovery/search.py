@@ -169,7 +169,7 @@ class Search:
 
 
 def is_certain(model: ScoredModel, first: int = 0, end: int | None = None) -> bool:
-    """Whether no explanation from `first` to before `end` could as well be idle, its number lost in its error."""
+    """Whether no explanation from `first` to before `end` may be idle; with bounds, a wrong number is at the nearer."""
     variance = np.diag(model.fit.covariance)
     error = np.sqrt(np.where(variance >= 0, variance, np.inf))  # rounding makes that of what is not determined negative
     errors = dict(zip(model.fit.free, error, strict=True))

@@ -128,7 +128,7 @@ def cut_short(case: Case, now: ScoredModel, samples: int) -> ScoredModel:
 
 
 def beyond_errors(case: Case, now: Weighed) -> tuple[ScoredModel, Proof | None]:
-    """Return a model less what is not borne out: each explanation beside the others, and all together."""
+    """Return a model less what is not borne out: each beside the others; all halve what exceeds the stated errors."""
     base, proof = weighed(case, case.search.with_others(now.now, ())), None
     while now.now.parts:
         parts = range(len(now.now.parts))

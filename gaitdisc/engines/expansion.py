@@ -211,7 +211,8 @@ def _slow_speeds(damping: Values) -> tuple[Values, Values]:
     """
     rates, ways = np.linalg.eig(damping)
     heavy = np.maximum(np.real(rates) / FASTEST, 1.0)
-    factor, more = (np.real(ways @ (each[..., None] * np.linalg.inv(ways))) for each in (1.0 / heavy, heavy - 1.0))
+    inverse = np.linalg.inv(ways)
+    factor, more = (np.real(ways @ (each[..., None] * inverse)) for each in (1.0 / heavy, heavy - 1.0))
     return factor, more
 
 

@@ -102,11 +102,9 @@ class OwnRuns:
             alike = self.memory[np.abs(np.subtract.outer(at, at))]
             outer, inner = alike.mean(axis=(1, 3)), alike - alike.mean(axis=1, keepdims=True)
             inner, share = inner - inner.mean(axis=3, keepdims=True), outer[0, 0]
-            doubt = (
-                (outer**2).sum(axis=(0, 1)) / share**2,
-                (inner**2).sum(axis=(0, 1, 2, 3)) / (size - size * share) ** 2,
-            )
-            free = windows / float(doubt[0].mean()), windows / float(doubt[1].mean())
+            between = ((outer / share) ** 2).sum(axis=(0, 1)).mean()
+            within = ((inner / (size - size * share)) ** 2).sum(axis=(0, 1, 2, 3)).mean()
+            free = windows / float(between), windows / float(within)
         return parts.mean(axis=2) ** 2 / share, parts.var(axis=2) / (1 - share), free
 
     @property
@@ -167,7 +165,8 @@ def residual_by(
     plain, expressions = replace(model.mapping, model=""), dict(model.mapping.observations)
     seen_as = [expressions[name] for name in measured.channels]
     size = np.nanstd(measured.observed, axis=(0, 1))
-    found, said = np.full((len(at.trial), at.length, len(size)), np.nan), time.monotonic()
+    found = np.full((len(at.trial), at.length, len(size)), np.nan)
+    said = time.monotonic()
     for row, (trial, first) in enumerate(zip(at.trial, at.first, strict=True)):
         if time.monotonic() - said > SILENT_S:
             model.progress(f"{row} of {len(at.trial)} runs by {engine.called} done")

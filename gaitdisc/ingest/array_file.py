@@ -18,14 +18,7 @@ from numpy.typing import NDArray
 from gaitdisc.channel import hint_nearest, list_names
 from gaitdisc.errors import GaitdiscError, ReadError, SamplingError, UnitError
 from gaitdisc.ingest.cells import even_time
-from gaitdisc.ingest.columns import (
-    Column,
-    column_in_unit,
-    find_clock,
-    find_column,
-    name_channel,
-    split_unit,
-)
+from gaitdisc.ingest.columns import Column, column_in_unit, find_clock, find_column, name_channel, split_unit
 from gaitdisc.ingest.hdf5 import SIGNATURE, attributes, data_set, hdf5_file
 from gaitdisc.ingest.raw_file import RawFile, read_raw
 from gaitdisc.ingest.reader_process import MEBIBYTE, Arrays, ReaderProcess, ReadRequest

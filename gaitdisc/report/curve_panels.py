@@ -104,6 +104,7 @@ class Panel:
         """Lowest and highest value of the axis: as given, or farther where a mean curve goes beyond."""
         parts = [line.values for line in self.lines if self.axis is None or line.look != "single"]
         parts += [end for _, *both in self.shades for end in both] if self.axis is None else []
+        parts += [line.values + by * line.sd for line in self.lines if line.sd is not None for by in (-1, 1)]
         low, high = min(float(np.nanmin(p)) for p in parts), max(float(np.nanmax(p)) for p in parts)
         pad = 0.06 * max(high - low, 1e-6)
         if self.axis is None:
@@ -131,8 +132,8 @@ def ticks(low: float, high: float) -> list[float]:
     return [float(round(k * step, 10)) + 0.0 for k in np.arange(first, np.floor(high / step) + 1)]
 
 
-def svg(panel: Panel) -> str:
-    """Drawing of a panel; every word in it is escaped."""
+def svg(panel: Panel, place: str = "") -> str:
+    """Drawing of a panel, at a place (`x="0" y="14" ...`) of a larger drawing; every word in it is escaped."""
     low, high = panel.ends()
 
     def y(value: float | NDArray[np.float64]) -> NDArray[np.float64]:
@@ -140,7 +141,7 @@ def svg(panel: Panel) -> str:
 
     height = HEIGHT + STRIP * len(panel.raw)
     parts = [
-        f'<svg viewBox="0 0 {panel.width} {height}" role="img" aria-label="{escape(panel.alt, quote=True)}" '
+        f'<svg {place}viewBox="0 0 {panel.width} {height}" role="img" aria-label="{escape(panel.alt, quote=True)}" '
         f'data-low="{low:.5g}" data-high="{high:.5g}">'
     ]
     for kind, below, above in panel.shades:
@@ -248,7 +249,7 @@ def draw_rows(panels: Sequence[Panel]) -> str:
         x, y = place % 3 * (WIDTH + GAP), place // 3 * DOWN
         about = escape(f"[{panel.unit}] {panel.note}".strip())
         parts.append(f'<text x="{x}" y="{y + 11}"><tspan class="title">{escape(panel.title)}</tspan> {about}</text>')
-        parts.append(svg(panel).replace("<svg", f'<svg x="{x}" y="{y + 14}" width="{WIDTH}" height="{HEIGHT}"', 1))
+        parts.append(svg(panel, f'x="{x}" y="{y + 14}" width="{WIDTH}" height="{HEIGHT}" '))
     return "".join((*parts, "</svg>\n"))
 
 

@@ -67,15 +67,19 @@ def save_figure(figure: Figure, folder: Path, inline_bytes: int = LARGEST_INLINE
     for ending, content in (("svg", svg), ("png", png)):
         write_whole(folder / f"{figure.name}.{ending}", content)
     save_table(figure.numbers, folder / f"{figure.name}.csv")
-    kind, content = ("svg+xml", svg) if len(svg) <= max(inline_bytes, len(png)) else ("png", png)
-    data = f"data:image/{kind};base64,{base64.b64encode(content).decode('ascii')}"
+    data = data_uri("svg+xml", svg) if len(svg) <= max(inline_bytes, len(png)) else data_uri("png", png)
     return SavedFigure(figure.name, figure.caption, figure.alt, data, 96 * figure.drawn.get_figwidth())
 
 
 def inline_drawing(svg: str, inline_bytes: int) -> str:
     """Drawing of panels as data in a page; where that would be too large, without single cycles."""
     small = svg if len(svg) <= inline_bytes else re.sub(r'<path class="single"[^>]*/>', "", svg)
-    return f"data:image/svg+xml;base64,{base64.b64encode(small.encode()).decode('ascii')}"
+    return data_uri("svg+xml", small.encode())
+
+
+def data_uri(kind: str, content: bytes) -> str:
+    """Picture of a kind (`png`, `svg+xml`) as it stands in a page."""
+    return f"data:image/{kind};base64,{base64.b64encode(content).decode('ascii')}"
 
 
 def largest_inline(figures: int) -> int:

@@ -13,6 +13,7 @@ from typing import Any, Generic, TypeVar
 
 from gaitdisc._version import __version__
 from gaitdisc.own_files import note_outputs, under_this_guard
+from gaitdisc.report.curve_panels import TEMPLATES
 from gaitdisc.report.figure import Figure, SavedFigure, save_figures
 from gaitdisc.report.table import Table, save_tables
 from gaitdisc.whole_file import whole_file
@@ -39,7 +40,7 @@ def _template(name: str) -> Any:
     import jinja2
 
     templates = jinja2.Environment(
-        loader=jinja2.FileSystemLoader(Path(__file__).parent / "templates"),
+        loader=jinja2.FileSystemLoader(TEMPLATES),
         autoescape=True,
         undefined=jinja2.StrictUndefined,
         trim_blocks=True,
