@@ -38,7 +38,7 @@ SHORT = 6  # margins in a trial, at least
 FIRST_SHARE = 0.3  # of that length, is fitted first, so that the fit of the whole begins near its end
 LENGTHENED = 3  # times as long, again and again, while a run stays with the data
 WHOLE_PERIOD = 0.8
-CUTOFF_ERRORS = (0.86, 0.9, 0.95, 1.05, 1.1, 1.16)  # within two of its standard deviations, 3 to 7 % (41 records)
+CUTOFF_ERRORS = (0.95, 1.05, 0.9, 1.1, 0.86, 1.16)  # within two of its standard deviations, 3 to 7 % (41 records)
 TRIED_SUBSTEPS = (2, 4, 8)  # integration steps a sample
 MOST_SEARCHED = 10_000  # samples, all runs together: what is found on them is fitted to all data
 
