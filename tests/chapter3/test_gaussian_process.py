@@ -36,7 +36,7 @@ def test_the_noise_is_estimated():
 
 
 def test_too_few_samples_are_refused():
-    with pytest.raises(TrainingError, match="needs at least 20 samples"):
+    with pytest.raises(TrainingError, match="must have at least 20 samples"):
         fit_gaussian_process(samples(Y[:10]))
 
 
