@@ -255,9 +255,9 @@ def filter_null(
         time = np.arange(round(len(noise) / rate_hz * kinematics_hz)) / kinematics_hz
         return _differentiate(interpolate(smooth.time, smooth.values, time[:-1]), kinematics_hz)
 
-    reached = {"angle": simulate_null(angles, round(NOISE_S * kinematics_hz), NOISE_WALKS).r2}
+    reached = {"angle": simulate_null(angles, round(NOISE_S * kinematics_hz), NOISE_WALKS)}
     if any(channel.quantity == "emg" for channel in channels):
-        reached["emg"] = simulate_null(emg, round(NOISE_S * rate_hz), NOISE_WALKS).r2
+        reached["emg"] = simulate_null(emg, round(NOISE_S * rate_hz), NOISE_WALKS)
     return {channel.name: reached["emg" if channel.quantity == "emg" else "angle"] for channel in channels}
 
 

@@ -32,7 +32,7 @@ from gaitdisc.reconstruction.windows import (
 )
 from gaitdisc.recording import Recording, Samples
 from gaitdisc.saved.provenance import Refusal, provenance_now
-from gaitdisc.signals.butterworth import KINEMATICS_HZ, low_pass
+from gaitdisc.signals.butterworth import low_pass
 
 SECTION = "5.3.3, Table 5.2"
 SUBJECT, CONDITION = "subject", "condition"
@@ -203,16 +203,10 @@ class ReconstructedRecording:
 
 
 def reconstruct_recording(
-    file: Path,
-    model: Path,
-    out: Path,
-    cutoff_hz: float = KINEMATICS_HZ,
-    calibration: Path | None = None,
-    missing: str = "none",
+    file: Path, model: Path, out: Path, calibration: Path | None = None, missing: str = "none"
 ) -> ReconstructedRecording:
-    """Reconstruct the states of one recording, and write them as a `.mot`.
+    """Reconstruct the states of one recording, low-passed as kinematics by default, and write them as a `.mot`.
 
-    cutoff_hz: -3 dB frequency of one pass of the low-pass; the model's own recordings had the study's
     calibration: kinematics of the same person that hold the sensors and every state, some ten strides: the model is
         corrected for the person by them. Its intervals stay as they are, and are too wide then
     missing: what stands for a reading that is missing: a word of `gaitdisc.reconstruction.windows.WAYS`
@@ -221,12 +215,12 @@ def reconstruct_recording(
     what = saved.reconstructor.sensing
     if calibration is not None:
         same = read_trial(calibration).stream("kinematics")
-        walk = low_pass(same.selected([*what.sensors, *what.states]), cutoff_hz)
+        walk = low_pass(same.selected([*what.sensors, *what.states]))
         saved(walk)  # refuses another rate or unit
         strides = what.windows(walk, np.zeros(len(walk.time)))
         saved = replace(saved, reconstructor=calibrate(saved.reconstructor, strides))
     names = [name for name in (*what.sensors, *what.states) if name in kinematics.names or name in what.sensors]
-    filtered = low_pass(kinematics.selected(names), cutoff_hz)
+    filtered = low_pass(kinematics.selected(names))
     states = saved(filtered, missing)
     known = np.isfinite(states.values).all(axis=1)
     if known.sum() < 2:

@@ -25,18 +25,16 @@ KINEMATICS_HZ = 6.0
 EDGE_PERIODS = 1.8  # of the cut-off: 0.3 s at 6 Hz; measured in docs/derivatives.md
 
 
-def effective_cutoff_hz(cutoff_hz: float, rate_hz: float, order: int = 4, kind: str = "lowpass") -> float:
-    """Frequency at which the two passes together are 3 dB down.
+def effective_cutoff_hz(cutoff_hz: float, rate_hz: float, order: int = 4) -> float:
+    """Frequency at which the two passes of a low-pass together are 3 dB down.
 
     Each pass has |H|^2 = 1 / (1 + w^(2n)) with w = tan(pi f / rate) / tan(pi fc / rate); both together pass half of the
-    power where w^(2n) = sqrt(2) - 1 (low-pass; its inverse for a high-pass).
+    power where w^(2n) = sqrt(2) - 1.
 
     >>> round(effective_cutoff_hz(6.0, 100.0), 2)
     5.39
     """
     w = (math.sqrt(2.0) - 1.0) ** (1.0 / (2 * order))
-    if kind == "highpass":
-        w = 1.0 / w
     return rate_hz / math.pi * math.atan(w * math.tan(math.pi * cutoff_hz / rate_hz))
 
 

@@ -109,69 +109,51 @@ class PythonCompiled(Compiled):
         return call(self.model, x, given, np.broadcast_to(values, (len(x), len(self.parameters))))
 
 
-@dataclass(frozen=True)
-class Divergence:
-    """The last that is known of a row."""
-
-    row: int
-    trial: int
-    time: float  # of its last finite sample [s]
-    state: str  # that changes fastest there, relative to its size
-    value: float
-    parameter: str  # that the state's rate depends on most there; empty where it depends on none
-
-
-def divergences(
-    compiled: Compiled, drive: Drive, rows: Rows, states: Values, ok: NDArray[np.bool_]
-) -> tuple[Divergence, ...]:
-    """Where each row that did not stay finite was last seen.
+def refuse_divergence(compiled: Compiled, drive: Drive, rows: Rows, states: Values, ok: NDArray[np.bool_]) -> None:
+    """Refuse a run of which a row did not stay finite, with what is last known of the first such row.
 
     states (row, step, state): from `Compiled.run`
     ok (row,): from `Compiled.run`
     """
-    return tuple(_divergence(compiled, drive, rows, states, int(row)) for row in np.flatnonzero(~ok))
-
-
-def refuse_divergence(compiled: Compiled, drive: Drive, rows: Rows, states: Values, ok: NDArray[np.bool_]) -> None:
-    """Refuse a run of which a row did not stay finite."""
     if np.all(ok):
         return
-    first, *others = divergences(compiled, drive, rows, states, ok)
+    row, *others = np.flatnonzero(~ok).tolist()
+    finite = np.isfinite(states[row]).all(axis=1)
+    last = max(int(np.argmin([*finite, False])) - 1, 0)
+    trial, sample = int(rows.trial[row]), int(rows.begin[row]) + last
+    time = drive.time0[trial] + sample / drive.rate
+    u = drive.inputs[trial, min(sample, int(drive.samples[trial]) - 1)]
+    values = (
+        compiled.defaults if rows.values is None else np.atleast_2d(rows.values)[row if rows.values.ndim > 1 else 0]
+    )
+    fastest, parameter = _find_cause(compiled, time, states[row, last], u, values)
     more = f"; so do {len(others)} more of {len(ok)} runs" if others else ""
-    driven = f"{first.parameter!r}, which affects this state most, and " if first.parameter else ""
+    driven = f"{parameter!r}, which affects this state most, and " if parameter else ""
     late = " (the time must be in seconds, not in milliseconds)" if drive.rate < SLOW_HZ else ""
     raise SimulationError(
         "every state of a simulation must stay within 1e6",
-        f"{compiled.simulation.title!r} diverges in trial {first.trial + 1} after t = {first.time:.4g} s, first in "
-        f"{first.state!r} (last value {first.value:.3g}){more}",
+        f"{compiled.simulation.title!r} diverges in trial {trial + 1} after t = {time:.4g} s, first in "
+        f"{compiled.states[fastest]!r} (last value {np.nan_to_num(states[row, last, fastest]):.3g}){more}",
         f"Check {driven}the initial state. Samples {1 / drive.rate:.4g} s apart may also be too coarse for this "
         f"motion{late}.",
     )
 
 
-def _divergence(compiled: Compiled, drive: Drive, rows: Rows, states: Values, row: int) -> Divergence:
-    finite = np.isfinite(states[row]).all(axis=1)
-    last = max(int(np.argmin([*finite, False])) - 1, 0)
-    trial, sample = int(rows.trial[row]), int(rows.begin[row]) + last
-    x = np.nan_to_num(states[row, last])
-    t = np.array([drive.time0[trial] + sample / drive.rate])
-    u = drive.inputs[trial, min(sample, int(drive.samples[trial]) - 1)][None]
-    values = (
-        compiled.defaults if rows.values is None else np.atleast_2d(rows.values)[row if rows.values.ndim > 1 else 0]
-    )
+def _find_cause(compiled: Compiled, time: float, last: Values, u: Values, values: Values) -> tuple[int, str]:
+    """State that changes fastest, relative to its size, and the parameter that its rate depends on most, if any."""
+    x, t, u = np.nan_to_num(last), np.array([time]), u[None]
     # signals without their delay, which is near enough to say what is fast
     now = dict(zip(compiled.inputs, u[0], strict=True)) | dict(zip(compiled.states, x, strict=True))
     late = np.array([[float(now[signal]) for signal, _ in compiled.right_hand_side.delays]])
     with np.errstate(all="ignore"):
         rates = compiled.rates(t, x[None], u, values, late)[0]
         speed = np.abs(np.nan_to_num(rates, nan=np.inf, posinf=np.inf)) / (1e-6 + np.abs(x))
-    fastest = int(np.argmax(speed if speed.max() > 0 else ~np.isfinite(states[row, last])))
-    parameter = ""
-    if len(values):
-        moved = values * (1 + _NUDGE * np.eye(len(values)))
-        times, here, inputs, delayed = (np.repeat(each, len(values), axis=0) for each in (t, x[None], u, late))
-        with np.errstate(all="ignore"):
-            change = compiled.rates(times, here, inputs, moved, delayed)[:, fastest] - rates[fastest]
-        change = np.nan_to_num(np.abs(change), nan=0.0, posinf=0.0)
-        parameter = compiled.parameters[int(np.argmax(change))] if change.max() > 0 else ""
-    return Divergence(row, trial, float(t[0]), compiled.states[fastest], float(x[fastest]), parameter)
+    fastest = int(np.argmax(speed if speed.max() > 0 else ~np.isfinite(last)))
+    if not len(values):
+        return fastest, ""
+    moved = values * (1 + _NUDGE * np.eye(len(values)))
+    times, here, inputs, delayed = (np.repeat(each, len(values), axis=0) for each in (t, x[None], u, late))
+    with np.errstate(all="ignore"):
+        change = compiled.rates(times, here, inputs, moved, delayed)[:, fastest] - rates[fastest]
+    change = np.nan_to_num(np.abs(change), nan=0.0, posinf=0.0)
+    return fastest, compiled.parameters[int(np.argmax(change))] if change.max() > 0 else ""
