@@ -174,7 +174,7 @@ def with_unit(size: str, unit: str) -> str:
     >>> with_unit("6.1", "deg"), with_unit("0.15", "1")
     ('6.1 deg', '0.15')
     """
-    return size if unit == "1" else f"{size} {unit_text(unit)}"
+    return size if unit in ("", "1") else f"{size} {unit_text(unit)}"
 
 
 def amount(value: float) -> str:

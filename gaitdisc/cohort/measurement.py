@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from gaitdisc.channel import Channel, vocabulary
+from gaitdisc.channel import vocabulary
 from gaitdisc.cohort.habit import habitual
 from gaitdisc.cohort.person import JOINTS, MUSCLES, Person
 from gaitdisc.cohort.walk import QUICK_HZ, SLOW_HZ, TrueWalk
@@ -49,7 +49,7 @@ def measure(walk: TrueWalk, name: str, condition: str, emg_late_s: float = 0.0) 
     }
     source = Source(reader="cohort")
     recordings = {
-        key: Recording(time, values, tuple(_channel(n) for n in names), subject, condition, source)
+        key: Recording(time, values, tuple(vocabulary().by_name[name] for name in names), subject, condition, source)
         for key, (time, values, names) in streams.items()
     }
     return Trial(name, recordings, subject=subject, condition=condition)
@@ -65,12 +65,6 @@ def _angles(rng: np.random.Generator, walk: TrueWalk) -> Values:
     sway = sosfiltfilt(butter(2, SWAY_HZ, fs=SLOW_HZ, output="sos"), rng.normal(size=flat.shape), axis=0)
     sway *= np.tile(SWAY_DEG, 2) / sway.std(axis=0)
     return flat + sway + rng.normal(0.0, FRAME_DEG, flat.shape)
-
-
-def _channel(name: str) -> Channel:
-    channel = vocabulary().named(name)
-    assert channel is not None  # names of this file stand in channels.csv
-    return channel
 
 
 DELAY_S = 0.010  # electromechanical, before activation dynamics

@@ -11,7 +11,7 @@ from gaitdisc.discovery.candidate import Candidate
 from gaitdisc.discovery.case import Case
 from gaitdisc.discovery.criteria import CRITERIA
 from gaitdisc.discovery.decision import Verdict
-from gaitdisc.discovery.effect_words import amount, spoken, with_unit
+from gaitdisc.discovery.effect_words import amount, spoken
 from gaitdisc.discovery.estimates import NORMAL_95, list_estimates
 from gaitdisc.discovery.held_out import (
     Proof,
@@ -32,6 +32,7 @@ from gaitdisc.recording.arrays import Values
 from gaitdisc.simulation.evaluating import Points, evaluate
 from gaitdisc.simulation.simulation import Simulation
 from gaitdisc.simulation.unit_check import places_unit, unit_of_channel
+from gaitdisc.words import with_unit
 
 MOST_EXPLANATIONS = 5
 MOST_RIVALS = 6

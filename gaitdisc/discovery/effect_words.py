@@ -7,6 +7,7 @@ import re
 
 from gaitdisc.discovery.candidate import Candidate
 from gaitdisc.discovery.result import Discovery, Estimate, FoundEffect
+from gaitdisc.words import with_unit
 
 LONGEST, FIGURES = 4, 6  # digits behind the point, digits in all
 MINUS = "\N{MINUS SIGN}"
@@ -86,15 +87,6 @@ def amount(value: float, step: float = math.nan) -> str:
         return f"{value:.{figures}g}".replace("-", MINUS)
     text = f"{value:.{max(digits, 0)}f}"
     return text.replace("-", MINUS)
-
-
-def with_unit(value: str, unit: str) -> str:
-    """Put a unit behind a number.
-
-    >>> with_unit("286", "N m/rad"), with_unit("0.3", "")
-    ('286 N m/rad', '0.3')
-    """
-    return f"{value} {unit}".strip()
 
 
 def estimate_text(estimate: Estimate) -> str:

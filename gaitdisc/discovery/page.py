@@ -17,7 +17,6 @@ from gaitdisc.discovery.effect_words import (
     estimate_text,
     outside_text,
     spoken,
-    with_unit,
     would_distinguish,
 )
 from gaitdisc.discovery.figure import discovery_figures, explanations_figure
@@ -26,7 +25,7 @@ from gaitdisc.discovery.result import TRACKED, VERDICTS, Discovery, Estimate, Ex
 from gaitdisc.report.figure import save_figures
 from gaitdisc.report.page import write_page
 from gaitdisc.report.table import Table, provenance_tables, save_tables, tabulate_findings
-from gaitdisc.words import NONE, counted, p_cell
+from gaitdisc.words import NONE, counted, p_cell, with_unit
 
 
 def estimates_table(discovery: Discovery) -> Table:
@@ -154,8 +153,8 @@ def corrections_table(discovery: Discovery) -> Table:
     """Numbers of the file that moved within their own bounds."""
     rows, records = [], []
     for correction in discovery.corrections:
-        found, unit = correction.found, "" if correction.found.unit == "1" else correction.found.unit
-        rows.append((correction.parameter, with_unit(f"{correction.given:.6g}", unit), *_amounts(found)))
+        found = correction.found
+        rows.append((correction.parameter, with_unit(f"{correction.given:.6g}", found.unit), *_amounts(found)))
         records.append((correction.parameter, correction.given, found.value, found.low, found.high, found.unit))
     caption = (
         "Parameters of the file that changed within their bounds. These are not effects: they were also fitted in the "
@@ -223,8 +222,7 @@ def share_closed(before: float, after: float, floor: float) -> float:
 
 def _amounts(one: Estimate) -> list[str]:
     """Value, low and high end of an interval, in the unit of the file."""
-    unit = "" if one.unit == "1" else one.unit
-    return [with_unit(amount(each, (one.high - one.low) / 2), unit) for each in (one.value, one.low, one.high)]
+    return [with_unit(amount(each, (one.high - one.low) / 2), one.unit) for each in (one.value, one.low, one.high)]
 
 
 def _numbers(one: FoundEffect) -> str:

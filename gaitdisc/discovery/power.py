@@ -18,7 +18,7 @@ from scipy.stats import norm
 from gaitdisc.discovery.case import Case, set_up_case
 from gaitdisc.discovery.catalogue import Request
 from gaitdisc.discovery.discover import fit_given, refuse_unknown
-from gaitdisc.discovery.effect_words import amount, spoken, with_unit
+from gaitdisc.discovery.effect_words import amount, spoken
 from gaitdisc.discovery.estimates import name_estimates
 from gaitdisc.discovery.scored_model import Part, ScoredModel
 from gaitdisc.discovery.spiked_samples import without_spikes
@@ -27,6 +27,7 @@ from gaitdisc.errors import SchemaError
 from gaitdisc.recording.arrays import Values
 from gaitdisc.simulation.measured import Measured
 from gaitdisc.simulation.simulation import Simulation
+from gaitdisc.words import with_unit
 
 SIZES = np.geomspace(2.0, 128.0, 13)  # standard errors of an estimate, until two sizes in a row are found
 POWER = 0.95

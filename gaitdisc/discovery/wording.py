@@ -21,13 +21,13 @@ from gaitdisc.discovery.effect_words import (
     named_at,
     outside_text,
     spoken,
-    with_unit,
     would_distinguish,
 )
 from gaitdisc.discovery.result import ODD_TRIAL, Discovery, Estimate, FoundEffect, GapSize, Whereabouts
 from gaitdisc.discovery.scored_model import Part
 from gaitdisc.simulation.simulation import Simulation
 from gaitdisc.units import find_dimension
+from gaitdisc.words import with_unit
 
 MECHANICAL = {find_dimension(unit) for unit in ("N", "N m", "N/kg", "N m/kg", "rad/s^2", "1", "unknown")}
 FEW = 12  # independent samples of held-out data

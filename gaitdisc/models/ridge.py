@@ -6,12 +6,12 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from gaitdisc.errors import TrainingError
 from gaitdisc.recording import Samples, Scale, fit_scale
 from gaitdisc.recording.arrays import Values
 
 PENALTIES = tuple(10.0**power for power in range(-7, 2))
 PHASE = "phi"
+INNER_SHARE = 0.15  # of the samples, on which a penalty is chosen
 LEAST_SAMPLES = 50
 LEAST_BEFORE_INNER = 20
 SEAM_S = 0.3  # as Trajectory.split: zero-lag filters look ahead over the seam
@@ -37,11 +37,11 @@ class Ridge:
         return self.scale.scaled(_columns(x, self.inputs, self.harmonics)) @ self.weights + self.offset
 
 
-def fit_ridge(samples: Samples, harmonics: int = 8, inner_share: float = 0.15) -> Ridge:
+def fit_ridge(samples: Samples, harmonics: int = 8) -> Ridge:
     """Fit a ridge regression.
 
     Minimises sum (y - W x - b)^2 / samples + penalty sum W^2 on scaled columns. The penalty is the one of `PENALTIES`
-    that does best on the last `inner_share` of the samples (contiguous, 0.3 s apart, all outputs weighed by their
+    that does best on the last `INNER_SHARE` of the samples (contiguous, 0.3 s apart, all outputs weighed by their
     variance); then everything is fitted again on all samples.
 
     harmonics: harmonics of percent stride beside the inputs, where `phi` is among them; 0 for none
@@ -51,15 +51,9 @@ def fit_ridge(samples: Samples, harmonics: int = 8, inner_share: float = 0.15) -
     >>> fit_ridge(s)(np.array([[0.5]])).round(3)
     array([[2.5]])
     """
-    if not 0 < inner_share < 1:
-        raise TrainingError(
-            "inner_share of ridge must lie between 0 and 1",
-            f"it is {inner_share}",
-            "Give the fraction of the training data on which the penalty is chosen.",
-        )
     samples.trainable(LEAST_SAMPLES)
     harmonics = harmonics if PHASE in samples.inputs else 0
-    before, inner = samples.last_block(inner_share, SEAM_S)
+    before, inner = samples.last_block(INNER_SHARE, SEAM_S)
     before.trainable(LEAST_BEFORE_INNER)
     spread = before.y.std(axis=0)
     losses = []

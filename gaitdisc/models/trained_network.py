@@ -30,11 +30,6 @@ class TrainedNetwork:
     y_scale: Scale
     network: nn.Module  # takes and gives scaled numbers; on the CPU
 
-    @property
-    def ignored(self) -> tuple[str, ...]:
-        """Inputs that did not vary in training and therefore weigh nothing."""
-        return tuple(name for name, still in zip(self.inputs, self.x_scale.constant, strict=True) if still)
-
     def weights(self) -> dict[str, NDArray[Any]]:
         """Copy of every weight, by the name it has in the torch module."""
         return {name: tensor.detach().cpu().numpy().copy() for name, tensor in self.network.state_dict().items()}

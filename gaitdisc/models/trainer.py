@@ -16,7 +16,7 @@ from torch import Tensor, nn
 
 from gaitdisc.errors import TrainingError
 from gaitdisc.models.feedforward import FeedForward
-from gaitdisc.models.ridge import LEAST_BEFORE_INNER, LEAST_SAMPLES, SEAM_S
+from gaitdisc.models.ridge import INNER_SHARE, LEAST_BEFORE_INNER, LEAST_SAMPLES, SEAM_S
 from gaitdisc.models.trained_network import TrainedNetwork, pin_threads
 from gaitdisc.models.training_settings import ScaledSamples, Schedule, TrainingSettings, make_schedule
 from gaitdisc.recording import Samples, Scale, fit_scale
@@ -95,9 +95,9 @@ def train(
     )
 
 
-def resolve(model: TrainedNetwork, samples: Samples, inner_share: float = 0.15) -> TrainedNetwork:
+def resolve(model: TrainedNetwork, samples: Samples) -> TrainedNetwork:
     """Return a network with the same hidden layers and its last layer solved for other samples."""
-    before, inner = samples.last_block(inner_share, SEAM_S)
+    before, inner = samples.last_block(INNER_SHARE, SEAM_S)
     scales = model.x_scale, model.y_scale
     part, checked, whole = (_tensors(each, *scales, torch.device("cpu")) for each in (before, inner, samples))
     network = copy.deepcopy(model.network)

@@ -76,21 +76,16 @@ def calibrate(done: WindowModel, strides: Samples, penalty: float = USUAL_PENALT
     return _calibrated(done, strides, (penalty,))[0]
 
 
-@dataclass(frozen=True, eq=False)
-class Rehearsal:
-    """A calibration that was tried on another person."""
+def rehearse(done: WindowModel, trials: Sequence[Samples], count: int) -> tuple[float, Values]:
+    """Calibrate for the person models are chosen by, never the one they are tested on, and see which penalty serves.
 
-    penalty: float  # one of `PENALTIES`, with which that person was reconstructed best
-    missed: Values  # (window, state) [each state's unit], errors on that person's further strides
-
-
-def rehearse(done: WindowModel, trials: Sequence[Samples], count: int) -> Rehearsal:
-    """Calibrate for the person models are chosen by, never the one they are tested on, and see which penalty serves."""
+    returns: the penalty, and the errors on that person's further strides (window, state) [each state's unit]
+    """
     parted = first_strides(trials, count, done.sensing.reach_s)
     rest = stacked([each for each in trials if len(each)]).rows(parted.rest)
     missed = [each(rest) - rest.y for each in _calibrated(done, parted.strides, PENALTIES)]
     best = int(np.argmin([np.mean((each / done.model.y_scale.sd) ** 2) for each in missed]))
-    return Rehearsal(PENALTIES[best], missed[best])
+    return PENALTIES[best], missed[best]
 
 
 def _calibrated(done: WindowModel, strides: Samples, penalties: Sequence[float]) -> list[WindowModel]:

@@ -219,11 +219,9 @@ def _fitted(parts: Parts, what: Sensing, fits: Fits) -> tuple[list[Fitted], list
         fitted.append((done, half))
         predictions.append(_Prediction(kind, done(test), missed, half, done.n_fitted, done.seconds))
         if first is not None:
-            rehearsal = rehearse(done, parts.check, fits.calibration)
-            states = calibrate(done, first.strides, rehearsal.penalty)(test)
-            name = CALIBRATED.format(kind)
-            half = half_widths(rehearsal.missed)
-            predictions.append(_Prediction(name, states, rehearsal.missed, half, done.n_fitted, done.seconds))
+            penalty, missed = rehearse(done, parts.check, fits.calibration)
+            states, name = calibrate(done, first.strides, penalty)(test), CALIBRATED.format(kind)
+            predictions.append(_Prediction(name, states, missed, half_widths(missed), done.n_fitted, done.seconds))
     return fitted, predictions, np.ones(len(test), bool) if first is None else first.rest
 
 

@@ -51,9 +51,8 @@ def checks() -> Iterator[Check]:
 def _wave(name: str, rate_hz: int) -> Recording:
     """Two seconds of a channel that rises and falls."""
     time = np.arange(2 * rate_hz) / rate_hz
-    channel = vocabulary().named(name)
-    assert channel is not None
-    return Recording(time, np.asarray(np.round(30 + 30 * np.sin(6 * time)), float)[:, None], (channel,))
+    values = np.asarray(np.round(30 + 30 * np.sin(6 * time)), float)
+    return Recording(time, values[:, None], (vocabulary().by_name[name],))
 
 
 def _read_back(what: str, made: Recording, file: str) -> Check:

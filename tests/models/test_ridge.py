@@ -65,8 +65,6 @@ def test_a_constant_input_weighs_nothing():
 def test_refusals():
     with pytest.raises(TrainingError, match=r"50 samples.*30 usable"):
         fit_ridge(walk(30))
-    with pytest.raises(TrainingError, match=r"inner_share.*0.*1.*0"):
-        fit_ridge(walk(), inner_share=0)
     with pytest.raises(TrainingError, match=r"1.*1000 samples"):
         fit_ridge(walk().with_outputs(np.column_stack([walk().y[:, 0], np.ones(1000)])))
 
