@@ -50,31 +50,31 @@ def read_published(path: Path) -> tuple[str, tuple[PublishedGroup, ...]]:
         raise SchemaError(FORM, f"{path.name}: {str(error)[:200]}", "Correct the table.") from error
     source, lacking = first.lstrip("# ").strip(), [name for name in COLUMNS if name not in table]
     if lacking or not source:
-        found = "no source" if not source or not first.startswith("#") else f"no column {', '.join(lacking)}"
-        raise SchemaError(FORM, f"{path.name} has {found}", "Write it as docs/clinic.md shows.")
-    groups = [_group(str(name), own, path.name) for name, own in table.groupby("group", sort=False)]
+        defect = "no source" if not source or not first.startswith("#") else f"no column {', '.join(lacking)}"
+        raise SchemaError(FORM, f"{path.name} has {defect}", "Write it as docs/clinic.md shows.")
+    groups = [_group(str(name), rows, path.name) for name, rows in table.groupby("group", sort=False)]
     return source, tuple(groups)
 
 
 def _group(name: str, rows: pd.DataFrame, file: str) -> PublishedGroup:
     bands, first = {}, rows.iloc[0]
-    for variable, own in rows.groupby("variable", sort=False):
+    for variable, points in rows.groupby("variable", sort=False):
         where = f"{file}, {name} {variable}"
         if variable not in BY_NAME:
             raise SchemaError(
                 f"{file}, {name}: a variable must be one of {', '.join(BY_NAME)}", f"found {variable!r}", "Correct it."
             )
-        curve = own.sort_values("percent")[["percent", "mean", "sd"]].to_numpy(float)
+        curve = points.sort_values("percent")[["percent", "mean", "sd"]].to_numpy(float)
         at, mean, sd = curve.T
-        whole = len(at) >= FEWEST_POINTS and np.isfinite(curve).all() and (np.diff(at) > 0).all() and (sd >= 0).all()
-        if not (whole and at[0] <= PERCENT[0] + 2.5 and at[-1] >= PERCENT[-1] - 2.5):
+        complete = len(at) >= FEWEST_POINTS and np.isfinite(curve).all() and (np.diff(at) > 0).all() and (sd >= 0).all()
+        if not (complete and at[0] <= PERCENT[0] + 2.5 and at[-1] >= PERCENT[-1] - 2.5):
             raise SchemaError(
                 f"{where}: a curve must have {FEWEST_POINTS} points or more from 0 to 100 %, each with mean and sd",
                 f"found {len(at)} points from {at.min():g} to {at.max():g} %",
                 "Correct the table.",
             )
         bands[str(variable)] = Band(
-            np.interp(PERCENT, at, mean), np.interp(PERCENT, at, sd), int(own["people"].iloc[0])
+            np.interp(PERCENT, at, mean), np.interp(PERCENT, at, sd), int(points["people"].iloc[0])
         )
     people = max(band.people for band in bands.values())
     return PublishedGroup(name, (float(first["speed_low"]), float(first["speed_high"])), people, bands)
@@ -126,7 +126,7 @@ def save_reference(reference: ClinicalReference, folder: Path) -> Path:
         "created": reference.created,
         "settings": dict(reference.settings),
         "versions": dict(reference.versions),
-        "legs": {word: [_round(vars(leg)) for leg in own] for word, own in reference.legs.items()},
+        "legs": {word: [_round(vars(leg)) for leg in legs] for word, legs in reference.legs.items()},
     }
     return write_whole(folder / FILE, seal_text(data))
 
@@ -150,7 +150,7 @@ def load_reference(place: Path) -> ClinicalReference:
             f"a reference must have format {FORMAT}", f"{path} has {data.get('format')!r}", "Compute it again."
         )
     try:
-        legs = {word: tuple(map(_leg, own)) for word, own in data["legs"].items()}
+        legs = {word: tuple(map(_leg, records)) for word, records in data["legs"].items()}
         return ClinicalReference(data["title"], legs, data["settings"], data["versions"], data["created"])
     except (KeyError, TypeError, ValueError, AttributeError) as error:
         raise SchemaError(
@@ -161,9 +161,9 @@ def load_reference(place: Path) -> ClinicalReference:
 def _round(value: Any) -> Any:
     """What JSON holds of a leg: four digits, and null for what is not known."""
     if isinstance(value, Mapping):
-        return {name: _round(one) for name, one in value.items()}
+        return {name: _round(item) for name, item in value.items()}
     if isinstance(value, np.ndarray):
-        return [_round(float(one)) for one in value]
+        return [_round(float(number)) for number in value]
     if isinstance(value, float):
         return round(value, DIGITS) if np.isfinite(value) else None
     return value
@@ -178,8 +178,8 @@ def _leg(data: Mapping[str, Any]) -> ReferenceLeg:
     leg_m, age = data.get("leg_m"), data.get("age_years")  # absent in older references
     if not (leg_m is None or isinstance(leg_m, float)) or not (age is None or isinstance(age, int)):
         raise ValueError(f"leg length {leg_m!r} and age {age!r} are not numbers")
-    own = int(data["person"]), str(data["side"]), int(data["cycles"])
-    return ReferenceLeg(*own, stance, curves, values, leg_m=leg_m, age_years=age)
+    identity = int(data["person"]), str(data["side"]), int(data["cycles"])
+    return ReferenceLeg(*identity, stance, curves, values, leg_m=leg_m, age_years=age)
 
 
 @dataclass(frozen=True)
@@ -265,7 +265,7 @@ class ClinicalReading:
     @property
     def noted(self) -> tuple[Noted, ...]:
         """What stands out, the farthest first."""
-        return tuple(one for one in self.numbers if one.tier)
+        return tuple(note for note in self.numbers if note.tier)
 
 
 @dataclass(frozen=True)
@@ -311,4 +311,4 @@ class PersonSession:
     @property
     def before_after(self) -> Contrast | None:
         """Comparison with what came before, which the first sheet shows; None where conditions are compared."""
-        return next((one for one in self.contrasts if one.second is self.readings[0]), None)
+        return next((contrast for contrast in self.contrasts if contrast.second is self.readings[0]), None)

@@ -92,11 +92,11 @@ def with_pelvis(walk: TrueWalk, trial: Trial) -> Trial:
     The pelvis moves by the habit of the person's speed with an offset of the person's own; signs are OpenSim's.
     """
     person, kinematics = walk.person, trial.stream("kinematics")
-    own, noise = (np.random.default_rng([round(person.mass_kg * 1e6), seed]) for seed in (61, walk.seed + 62))
+    person_rng, noise = (np.random.default_rng([round(person.mass_kg * 1e6), seed]) for seed in (61, walk.seed + 62))
     phase = walk.phase[:: round(QUICK_HZ / SLOW_HZ)]
     habit = {name: habitual(name, person.dimensionless_speed).at(phase) for name in PELVIS_SD}
-    tilt, obliquity, rotation = (habit[name] + sd * own.normal() for name, sd in PELVIS_SD.items())
-    toes = TOES_OUT_DEG + TOES_SD * own.normal() + 1.5 * own.normal(size=2)
+    tilt, obliquity, rotation = (habit[name] + sd * person_rng.normal() for name, sd in PELVIS_SD.items())
+    toes = TOES_OUT_DEG + TOES_SD * person_rng.normal() + 1.5 * person_rng.normal(size=2)
     columns = {"pelvis_tilt": -tilt, "pelvis_list": -obliquity, "pelvis_rotation": rotation}
     columns |= {
         f"foot_progression_angle_{side}": np.full(len(phase), toe) for side, toe in zip("rl", toes, strict=True)
@@ -119,29 +119,29 @@ def write_week(
 ) -> tuple[Study, Study, dict[str, str]]:
     """Write `controls/` and `week/`, and apart from them what was planted by person and session, "" for the healthy."""
     visits = [Visit(f"C{k + 1:02d}", k) for k in range(controls)]
-    own = _write(folder / "controls", visits, "Controls, made", CONTROLS_SEED, progress)
+    control_study = _write(folder / "controls", visits, "Controls, made", CONTROLS_SEED, progress)
     truth = {}
-    for one in WEEK:
-        side = "left" if one.side == "l" else "right"
-        truth[f"{one.name} {one.session}".strip()] = one.what if one.what in ("", *NO_GAIT) else f"{one.what} {side}"
-    said = "; ".join(f"{who} {what}" for who, what in truth.items() if what)
-    week = _write(folder / "week", WEEK, f"A simulated clinic week with gait deviations: {said}", WEEK_SEED, progress)
+    for visit in WEEK:
+        what, side = visit.what, "left" if visit.side == "l" else "right"
+        truth[f"{visit.name} {visit.session}".strip()] = what if what in ("", *NO_GAIT) else f"{what} {side}"
+    cases = "; ".join(f"{who} {what}" for who, what in truth.items() if what)
+    week = _write(folder / "week", WEEK, f"A simulated clinic week with gait deviations: {cases}", WEEK_SEED, progress)
     write_whole(folder / "week" / "clinic.toml", LABORATORY)
     write_whole(folder / "planted.json", json.dumps(truth, indent=1))
-    return own, week, truth
+    return control_study, week, truth
 
 
 def _write(folder: Path, visits: Sequence[Visit], title: str, seed: int, progress: Callable[[str], None]) -> Study:
     trials: dict[str, list[PlannedTrial]] = {}
     people: dict[str, Person] = {}
-    sessions = tuple(word for word in ("before", "after") if any(one.session == word for one in visits))
+    sessions = tuple(word for word in ("before", "after") if any(visit.session == word for visit in visits))
     for visit in visits:
         stem = f"raw/{visit.name}/{visit.session or 'only'}/{CONDITION}"
         files = write_trial(make_walk(visit, seed), folder, stem)
         if visit.what == "bad file":
             for file in files:
-                whole = (folder / file).read_bytes()
-                write_whole(folder / file, whole[: len(whole) // 3])
+                content = (folder / file).read_bytes()
+                write_whole(folder / file, content[: len(content) // 3])
         people[visit.name] = person = draw_person(visit, seed)
         planned = PlannedTrial(
             condition=CONDITION, session=visit.session or None, files=files, speed_m_per_s=person.speed_m_per_s
@@ -153,7 +153,7 @@ def _write(folder: Path, visits: Sequence[Visit], title: str, seed: int, progres
         sessions=sessions,
         conditions=Conditions(nominal=CONDITION),
         channels={name: f"{name} [N]" for name in FORCES},
-        participants=tuple(describe_participant(people[name], tuple(own)) for name, own in trials.items()),
+        participants=tuple(describe_participant(people[name], tuple(walks)) for name, walks in trials.items()),
     ).placed(folder)
     write_study(study, folder / "study.toml")
     return study

@@ -57,7 +57,7 @@ class Laboratory:
 
 def load_laboratory(run_folder: Path) -> Laboratory:
     """Laboratory of a run: its `clinic.toml`, or the one beside the study file above; the package's own without one."""
-    path = next((one for one in (run_folder / FILE, run_folder.parent / FILE) if one.is_file()), None)
+    path = next((file for file in (run_folder / FILE, run_folder.parent / FILE) if file.is_file()), None)
     if path is None:
         return Laboratory()
     try:
@@ -68,17 +68,17 @@ def load_laboratory(run_folder: Path) -> Laboratory:
         if key not in KINDS or not isinstance(value, KINDS[key]):
             raise _refusal(f"{key} = {str(value)[:60]!r}")
     people = data.get("people", {})
-    for person, own in people.items():
-        comment = own.get("comment", "") if isinstance(own, dict) and own.keys() <= {"affected", "comment"} else None
-        if not isinstance(comment, str) or len(comment) > LONGEST or own.get("affected", "left") not in AFFECTED:
-            raise _refusal(f"[people.{person}] {str(own)[:80]}")
-    said: dict[str, dict[str, str]] = {
-        word: {who: own[word] for who, own in people.items() if word in own} for word in ("affected", "comment")
+    for person, note in people.items():
+        comment = note.get("comment", "") if isinstance(note, dict) and note.keys() <= {"affected", "comment"} else None
+        if not isinstance(comment, str) or len(comment) > LONGEST or note.get("affected", "left") not in AFFECTED:
+            raise _refusal(f"[people.{person}] {str(note)[:80]}")
+    notes: dict[str, dict[str, str]] = {
+        word: {who: note[word] for who, note in people.items() if word in note} for word in ("affected", "comment")
     }
     axes = {**clinical_axes(), **{name: _ends(name, ends) for name, ends in data.get("axes", {}).items()}}
     logo = _picture(path.parent / data["logo"]) if data.get("logo") else ""
     name = str(data.get("laboratory", ""))
-    return Laboratory(name, logo, bool(data.get("pdf", False)), axes, said["affected"], said["comment"])
+    return Laboratory(name, logo, bool(data.get("pdf", False)), axes, notes["affected"], notes["comment"])
 
 
 def _ends(name: str, ends: Any) -> tuple[float, float]:
@@ -104,17 +104,17 @@ def _picture(path: Path) -> str:
     return data_uri(kind, content)
 
 
-def _refusal(found: str) -> SchemaError:
-    return SchemaError(FORM, f"found {found}", f"Correct the line. Words for affected: {', '.join(AFFECTED)}.")
+def _refusal(mistake: str) -> SchemaError:
+    return SchemaError(FORM, f"found {mistake}", f"Correct the line. Words for affected: {', '.join(AFFECTED)}.")
 
 
 def page_of_run(run: StudyRun, run_folder: Path) -> Path:
     """Page of a run with pages of its people and their index, drawn where they are not those of this very run."""
-    own, place = load_laboratory(run_folder), run_folder / FOLDER / "laboratory.json"
-    if own == Laboratory():
+    laboratory, place = load_laboratory(run_folder), run_folder / FOLDER / "laboratory.json"
+    if laboratory == Laboratory():
         remove_file(place)
     else:  # so that pages of another laboratory do not stand
-        write_whole(place, seal_text(asdict(own)))
+        write_whole(place, seal_text(asdict(laboratory)))
 
     def draw() -> Path:
         page = find_kind(run_folder).draw(run, run_folder)

@@ -41,15 +41,15 @@ class LikeControls:
     nearest: str  # in what those for curves are the nearest; empty where they are the entire reference
 
 
-def like_controls(legs: Legs, own: Sequence[LegCurves], leg_m: float | None, age_years: int | None) -> LikeControls:
+def like_controls(legs: Legs, person: Sequence[LegCurves], leg_m: float | None, age_years: int | None) -> LikeControls:
     """Controls of a condition for one person of a leg length [m] and age."""
-    speed = mean_speed(own)
+    speed = mean_speed(person)
     of_age = _nearest(legs, AGES, age_years, AGE)
     of_both = _nearest(of_age, SPEEDS, _dimensionless(speed, leg_m), dimensionless_speed)
     by = [*(["age"] if of_age != legs else []), *(["speed"] if of_both != of_age else [])]
     why = "age and speed are unknown" if list_groups(legs) else f"fewer than {FEWEST} controls of similar age or speed"
     which = f", the group nearest in {' and '.join(by)}" if by else f", the entire reference ({why})"
-    said = [f"Compared with {described(of_both)}{which}."]
+    sentences = [f"Compared with {described(of_both)}{which}."]
     unknown = "the person" if leg_m is None else "some controls" if any(leg.leg_m is None for leg in legs) else ""
     group, values = of_both, of_age
     if leg_m is not None and not unknown:
@@ -58,18 +58,18 @@ def like_controls(legs: Legs, own: Sequence[LegCurves], leg_m: float | None, age
     if of_both != of_age:
         what = "Times, distances and curves" if far else "Times and distances"
         because = ", because this person's speed is outside the range of this group" if far else ""
-        said.append(f"{what} are compared with controls of any speed{because}.")
+        sentences.append(f"{what} are compared with controls of any speed{because}.")
     ages = [leg.age_years for leg in of_age if leg.age_years is not None]
     if age_years is not None and ages and not min(ages) <= age_years <= max(ages):
         whose = "adults" if min(ages) >= ADULT > age_years else "of another age"
-        said.append(f"These controls are {whose}; at {age_years} years, deviations may be due to age.")
-    said.append(
+        sentences.append(f"These controls are {whose}; at {age_years} years, deviations may be due to age.")
+    sentences.append(
         f"No value is scaled to body size, because the leg length of {unknown} is unknown."
         if unknown
         else "Times, distances, moments and powers of the controls are scaled to this person's leg length (Hof 1996)."
     )
     nearest = " and ".join(by[:-1] if of_both != of_age and far else by)
-    return LikeControls(group, values if far else group, values, (*said, *speed_words(speed, values)), nearest)
+    return LikeControls(group, values if far else group, values, (*sentences, *speed_words(speed, values)), nearest)
 
 
 def speed_words(speed: float | None, legs: Legs) -> tuple[str, ...]:
@@ -84,25 +84,25 @@ def speed_words(speed: float | None, legs: Legs) -> tuple[str, ...]:
 
 
 def like_published(
-    groups: Sequence[PublishedGroup], own: Sequence[LegCurves], leg_m: float | None
+    groups: Sequence[PublishedGroup], legs: Sequence[LegCurves], leg_m: float | None
 ) -> tuple[PublishedGroup, str]:
     """Group of a published reference nearest in speed, the largest where the speed is not known; and which it is."""
-    speed = _dimensionless(mean_speed(own), leg_m)
-    known = [one for one in groups if np.isfinite(one.speeds).all()] if speed is not None else []
+    speed = _dimensionless(mean_speed(legs), leg_m)
+    known = [group for group in groups if np.isfinite(group.speeds).all()] if speed is not None else []
     if speed is None or not known:
-        found = max(groups, key=lambda one: one.people)
-        return found, f"Compared with the group “{found.name}” ({found.people} people); no group is selected by speed."
-    found = min(known, key=lambda one: max(one.speeds[0] - speed, speed - one.speeds[1], 0.0))
-    low, high = found.speeds
-    whose = f"{found.people} people, dimensionless speed {low:.2f} to {high:.2f}; this person's is {speed:.2f}"
-    return found, f"Compared with the group “{found.name}”, the nearest in speed: {whose}."
+        group = max(groups, key=lambda group: group.people)
+        return group, f"Compared with the group “{group.name}” ({group.people} people); no group is selected by speed."
+    group = min(known, key=lambda group: max(group.speeds[0] - speed, speed - group.speeds[1], 0.0))
+    low, high = group.speeds
+    whose = f"{group.people} people, dimensionless speed {low:.2f} to {high:.2f}; this person's is {speed:.2f}"
+    return group, f"Compared with the group “{group.name}”, the nearest in speed: {whose}."
 
 
 def list_groups(legs: Legs) -> list[Legs]:
     """Groups of ten people or more, by age, and within it by speed; none where there is but one."""
     ages = list(_classes(legs, AGES, AGE).values()) or [legs]
-    found = dict.fromkeys(one for age in ages for one in (*_classes(age, SPEEDS, dimensionless_speed).values(), age))
-    return [one for one in found if one != legs]
+    groups = {group: None for age in ages for group in (*_classes(age, SPEEDS, dimensionless_speed).values(), age)}
+    return [group for group in groups if group != legs]
 
 
 def dimensionless_speed(leg: ReferenceLeg) -> float | None:
@@ -134,9 +134,9 @@ def described(legs: Legs) -> str:
     return ", ".join(parts)
 
 
-def mean_speed(own: Sequence[LegCurves]) -> float | None:
+def mean_speed(legs: Sequence[LegCurves]) -> float | None:
     """Speed [m/s] over the legs of a person; None where it is not known."""
-    speeds = [float(leg.values[SPEED].mean()) for leg in own if SPEED in leg.values]
+    speeds = [float(leg.values[SPEED].mean()) for leg in legs if SPEED in leg.values]
     return float(np.mean(speeds)) if speeds else None
 
 
@@ -148,27 +148,27 @@ def _classes(legs: Legs, bounds: Sequence[float], number: Number) -> dict[int, L
     """Legs of each class that ten people or more are of; a person is of the class of the mean of both legs."""
     people: dict[int, list[float]] = {}
     for leg in legs:
-        if (own := number(leg)) is not None:
-            people.setdefault(leg.person, []).append(own)
+        if (value := number(leg)) is not None:
+            people.setdefault(leg.person, []).append(value)
     classes: dict[int, set[int]] = {}
-    for person, own in people.items():
-        classes.setdefault(bisect_right(bounds, float(np.mean(own))), set()).add(person)
+    for person, values in people.items():
+        classes.setdefault(bisect_right(bounds, float(np.mean(values))), set()).add(person)
     return {
-        place: tuple(leg for leg in legs if leg.person in own)
-        for place, own in sorted(classes.items())
-        if len(own) >= FEWEST
+        place: tuple(leg for leg in legs if leg.person in members)
+        for place, members in sorted(classes.items())
+        if len(members) >= FEWEST
     }
 
 
 def _nearest(legs: Legs, bounds: Sequence[float], value: float | None, number: Number) -> Legs:
     """The class of a value, or the nearest; all legs where the value is not known or no class has enough people."""
-    found = _classes(legs, bounds, number) if value is not None else {}
-    if value is None or not found:
+    classes = _classes(legs, bounds, number) if value is not None else {}
+    if value is None or not classes:
         return legs
     place = bisect_right(bounds, value)
 
     def away(other: int) -> tuple[bool, float]:
-        numbers = [one for leg in found[other] if (one := number(leg)) is not None]
+        numbers = [leg_value for leg in classes[other] if (leg_value := number(leg)) is not None]
         return other != place, max(min(numbers) - value, value - max(numbers))
 
-    return found[min(found, key=away)]
+    return classes[min(classes, key=away)]

@@ -77,15 +77,15 @@ def read_normal_data(path: Path, people: int) -> pd.DataFrame:
 
 def _read_gcd(lines: list[str]) -> Curves:
     """Variables of a .gcd: a line `!Name`, then mean and deviation in each line."""
-    found: dict[str, list[list[float]]] = {}
-    own: list[list[float]] = []
+    curves: dict[str, list[list[float]]] = {}
+    rows: list[list[float]] = []
     for line in lines:
         cells = line.split()
         if line.startswith("!") and len(line.strip()) > 1:
-            own = found.setdefault(cells[0][1:], [])
+            rows = curves.setdefault(cells[0][1:], [])
         elif len(cells) == 2 and all(re.fullmatch(r"[-+]?\d*\.?\d+(?:[eE][-+]?\d+)?", cell) for cell in cells):
-            own.append([float(cell) for cell in cells])
-    return {name: np.array(rows) for name, rows in found.items()}
+            rows.append([float(cell) for cell in cells])
+    return {name: np.array(rows) for name, rows in curves.items()}
 
 
 def _read_xlsx(content: bytes, file: str) -> Curves:
@@ -103,9 +103,9 @@ def _read_xlsx(content: bytes, file: str) -> Curves:
         remedy = "Save it as .xlsx again."
         raise SchemaError(f"{file} must be a workbook with a sheet 'Normal'", str(error)[:120], remedy) from error
     sheet = sheets.get("Normal", next(iter(sheets.values())))
-    found: dict[str, list[NDArray[np.float64]]] = {}
+    columns: dict[str, list[NDArray[np.float64]]] = {}
     for _, column in sheet.items():
         name, numbers = str(column.iloc[0]).strip(), pd.to_numeric(column.iloc[3:], errors="coerce")
-        found.setdefault(name, []).append(numbers.dropna().to_numpy(float))  # below the name stand two lines of others
-    both = {name: np.column_stack(own) for name, own in found.items() if len(own) == 2 and len(own[0]) == len(own[1])}
-    return {name: np.column_stack([one.mean(axis=1), np.ptp(one, axis=1) / 2]) for name, one in both.items()}
+        columns.setdefault(name, []).append(numbers.dropna().to_numpy(float))  # below the name stand two other lines
+    pairs = {name: pair for name, pair in columns.items() if len(pair) == 2 and len(pair[0]) == len(pair[1])}
+    return {name: np.column_stack([np.mean(pair, axis=0), np.ptp(pair, axis=0) / 2]) for name, pair in pairs.items()}

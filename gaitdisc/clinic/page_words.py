@@ -79,11 +79,11 @@ ENGLISH = PageWords()
 def english_words() -> list[str]:
     """Every word that a table may translate, each once: of the pages, and what rules call a value."""
     texts = [(TEMPLATES / name).read_text(encoding="utf-8") for name in WITH_WORDS]
-    found = [word for text in texts for word in re.findall(r'say\("([^"]+)"\)', text)]
-    found += [word for one in VARIABLES for word in (one.words, one.up, one.down)]
-    found += [words for words, _, _ in VALUES.values()]
-    found += [word for rule in rules() for word in (rule.name, rule.less, rule.more)]
-    return [word for word in dict.fromkeys((*found, SCORE, SCORE_WORDS, *TABLES)) if word]
+    phrases = [word for text in texts for word in re.findall(r'say\("([^"]+)"\)', text)]
+    phrases += [word for variable in VARIABLES for word in (variable.words, variable.up, variable.down)]
+    phrases += [words for words, _, _ in VALUES.values()]
+    phrases += [word for rule in rules() for word in (rule.name, rule.less, rule.more)]
+    return [word for word in dict.fromkeys((*phrases, SCORE, SCORE_WORDS, *TABLES)) if word]
 
 
 def write_words(path: Path, words: PageWords = ENGLISH) -> Path:
@@ -110,18 +110,18 @@ def read_words(path: Path) -> PageWords:
         )
     known, other = set(english_words()), {}
     for line, row in enumerate(rows[1:], 2):
-        word, said = (*(cell.strip() for cell in row[:2]), "", "")[:2]
+        word, translation = (*(cell.strip() for cell in row[:2]), "", "")[:2]
         if word and word not in known:
             raise SchemaError(
                 "each English text of the table must occur on the pages",
                 f"{path.name}, line {line}: {word[:60]!r} does not",
                 "Delete the line.",
             )
-        if said and word.count("{}") != said.count("{}"):
+        if translation and word.count("{}") != translation.count("{}"):
             raise SchemaError(
                 "a translation must contain {}, the place of a number, as often as the English text",
-                f"{path.name}, line {line}: {said[:60]!r}",
+                f"{path.name}, line {line}: {translation[:60]!r}",
                 f"Write {{}} as often as in {word!r}.",
             )
-        other |= {word: said} if said else {}
+        other |= {word: translation} if translation else {}
     return PageWords(other)

@@ -23,24 +23,22 @@ def sheet(reading: ClinicalReading, *kinds: str) -> list[Panel]:
 
     Beside the title the number of cycles, and of angles the coefficient of multiple correlation.
     """
-    found = []
+    panels = []
     for variable in _present(reading, *kinds):
-        own = {side: leg for side, leg in reading.legs.items() if variable.name in leg.cycles}
-        lines = [
-            Line(side, one, "single") for side, leg in own.items() for one in leg.cycles[variable.name][:MOST_SINGLE]
-        ]
-        lines += [Line(side, leg.mean(variable.name)) for side, leg in own.items()]
-        note = ", ".join(f"{SHORT[side]} {len(leg.cycles[variable.name])}" for side, leg in own.items())
-        known = [reading.consistency.get((variable.name, side), float("nan")) for side in own]
+        cycles = {side: leg.cycles[variable.name] for side, leg in reading.legs.items() if variable.name in leg.cycles}
+        lines = [Line(side, curve, "single") for side, curves in cycles.items() for curve in curves[:MOST_SINGLE]]
+        lines += [Line(side, reading.legs[side].mean(variable.name)) for side in cycles]
+        note = ", ".join(f"{SHORT[side]} {len(curves)}" for side, curves in cycles.items())
+        known = [reading.consistency.get((variable.name, side), float("nan")) for side in cycles]
         if variable.kind == KINEMATICS and np.isfinite(known).any():
-            note += f"; CMC {', '.join(number(one, 2) if np.isfinite(one) else '–' for one in known)}"
-        found.append(_panel(reading, variable, tuple(lines), note))
-    return in_rows(found)
+            note += f"; CMC {', '.join(number(cmc, 2) if np.isfinite(cmc) else '–' for cmc in known)}"
+        panels.append(_panel(reading, variable, tuple(lines), note))
+    return in_rows(panels)
 
 
 def contrast_sheet(contrast: Contrast) -> list[Panel]:
     """Both sets of cycles of both legs over each other, with bars where those of a leg differ."""
-    found = []
+    panels = []
     for variable in _present(contrast.second, KINEMATICS):
         lines, sides = [], []
         for side, leg in contrast.second.legs.items():
@@ -50,10 +48,10 @@ def contrast_sheet(contrast: Contrast) -> list[Panel]:
                 lines += [Line(side, before.mean(variable.name), "before"), Line(side, leg.mean(variable.name))]
         if lines:
             panel = _panel(contrast.second, variable, tuple(lines), "")
-            spans = [one for one in contrast.spans if one.variable == variable.name]
-            differs = tuple((one.side, one.first, one.last, one.matters) for one in spans)
-            found.append(replace(panel, differs=differs, foot_off=tuple(o for o in panel.foot_off if o[0] in sides)))
-    return in_rows(found)
+            spans = [span for span in contrast.spans if span.variable == variable.name]
+            differs = tuple((span.side, span.first, span.last, span.matters) for span in spans)
+            panels.append(replace(panel, differs=differs, foot_off=tuple(o for o in panel.foot_off if o[0] in sides)))
+    return in_rows(panels)
 
 
 def emg_sheet(pooled: PooledCycles) -> list[Panel]:
@@ -65,7 +63,9 @@ def emg_sheet(pooled: PooledCycles) -> list[Panel]:
     feet, curves, stored = pooled.kept["side"].to_numpy(), pooled.curves, pooled.raw_emg
     raw: dict[str, list[Line]] = {}
     for side in FEET:
-        names = [sideless(one.name) for one in pooled.channels if (one.quantity, one.side) == ("emg", side)]
+        names = [
+            sideless(channel.name) for channel in pooled.channels if (channel.quantity, channel.side) == ("emg", side)
+        ]
         traces = stored[side].T if side in stored else ()
         for name, trace in zip(names, traces, strict=False):
             if np.isfinite(trace).all():
@@ -74,31 +74,31 @@ def emg_sheet(pooled: PooledCycles) -> list[Panel]:
     for column, channel in enumerate(pooled.channels):
         if channel.quantity != "emg" or not channel.side:
             continue
-        own = curves[feet == channel.side, :, column]
-        own = own[np.isfinite(own).all(axis=1)]
-        if len(own) and own.mean(axis=0).max() > 0:
-            mean = own.mean(axis=0)
+        envelopes = curves[feet == channel.side, :, column]
+        envelopes = envelopes[np.isfinite(envelopes).all(axis=1)]
+        if len(envelopes) and envelopes.mean(axis=0).max() > 0:
+            mean = envelopes.mean(axis=0)
             line, volts = Line(channel.side, 100 * mean / mean.max()), mean.max() if channel.unit == "V" else np.nan
-            muscles.setdefault(sideless(channel.name), []).append((line, len(own), volts))
+            muscles.setdefault(sideless(channel.name), []).append((line, len(envelopes), volts))
     means = {side: float(pooled.kept.loc[feet == side, "stance_percent"].mean()) for side in FEET}
     offs = tuple((side, mean) for side, mean in means.items() if np.isfinite(mean))
-    found = []
-    for muscle, own in muscles.items():
-        volts = {line.side: peak for line, _, peak in own if np.isfinite(peak)}
+    panels = []
+    for muscle, lines in muscles.items():
+        volts = {line.side: peak for line, _, peak in lines if np.isfinite(peak)}
         factor, unit = (1e6, "µV") if max(volts.values(), default=0.0) < AMPLIFIED_V else (1e3, "mV, amplified")
         peaks = ", ".join(f"{SHORT[side]} {number(factor * volts[side], 0)}" for side in FEET if side in volts)
-        traces = tuple(replace(one, values=factor * one.values) for one in raw.get(muscle, ()) if volts)
+        traces = tuple(replace(trace, values=factor * trace.values) for trace in raw.get(muscle, ()) if volts)
         raw_unit = unit.partition(",")[0]
         below = f"; below: raw [{raw_unit}]" if traces else ""
-        found.append(
+        panels.append(
             Panel(
                 name=muscle,
                 title=label(f"{muscle}_r").removeprefix("EMG ").rpartition(",")[0],
                 unit="% of own peak",
                 up="",
                 down="",
-                note=", ".join(sorted(f"{SHORT[line.side]} {count}" for line, count, _ in own)),
-                lines=tuple(line for line, _, _ in own),
+                note=", ".join(sorted(f"{SHORT[line.side]} {count}" for line, count, _ in lines)),
+                lines=tuple(line for line, _, _ in lines),
                 foot_off=offs,
                 normal=NORMAL.get(muscle.removeprefix("emg_"), ()),
                 axis=(-5.0, 105.0),
@@ -107,7 +107,7 @@ def emg_sheet(pooled: PooledCycles) -> list[Panel]:
                 raw_unit=raw_unit,
             )
         )
-    return in_rows(found)
+    return in_rows(panels)
 
 
 def panel_numbers(panels: list[Panel]) -> pd.DataFrame:

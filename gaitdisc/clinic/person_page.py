@@ -87,13 +87,13 @@ def write_person_page(
         "laboratory": say.laboratory.name,
         "logo": Markup(say.laboratory.logo),
         "said": laboratory_sentences(person, say),
-        "conditions": "; ".join(dict.fromkeys(one.pooled.condition for one in person.readings)),
+        "conditions": "; ".join(dict.fromkeys(reading.pooled.condition for reading in person.readings)),
         "reference": _reference(reference, main.pooled.condition),
         "computed": f"Computed {provenance.created[:10]} with gaitdisc {__version__}.",
         "main": _condition(main, beside, "", say),
-        "others": [_condition(one, beside, f"{one.pooled.condition}-", say) for one in others],
+        "others": [_condition(reading, beside, f"{reading.pooled.condition}-", say) for reading in others],
         "first": [_contrast(person.before_after, beside, say)] if person.before_after else [],
-        "contrasts": [_contrast(one, beside, say) for one in person.contrasts if one is not person.before_after],
+        "contrasts": [_contrast(pair, beside, say) for pair in person.contrasts if pair is not person.before_after],
         "method": _method(person),
         "files": _save(
             words_table("files", f"Files, n = {len(files)}.", ("file", "SHA-256"), files.items()), beside, "", say
@@ -121,7 +121,7 @@ def list_sheets(reading: ClinicalReading) -> dict[str, tuple[list[Panel], str]]:
     return {
         "kinematics": (sheet(reading, KINEMATICS), f"{bands} {CYCLES}"),
         "kinetics": (sheet(reading, MOMENTS, POWERS, FORCES), MOMENT_SIGNS),
-        "emg": (muscles, EMG + (RAW if any(one.raw for one in muscles) else "")),
+        "emg": (muscles, EMG + (RAW if any(panel.raw for panel in muscles) else "")),
     }
 
 
@@ -157,9 +157,9 @@ def _condition(reading: ClinicalReading, beside: Path, prefix: str, say: PageWor
 
 def _sheet(panels: list[Panel], caption: str, beside: Path, name: str, say: PageWords) -> dict[str, Any]:
     if panels:
-        means = [replace(one, lines=tuple(line for line in one.lines if line.look != "single")) for one in panels]
+        means = [replace(panel, lines=tuple(line for line in panel.lines if line.look != "single")) for panel in panels]
         save_table(panel_numbers(means), beside / f"{name}.csv")
-    drawn = [{"panel": one, "svg": Markup(svg(one))} for one in map(say.panel, panels)]
+    drawn = [{"panel": panel, "svg": Markup(svg(panel))} for panel in map(say.panel, panels)]
     return {"panels": drawn, "caption": caption, "file": f"{beside.name}/{name}.csv"}
 
 
@@ -188,23 +188,23 @@ def _reference(reference: ClinicalReference | None, condition: str) -> str:
 
 
 def _method(person: PersonSession) -> list[str]:
-    found = []
+    method = []
     for reading in person.readings:
         pooled, where = reading.pooled, name_walk(reading.pooled)
         by = ", ".join(f"{name} ({counted(count, 'trial')})" for name, count in pooled.detectors.items())
         moved = pooled.contact_offset_s
         words = f", shifted by {1000 * moved:+.0f} ms (steps on a plate: {pooled.offset_steps})" if moved else ""
-        found.append(f"{where}: contacts from {by or 'no detector'}{words}.")
+        method.append(f"{where}: contacts from {by or 'no detector'}{words}.")
         filters = dict.fromkeys(finding.what for finding in pooled.findings if finding.kind == "filter")
-        found += [f"{where}: {words}; Butterworth filters, run forwards and backwards." for words in filters]
-        found += dict.fromkeys(f"Angles by {one.what}." for one in pooled.findings if one.kind == "marker set")
-    found.append("Pelvic obliquity is positive if the leg's side is up, and pelvic rotation if that side is forward.")
-    found.append(
+        method += [f"{where}: {words}; Butterworth filters, run forwards and backwards." for words in filters]
+        method += {f"Angles by {finding.what}.": None for finding in pooled.findings if finding.kind == "marker set"}
+    method.append("Pelvic obliquity is positive if the leg's side is up, and pelvic rotation if that side is forward.")
+    method.append(
         "Each rule takes one value of a leg's mean cycle. □: outside mean ± 2 standard deviations of the reference. "
         "■: outside the prediction limits, which contain all values of a healthy person with probability 0.95 (t · sd"
         " · √(1 + 1/n), n people). With 10 controls or more, mean, limits and bands are those at this person's speed."
     )
-    return found
+    return method
 
 
 def index_rows(person: PersonSession, name: str, say: PageWords = ENGLISH) -> list[dict[str, str]]:
@@ -244,11 +244,11 @@ def write_index(
 ) -> Path:
     """Write `index.html`: a row a person, session and condition with its page's name, those without a result first."""
     known = {row["subject"] for row in rows}
-    whole = [refusal for refusal in run.refusals if refusal.participant not in known]
-    for refusal in whole:
+    refused = [refusal for refusal in run.refusals if refusal.participant not in known]
+    for refusal in refused:
         who = {"light": "red", "subject": refusal.participant, "person": refusal.participant, "page": ""}
-        own = {"condition": refusal.condition or NONE, "why": refusal.reason}
-        rows.append({**who, **own, **dict.fromkeys(("cycles", "score", "noted"), NONE)})
+        details = {"condition": refusal.condition or NONE, "why": refusal.reason}
+        rows.append({**who, **details, **dict.fromkeys(("cycles", "score", "noted"), NONE)})
     rows = sorted(rows, key=lambda row: RANKS[row["light"]])
     cells = [tuple(row[key] for key in COLUMNS) for row in rows]
     table = words_table("people", "Participants of the run.", HEADINGS, cells)

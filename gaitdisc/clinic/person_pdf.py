@@ -36,11 +36,11 @@ def write_person_pdf(shown: Mapping[str, Any], path: Path) -> Path:
     return write_whole(path, sheets)
 
 
-def _as_json(one: object) -> Any:
+def _as_json(value: object) -> Any:
     """What the template reads of a word list, a table or a panel."""
-    if isinstance(one, PageWords):
-        return one.other
-    if isinstance(one, Table):
-        return {"columns": one.columns, "rows": one.rows, "caption": one.caption}
-    assert isinstance(one, Panel)
-    return {"title": one.title, "unit": one.unit, "note": one.note, "span": one.span, "alt": one.alt}
+    if isinstance(value, PageWords):
+        return value.other
+    if isinstance(value, Table):
+        return {"columns": value.columns, "rows": value.rows, "caption": value.caption}
+    assert isinstance(value, Panel)
+    return {"title": value.title, "unit": value.unit, "note": value.note, "span": value.span, "alt": value.alt}

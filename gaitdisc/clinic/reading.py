@@ -53,16 +53,16 @@ def read_beside(pooled: PooledCycles, reference: ClinicalReference | None) -> Cl
         group, words = like_published(reference.published, tuple(legs.values()), pooled.leg_m)
         profile, no_profile = find_profile(legs, (), group.bands)
         beside = (f"Published: {reference.title}.", words)
-        found = partial(reading, silent=NO_LEGS, no_index=NO_LEGS)
-        return found(profile=profile, no_profile=no_profile, bands=group.bands, beside=beside)
+        published = partial(reading, silent=NO_LEGS, no_index=NO_LEGS)
+        return published(profile=profile, no_profile=no_profile, bands=group.bands, beside=beside)
     controls = reference.of(pooled.condition) if reference else ()
     why = "" if controls else NO_REFERENCE
     if reference is not None and not controls:
         there = ", ".join(map(repr, reference.legs))
         why = f"the reference has no controls in the condition {pooled.condition!r}; its conditions are {there}"
     why = why if legs else NO_CYCLE
-    own = tuple(legs.values())
-    like = like_controls(controls, own, pooled.leg_m, pooled.age_years)
+    person_legs = tuple(legs.values())
+    like = like_controls(controls, person_legs, pooled.leg_m, pooled.age_years)
     profile, no_profile = (None, why) if why else find_profile(legs, like.group)
     numbers, silent = ((), why) if why else outstanding(legs, like.curves, None, like.values, profile)
     index, no_index = ({}, why) if why else deviation_index(legs, controls)
@@ -73,7 +73,7 @@ def read_beside(pooled: PooledCycles, reference: ClinicalReference | None) -> Cl
         no_profile=no_profile,
         deviation_index=index,
         no_index=no_index,
-        bands=bands(like.curves, mean_speed(own)),
+        bands=bands(like.curves, mean_speed(person_legs)),
         spatiotemporal=spatiotemporal_limits(like.values),
         beside=() if why else like.words,
         nearest=like.nearest,
@@ -97,10 +97,10 @@ def multiple_correlation(curves: NDArray[np.float64]) -> float:
     if cycles < 2:
         return float("nan")
     within = float(((curves - curves.mean(axis=0)) ** 2).sum()) / (points * (cycles - 1))
-    whole = float(((curves - curves.mean()) ** 2).sum()) / (points * cycles - 1)
-    if whole == 0.0 or within > whole:
+    total = float(((curves - curves.mean()) ** 2).sum()) / (points * cycles - 1)
+    if total == 0.0 or within > total:
         return float("nan")
-    return float(np.sqrt(1.0 - within / whole))
+    return float(np.sqrt(1.0 - within / total))
 
 
 def choose_light(pooled: PooledCycles, legs: dict[str, LegCurves]) -> tuple[str, tuple[str, ...]]:
@@ -114,28 +114,28 @@ def choose_light(pooled: PooledCycles, legs: dict[str, LegCurves]) -> tuple[str,
         words = f" ({gone} {'trial is' if gone == 1 else 'trials are'} left out)" if gone else ""
         reasons.append(f"few cycles: {', '.join(few)}{words}; record until each leg has {FEW} cycles")
     lost: dict[str, list[Finding]] = {}
-    for one in pooled.findings:
-        if one.severity == "refused" and one.channel:
-            lost.setdefault(one.channel, []).append(one)
+    for finding in pooled.findings:
+        if finding.severity == "refused" and finding.channel:
+            lost.setdefault(finding.channel, []).append(finding)
     # lost in every trial: never plugged in, which is no fault
-    partly = [name for name, own in lost.items() if len({one.file for one in own}) < pooled.trials]
+    partly = [name for name, findings in lost.items() if len({finding.file for finding in findings}) < pooled.trials]
     if loose := [name for name in partly if name.startswith("emg_")]:
         muscles = "; ".join(label(name).removeprefix("EMG ") for name in loose)
         reasons.append(f"EMG is missing in some trials ({muscles}): fasten the electrodes")
-    others = [(name, own[0]) for name, own in lost.items() if not name.startswith("emg_")]
+    others = [(name, findings[0]) for name, findings in lost.items() if not name.startswith("emg_")]
     reasons += [f"{label(name)} is left out: {_remedy(first)}" for name, first in others]
-    kinds = {one.kind: one for one in reversed(pooled.findings) if one.severity == "warning"}
-    reasons += [f"{kind}: {_remedy(one)}" for kind, one in reversed(kinds.items())]
+    kinds = {finding.kind: finding for finding in reversed(pooled.findings) if finding.severity == "warning"}
+    reasons += [f"{kind}: {_remedy(finding)}" for kind, finding in reversed(kinds.items())]
     return ("amber" if reasons else "green"), tuple(reasons)
 
 
-def _remedy(one: Finding) -> str:
+def _remedy(finding: Finding) -> str:
     """What to do: what a finding ends with, or where to look; of angles that are not there, why."""
-    if one.spoils.startswith("angles from "):
-        return one.what
-    _, there, remedy = one.spoils.rpartition("; ")
-    where = f" of {label(one.channel)}" if one.channel else ""
-    return remedy if there else f"look at the curves{where} before you use {one.spoils or 'them'}"
+    if finding.spoils.startswith("angles from "):
+        return finding.what
+    _, there, remedy = finding.spoils.rpartition("; ")
+    where = f" of {label(finding.channel)}" if finding.channel else ""
+    return remedy if there else f"look at the curves{where} before you use {finding.spoils or 'them'}"
 
 
 def variable_score(curves: NDArray[np.float64], mean: NDArray[np.float64]) -> NDArray[np.float64]:
@@ -180,25 +180,25 @@ def find_profile(
     means = {name: known[name].mean for name in PROFILE}
     controls = _own_scores(reference)
     people = max(known[name].people for name in PROFILE)
-    variables, whole = {}, {}
+    variables, leg_scores = {}, {}
     for side, leg in legs.items():
         if absent[side]:
             continue
-        each = {name: variable_score(leg.cycles[name], means[name]) for name in PROFILE}
+        cycle_scores = {name: variable_score(leg.cycles[name], means[name]) for name in PROFILE}
         for name in PROFILE:
             value = float(variable_score(leg.mean(name), means[name]))
-            variables[name, side] = _score(value, each[name], controls.get(name, ()), people)
-        whole_cycles = len({len(scores) for scores in each.values()}) == 1  # else cycles would not be the same
-        single = np.sqrt(np.mean(np.array([*each.values()]) ** 2, axis=0)) if whole_cycles else np.array([])
-        whole[side] = _score(
+            variables[name, side] = _score(value, cycle_scores[name], controls.get(name, ()), people)
+        whole_cycles = len({len(scores) for scores in cycle_scores.values()}) == 1  # else cycles would not be the same
+        single = np.sqrt(np.mean(np.array([*cycle_scores.values()]) ** 2, axis=0)) if whole_cycles else np.array([])
+        leg_scores[side] = _score(
             profile_score([variables[n, side].value for n in PROFILE]), single, controls.get("leg", ()), people
         )
     both = None
-    if set(whole) == set(FEET):
+    if set(leg_scores) == set(FEET):
         fifteen = [variables[n, "l"].value for n in PROFILE]
         fifteen += [variables[n, "r"].value for n in PROFILE if n not in PELVIS]
         both = _score(profile_score(fifteen), np.array([]), controls.get("both", ()), people)
-    return Profile(variables, whole, both), ""
+    return Profile(variables, leg_scores, both), ""
 
 
 def _score(value: float, cycles: NDArray[np.float64], controls: Sequence[float], people: int) -> Score:
@@ -210,23 +210,23 @@ def _score(value: float, cycles: NDArray[np.float64], controls: Sequence[float],
 
 def _own_scores(reference: Sequence[ReferenceLeg]) -> dict[str, list[float]]:
     """Scores of controls, each against all the others."""
-    found: dict[str, list[float]] = {}
-    whole = [leg for leg in reference if all(name in leg.curves for name in PROFILE)]
-    people = list(dict.fromkeys(leg.person for leg in whole))
+    scores: dict[str, list[float]] = {}
+    complete = [leg for leg in reference if all(name in leg.curves for name in PROFILE)]
+    people = list(dict.fromkeys(leg.person for leg in complete))
     if len(people) <= FEWEST:
         return {}
     for person in people:
-        others = bands([leg for leg in whole if leg.person != person])
-        own: dict[tuple[str, str], float] = {}
-        for leg in (one for one in whole if one.person == person):
+        others = bands([leg for leg in complete if leg.person != person])
+        variables: dict[tuple[str, str], float] = {}
+        for leg in (leg for leg in complete if leg.person == person):
             for name in PROFILE:
-                own[name, leg.side] = float(variable_score(leg.curves[name], others[name].mean))
-                found.setdefault(name, []).append(own[name, leg.side])
-            found.setdefault("leg", []).append(profile_score([own[name, leg.side] for name in PROFILE]))
-        if len(own) == 2 * len(PROFILE):
-            pelvis_once = [value for (name, side), value in own.items() if side == "l" or name not in PELVIS]
-            found.setdefault("both", []).append(profile_score(pelvis_once))
-    return found
+                variables[name, leg.side] = float(variable_score(leg.curves[name], others[name].mean))
+                scores.setdefault(name, []).append(variables[name, leg.side])
+            scores.setdefault("leg", []).append(profile_score([variables[name, leg.side] for name in PROFILE]))
+        if len(variables) == 2 * len(PROFILE):
+            pelvis_once = [value for (name, side), value in variables.items() if side == "l" or name not in PELVIS]
+            scores.setdefault("both", []).append(profile_score(pelvis_once))
+    return scores
 
 
 def deviation_index(legs: Mapping[str, LegCurves], reference: Sequence[ReferenceLeg]) -> tuple[dict[str, float], str]:
@@ -238,8 +238,8 @@ def deviation_index(legs: Mapping[str, LegCurves], reference: Sequence[Reference
 
     Source: Schwartz MH, Rozumalski A 2008, The Gait Deviation Index: a new comprehensive index of gait pathology.
     """
-    whole = [leg for leg in reference if all(name in leg.curves for name in PROFILE)]
-    people = len({leg.person for leg in whole})
+    complete = [leg for leg in reference if all(name in leg.curves for name in PROFILE)]
+    people = len({leg.person for leg in complete})
     if people < FEWEST_PEOPLE:
         return (
             {},
@@ -249,17 +249,17 @@ def deviation_index(legs: Mapping[str, LegCurves], reference: Sequence[Reference
     def vector_of(curves: Mapping[str, NDArray[np.float64]]) -> NDArray[np.float64]:
         return np.concatenate([curves[name][::2] for name in PROFILE])
 
-    controls = np.array([vector_of(leg.curves) for leg in whole])
+    controls = np.array([vector_of(leg.curves) for leg in complete])
     features = np.linalg.svd(controls, full_matrices=False)[2][:FEATURES]
     middle = (controls @ features.T).mean(axis=0)
-    own = np.log(np.linalg.norm(controls @ features.T - middle, axis=1))
-    found = {}
+    distances = np.log(np.linalg.norm(controls @ features.T - middle, axis=1))
+    index = {}
     for side, leg in legs.items():
         if all(name in leg.cycles for name in PROFILE):
             vector = vector_of({name: leg.mean(name) for name in PROFILE})
             raw = np.log(np.linalg.norm(vector @ features.T - middle))
-            found[side] = float(100 - 10 * (raw - own.mean()) / own.std(ddof=1))
-    return found, "" if found else "no leg has all nine curves that the index requires"
+            index[side] = float(100 - 10 * (raw - distances.mean()) / distances.std(ddof=1))
+    return index, "" if index else "no leg has all nine curves that the index requires"
 
 
 def contrast(first: ClinicalReading, second: ClinicalReading) -> Contrast:
@@ -271,13 +271,13 @@ def contrast(first: ClinicalReading, second: ClinicalReading) -> Contrast:
         if side not in first.legs or side not in second.legs:
             untested[side] = "one of the two walks has no cycle of this leg."
             continue
-        counts = [one.legs[side].count for one in (first, second)]
+        counts = [reading.legs[side].count for reading in (first, second)]
         if min(counts) < FEWEST_CYCLES:
             untested[side] = f"a test needs {FEWEST_CYCLES} cycles of each walk; there are {counts[0]} and {counts[1]}."
             continue
         try:
-            found, tested[side] = _spans(first.legs[side], second.legs[side])
-            spans += found
+            leg_spans, tested[side] = _spans(first.legs[side], second.legs[side])
+            spans += leg_spans
         except ComparisonError as error:
             untested[side] = str(error)
     return Contrast(first, second, tuple(spans), untested, tested)
@@ -298,12 +298,12 @@ def _spans(first: LegCurves, second: LegCurves) -> tuple[list[DifferingSpan], in
         )
     before, after = (np.stack([leg.cycles[name] for name in names], axis=2) for leg in (first, second))
     tested = two_sample_test(before, after, PLAN)
-    apart = after.mean(axis=0) - before.mean(axis=0)
-    found = []
+    difference = after.mean(axis=0) - before.mean(axis=0)
+    spans = []
     for cluster in tested.clusters:
-        own = apart[cluster.first : cluster.last + 1, cluster.channel]
-        largest = float(own[np.argmax(np.abs(own))])
+        cluster_difference = difference[cluster.first : cluster.last + 1, cluster.channel]
+        largest = float(cluster_difference[np.argmax(np.abs(cluster_difference))])
         name = names[cluster.channel]
         matters = abs(largest) >= MATTERS[BY_NAME[name].unit]
-        found.append(DifferingSpan(name, first.side, cluster.first, cluster.last, largest, cluster.p, matters=matters))
-    return found, len(names)
+        spans.append(DifferingSpan(name, first.side, cluster.first, cluster.last, largest, cluster.p, matters=matters))
+    return spans, len(names)

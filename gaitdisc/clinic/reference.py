@@ -29,38 +29,38 @@ def make_reference(cycles: Sequence[PooledCycles], title: str, provenance: Prove
     seen: set[tuple[str, str]] = set()
     legs: dict[str, list[ReferenceLeg]] = {}
     for pooled in cycles:
-        found = make_legs(pooled)
-        if not found or (pooled.subject, pooled.condition) in seen:
+        person_legs = make_legs(pooled)
+        if not person_legs or (pooled.subject, pooled.condition) in seen:
             continue
         seen.add((pooled.subject, pooled.condition))
         number = numbers.setdefault(pooled.subject, len(numbers) + 1)
-        for leg in found.values():
+        for leg in person_legs.values():
             curves = {name: leg.mean(name) for name in leg.cycles}
-            values = {name: float(each.mean()) for name, each in leg.values.items()}
-            own = (leg.count, leg.stance_percent, curves, values, pooled.leg_m, pooled.age_years)
-            legs.setdefault(pooled.condition, []).append(ReferenceLeg(number, leg.side, *own))
+            values = {name: float(cycle_values.mean()) for name, cycle_values in leg.values.items()}
+            fields = (leg.count, leg.stance_percent, curves, values, pooled.leg_m, pooled.age_years)
+            legs.setdefault(pooled.condition, []).append(ReferenceLeg(number, leg.side, *fields))
     if not legs:
         raise SchemaError(
             "a reference must have kept cycles of controls",
             f"found none in {len(cycles)} sessions and conditions",
             "Look at “Left out” on the page of the run.",
         )
-    kept = {word: tuple(own) for word, own in legs.items()}
+    by_condition = {word: tuple(group) for word, group in legs.items()}
     settings = {name: provenance.settings[name] for name in SETTINGS if name in provenance.settings}
-    return ClinicalReference(title, kept, settings, provenance.versions, provenance.created)
+    return ClinicalReference(title, by_condition, settings, provenance.versions, provenance.created)
 
 
 def bands(legs: Sequence[ReferenceLeg], speed: float | None = None) -> dict[str, Band]:
     """Mean and standard deviation of every variable that two people or more have, at a speed as limits are."""
-    found = {}
+    by_variable = {}
     for name in dict.fromkeys(name for leg in legs for name in leg.curves):
-        own = [leg for leg in legs if name in leg.curves]
-        people = len({leg.person for leg in own})
+        curve_legs = [leg for leg in legs if name in leg.curves]
+        people = len({leg.person for leg in curve_legs})
         if people >= 2:
-            sample = Sample(np.array([leg.curves[name] for leg in own]), people, known_speeds(own))
+            sample = Sample(np.array([leg.curves[name] for leg in curve_legs]), people, known_speeds(curve_legs))
             mean, sd, far = sample.spread(speed)
-            found[name] = Band(mean, sd * np.sqrt(1 + (far or 0.0)), people, at_speed=far is not None)
-    return found
+            by_variable[name] = Band(mean, sd * np.sqrt(1 + (far or 0.0)), people, at_speed=far is not None)
+    return by_variable
 
 
 def known_speeds(legs: Sequence[ReferenceLeg]) -> NDArray[np.float64] | None:
@@ -100,9 +100,9 @@ class Sample:
         if speed is not None and self.speeds is not None and follows:
             speeds = np.where(known.T, self.speeds, np.nan).T
             middle = mean_where_known(speeds)
-            own = speeds - middle
-            slope = mean_where_known(own * rest) / np.maximum(mean_where_known(own**2), np.finfo(float).tiny)
-            mean, rest = mean + slope * (speed - middle), rest - slope * own
+            offsets = speeds - middle
+            slope = mean_where_known(offsets * rest) / np.maximum(mean_where_known(offsets**2), np.finfo(float).tiny)
+            mean, rest = mean + slope * (speed - middle), rest - slope * offsets
         # degrees of freedom of the spread over legs
         legs = (count - 1) * (self.people - 1 - follows) / max(self.people - 1, 1)
         sd = np.sqrt(mean_where_known(rest**2) * count / np.where(legs > 0, legs, np.nan))
@@ -127,8 +127,8 @@ def limits_about(mean: float, sd: float, people: int, tests: int = 1, far: float
 
 def spatiotemporal_limits(legs: Sequence[ReferenceLeg]) -> Mapping[str, Limits]:
     """Mean and spread of each spatiotemporal value over the legs of a reference."""
-    found = {}
+    norms = {}
     for name in dict.fromkeys(name for leg in legs for name in leg.values):
-        own = [leg for leg in legs if name in leg.values]
-        found[name] = Sample(np.array([leg.values[name] for leg in own]), len({leg.person for leg in own})).limits()
-    return found
+        known = [leg for leg in legs if name in leg.values]
+        norms[name] = Sample(np.array([leg.values[name] for leg in known]), len({leg.person for leg in known})).limits()
+    return norms

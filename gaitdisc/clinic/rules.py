@@ -107,27 +107,27 @@ def rules() -> tuple[Rule, ...]:
 
 def rules_in(data: Mapping[str, list[dict[str, object]]]) -> tuple[Rule, ...]:
     """Rules of a table, each checked."""
-    found = []
+    checked_rules = []
     for entry in data["rules"]:
         words = {key: str(entry.get(key, "")) for key in RULE_WORDS}
         least = entry.get("least")
         known = words["variable"] in BY_NAME and words["part"] in PARTS and words["take"] in TAKES
-        said = words["name"] and (words["less"] or words["more"]) and known != (words["value"] in SPATIOTEMPORAL)
-        if not said or not isinstance(least, float) or least <= 0:
+        complete = words["name"] and (words["less"] or words["more"]) and known != (words["value"] in SPATIOTEMPORAL)
+        if not complete or not isinstance(least, float) or least <= 0:
             raise SchemaError(
                 "a rule must have name, least (above 0), less or more, and either value or variable, part and take",
                 f"found {dict(entry)}",
                 "Correct rules.toml.",
             )
-        found.append(Rule(least=least, **words))
-    names = [rule.name for rule in found]
+        checked_rules.append(Rule(least=least, **words))
+    names = [rule.name for rule in checked_rules]
     if len(set(names)) < len(names):
         raise SchemaError("each rule must have its own name", f"the names are {names}", "Rename one rule.")
-    return tuple(found)
+    return tuple(checked_rules)
 
 
 def _of_value(value: str) -> tuple[str, int]:
-    return next(found for ending, found in SPATIOTEMPORAL_UNITS.items() if value.endswith(f"_{ending}"))
+    return next(unit for ending, unit in SPATIOTEMPORAL_UNITS.items() if value.endswith(f"_{ending}"))
 
 
 def outstanding(
@@ -154,24 +154,24 @@ def outstanding(
     for rule, sample in samples:
         for leg in legs.values():
             curves = {name: leg.mean(name) for name in leg.cycles if name == rule.variable}
-            own = {name: float(each.mean()) for name, each in leg.values.items() if name == rule.value}
-            if (number := rule.number(curves, own, leg.stance_percent)) is not None:
+            values = {name: float(cycles.mean()) for name, cycles in leg.values.items() if name == rule.value}
+            if (number := rule.number(curves, values, leg.stance_percent)) is not None:
                 numbers.append((rule, sample, leg, number))
     two = [rule for rule, *_ in numbers if rule.value != SPEED]
-    sides = [(rule, sample) for rule, own in known if two.count(rule) == 2 and (sample := sample_differences(own))]
+    sides = [(rule, sample) for rule, pairs in known if two.count(rule) == 2 and (sample := sample_differences(pairs))]
     score = profile.both if profile is not None and profile.both and np.isfinite(profile.both.reference_sd) else None
-    tests, found = len(numbers) + len(sides) + (score is not None), []
+    tests, notes = len(numbers) + len(sides) + (score is not None), []
     for rule, sample, leg, number in numbers:
         own_speed = float(leg.values[SPEED].mean()) if SPEED in leg.values and rule.value != SPEED else None
         count = len(leg.cycles[rule.variable]) if rule.variable else len(leg.values[rule.value])
-        found.append(_note(rule, leg.side, number, sample.limits(tests, own_speed), count))
+        notes.append(_note(rule, leg.side, number, sample.limits(tests, own_speed), count))
     for rule, sample in sides:
-        found.append(_note_sides(rule, [one for one in found if one.rule == rule.name], sample.limits(tests)))
+        notes.append(_note_sides(rule, [note for note in notes if note.rule == rule.name], sample.limits(tests)))
     if score is not None:
         limits = limits_about(score.reference_mean, score.reference_sd, score.people, tests)
         rule = Rule(SCORE, "", value="profile_deg", part="", take="", least=SCORE_LEAST, less="", more=SCORE_WORDS)
-        found.append(_note(rule, "", score.value, limits, min(leg.count for leg in legs.values())))
-    return tuple(sorted(found, key=lambda one: (-one.tier, -one.excess))), ""
+        notes.append(_note(rule, "", score.value, limits, min(leg.count for leg in legs.values())))
+    return tuple(sorted(notes, key=lambda note: (-note.tier, -note.excess))), ""
 
 
 def _note(rule: Rule, side: str, number: float, limits: Limits, count: int) -> Noted:
@@ -191,18 +191,18 @@ def _note(rule: Rule, side: str, number: float, limits: Limits, count: int) -> N
 
 def _note_sides(rule: Rule, both: Sequence[Noted], limits: Limits) -> Noted:
     """Leg farther from the reference less the other: beyond the limits, where that leg's own value is not."""
-    near, far = sorted(both, key=lambda one: abs(one.value - one.limits.mean))
-    found = _note(rule, far.side, far.value - near.value, limits, min(near.cycles, far.cycles))
-    tier = 2 if found.tier == 2 > far.tier else 0
+    near, far = sorted(both, key=lambda note: abs(note.value - note.limits.mean))
+    note = _note(rule, far.side, far.value - near.value, limits, min(near.cycles, far.cycles))
+    tier = 2 if note.tier == 2 > far.tier else 0
     # which of both is the unusual one is not said where neither is by itself
     words = (far.words or rule.name) if tier else ""
-    return replace(found, words=words, tier=tier, other=near.side)
+    return replace(note, words=words, tier=tier, other=near.side)
 
 
 def known_numbers(rule: Rule, reference: Sequence[ReferenceLeg]) -> list[tuple[ReferenceLeg, float]]:
     """Legs of the reference that have the rule's number, each with it."""
-    found = ((leg, rule.number(leg.curves, leg.values, leg.stance_percent)) for leg in reference)
-    return [(leg, number) for leg, number in found if number is not None]
+    numbers = ((leg, rule.number(leg.curves, leg.values, leg.stance_percent)) for leg in reference)
+    return [(leg, number) for leg, number in numbers if number is not None]
 
 
 def sample_differences(known: Sequence[tuple[ReferenceLeg, float]]) -> Sample | None:
@@ -210,8 +210,8 @@ def sample_differences(known: Sequence[tuple[ReferenceLeg, float]]) -> Sample | 
     people: dict[int, list[float]] = {}
     for leg, number in known:
         people.setdefault(leg.person, []).append(number)
-    found = np.array([own[0] - own[1] for own in people.values() if len(own) == 2])
-    return Sample(np.concatenate([found, -found]), len(found)) if len(found) >= FEWEST else None
+    differences = np.array([pair[0] - pair[1] for pair in people.values() if len(pair) == 2])
+    return Sample(np.concatenate([differences, -differences]), len(differences)) if len(differences) >= FEWEST else None
 
 
 def sample_legs(known: Sequence[tuple[ReferenceLeg, float]]) -> Sample | None:

@@ -38,17 +38,17 @@ def keep_reference(place: Path | None, run_folder: Path) -> None:
     """Copy a reference into a run, so that its pages are drawn again without it."""
     if place is None:
         return
-    own = run_folder / REFERENCE
+    folder = run_folder / REFERENCE
     source = place / FILE if place.is_dir() else place
-    if (own / FILE).is_file() and source.is_file() and file_sha256(source) == file_sha256(own / FILE):
+    if (folder / FILE).is_file() and source.is_file() and file_sha256(source) == file_sha256(folder / FILE):
         return
-    found = load_reference(place)
-    if found.published:
-        write_whole(own / PUBLISHED, (place / PUBLISHED if place.is_dir() else place).read_text(encoding="utf-8"))
-        remove_file(own / FILE)
+    reference = load_reference(place)
+    if reference.published:
+        write_whole(folder / PUBLISHED, (place / PUBLISHED if place.is_dir() else place).read_text(encoding="utf-8"))
+        remove_file(folder / FILE)
     else:
-        save_reference(found, own)
-        remove_file(own / PUBLISHED)
+        save_reference(reference, folder)
+        remove_file(folder / PUBLISHED)
 
 
 def load_kept_reference(run_folder: Path) -> ClinicalReference | None:
@@ -82,16 +82,16 @@ def write_people(
     rests_on = (" ".join(map(file_sha256, files)), shared, run.nominal, str(pages.pdf))
     rows: list[dict[str, str]] = []
     failed: list[Refusal] = []
-    for title, own in people.items():
+    for title, cycles in people.items():
         name = names[title]
-        said = (repr(words.get(own[0].subject)) for words in (house.affected, house.comments))
-        key = hash_content(own, *rests_on, *said)
-        kept = read_part(report, f"people-{name}", key)
-        if kept:
-            rows += kept
+        remarks = (repr(words.get(cycles[0].subject)) for words in (house.affected, house.comments))
+        key = hash_content(cycles, *rests_on, *remarks)
+        cached_rows = read_part(report, f"people-{name}", key)
+        if cached_rows:
+            rows += cached_rows
             continue
         try:
-            person = read_session(title, own, run.nominal, pages.reference)
+            person = read_session(title, cycles, run.nominal, pages.reference)
         except GaitdiscError as error:
             failed.append(Refusal(title, "", str(error)))
             continue
@@ -109,7 +109,7 @@ def write_people(
             failed.append(Refusal(title, "", f"the page could not be written: {error}"))
     # where the folder lies may name somebody
     for place in [str(run_folder.absolute()), *([str(run_folder)] if len(run_folder.parts) > 1 else [])]:
-        failed = [replace(one, reason=one.reason.replace(place, "run")) for one in failed]
+        failed = [replace(refusal, reason=refusal.reason.replace(place, "run")) for refusal in failed]
     run = replace(run, refusals=(*run.refusals, *failed))
     return write_index(run, rows, pages.reference, report, say)
 
@@ -123,31 +123,31 @@ def write_person(
         both = before_and_after(run, pages.reference, person, words)
         return pages.write(both, file_names([both.title])[both.title])
     people = cycles_of_people(run)
-    own = {title: cycles for title, cycles in people.items() if cycles[0].subject == person}
-    if not own:
+    sessions = {title: cycles for title, cycles in people.items() if cycles[0].subject == person}
+    if not sessions:
         known = ", ".join(dict.fromkeys(cycles[0].subject for cycles in people.values())) or "nobody"
         raise SchemaError("the person must be in the run", f"{person!r} is not", f"Name one of: {known}.")
     names = file_names(list(people))
-    found = []
-    for title, cycles in own.items():
-        found += pages.write(read_session(title, cycles, run.nominal, pages.reference), names[title])
-    return found
+    paths = []
+    for title, cycles in sessions.items():
+        paths += pages.write(read_session(title, cycles, run.nominal, pages.reference), names[title])
+    return paths
 
 
 def cycles_of_people(run: StudyRun) -> dict[str, list[PooledCycles]]:
     """Cycles of every person and session by its title, in the order of the study."""
-    found: dict[str, list[PooledCycles]] = {}
+    people: dict[str, list[PooledCycles]] = {}
     for pooled in run.of(CYCLES):
-        found.setdefault(f"{pooled.subject} {pooled.session}".strip(), []).append(pooled)
-    return found
+        people.setdefault(f"{pooled.subject} {pooled.session}".strip(), []).append(pooled)
+    return people
 
 
 def read_session(
     title: str, cycles: Sequence[PooledCycles], nominal: str, reference: ClinicalReference | None
 ) -> PersonSession:
     """A session read: kept before refused, then the study's first condition, which each other one is compared with."""
-    ordered = sorted(cycles, key=lambda one: (not len(one.kept), one.condition != nominal))
-    main, *others = readings = tuple(read_beside(one, reference) for one in ordered)
+    ordered = sorted(cycles, key=lambda pooled: (not len(pooled.kept), pooled.condition != nominal))
+    main, *others = readings = tuple(read_beside(pooled, reference) for pooled in ordered)
     contrasts = tuple(contrast(main, other) for other in others if main.legs and other.legs)
     return PersonSession(title, readings, contrasts)
 
@@ -156,22 +156,22 @@ def before_and_after(
     run: StudyRun, reference: ClinicalReference | None, person: str, words: Sequence[str]
 ) -> PersonSession:
     """A person after and before, by the words of two sessions or conditions, of one condition or of one session."""
-    cycles = [one for one in run.of(CYCLES) if one.subject == person]
-    ordered = sorted(cycles, key=lambda one: one.condition != run.nominal)
-    own = [one for one in (read_beside(each, reference) for each in ordered) if one.legs]
-    if not own:
+    cycles = [pooled for pooled in run.of(CYCLES) if pooled.subject == person]
+    ordered = sorted(cycles, key=lambda pooled: pooled.condition != run.nominal)
+    walks = [walk for walk in (read_beside(pooled, reference) for pooled in ordered) if walk.legs]
+    if not walks:
         people = ", ".join(dict.fromkeys(pooled.subject for pooled in run.of(CYCLES)))
         raise SchemaError(
             "the person must have kept cycles in the run", f"{person!r} has none", f"Choose one of: {people}."
         )
-    first, second = ([one for one in own if word in (one.pooled.session, one.pooled.condition)] for word in words)
+    first, second = ([walk for walk in walks if word in (walk.pooled.session, walk.pooled.condition)] for word in words)
     pairs = [
         (a, b)
         for a, b in itertools.product(first, second)
         if (a.pooled.condition == b.pooled.condition) != (a.pooled.session == b.pooled.session)
     ]
     if not pairs:
-        there = ", ".join(one.pooled.where for one in own)
+        there = ", ".join(walk.pooled.where for walk in walks)
         raise SchemaError(
             f"{person} must have kept cycles of {words[0]!r} and {words[1]!r} in one condition or in one session",
             f"found {there}",

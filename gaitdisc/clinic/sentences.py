@@ -30,23 +30,23 @@ MOST_SPANS = 6
 def write_noted(noted: Sequence[Noted], tier: int, say: Callable[[str], str] = str) -> list[str]:
     """One sentence for all that says one thing, both legs in one, at its highest tier; at most six, farthest first."""
     together: dict[str, list[Noted]] = {}
-    for one in sorted(noted, key=lambda one: (-one.tier, bool(one.other))):  # a leg's own value before a difference
-        together.setdefault(one.group or one.rule, []).append(one)
-    return [_write_note(own, say) for own in together.values() if own[0].tier == tier][:MOST]
+    for note in sorted(noted, key=lambda note: (-note.tier, bool(note.other))):  # a leg's own value before a difference
+        together.setdefault(note.group or note.rule, []).append(note)
+    return [_write_note(notes, say) for notes in together.values() if notes[0].tier == tier][:MOST]
 
 
-def _write_note(own: Sequence[Noted], say: Callable[[str], str]) -> str:
+def _write_note(notes: Sequence[Noted], say: Callable[[str], str]) -> str:
     """Value of the farthest rule beside its limits; what else says the same after it."""
     by_rule: dict[tuple[str, bool], list[Noted]] = {}
-    for one in own:
-        by_rule.setdefault((one.words, bool(one.other)), []).append(one)
-    first, limits = own[0], own[0].limits
+    for note in notes:
+        by_rule.setdefault((note.words, bool(note.other)), []).append(note)
+    first, limits = notes[0], notes[0].limits
     unit, (low, high) = unit_text(first.unit), (limits.low, limits.high) if first.tier == 2 else limits.band
     low, high, mean = (number(value, first.digits) for value in (low, high, limits.mean))
     sd, word = number(limits.sd, max(first.digits, 1)), say("limits") if first.tier == 2 else "2 sd:"
     parts, last = [], ""
-    for (words, _), each in by_rule.items():
-        parts.append(("" if words == last else f"{say(words)}: ") + _each(each, first.tier, say))
+    for (words, _), rule_notes in by_rule.items():
+        parts.append(("" if words == last else f"{say(words)}: ") + _each(rule_notes, first.tier, say))
         last = words
     text = (
         f"{parts[0]}; {word} {low} {say('to')} {high} {unit}, "
@@ -56,18 +56,18 @@ def _write_note(own: Sequence[Noted], say: Callable[[str], str]) -> str:
     return f"{text[0].upper()}{text[1:]}{more}."
 
 
-def _each(own: Sequence[Noted], tier: int, say: Callable[[str], str]) -> str:
-    found = []
-    for one in sorted(own, key=lambda one: one.side):
-        cycles = f"{one.cycles} {say('cycle' if one.cycles == 1 else 'cycles')}"
-        less = f", {MARKS[one.tier]}" if one.tier < tier else ""
-        value = f"{number(abs(one.value) if one.other else one.value, one.digits)} {unit_text(one.unit)}"
-        if one.other:  # words of a rule say which way
-            way = "apart from" if one.words != one.rule else "more than" if one.value > 0 else "less than"
-            value += f" {say(way)} {say(SIDE_WORDS[one.other])}"
-            cycles += f"; {say('neither leg stands out by itself')}" if one.words == one.rule else ""
-        found.append(f"{say(SIDE_WORDS[one.side])} {value} ({cycles}{less})".strip())
-    return ", ".join(found)
+def _each(notes: Sequence[Noted], tier: int, say: Callable[[str], str]) -> str:
+    texts = []
+    for note in sorted(notes, key=lambda note: note.side):
+        cycles = f"{note.cycles} {say('cycle' if note.cycles == 1 else 'cycles')}"
+        less = f", {MARKS[note.tier]}" if note.tier < tier else ""
+        value = f"{number(abs(note.value) if note.other else note.value, note.digits)} {unit_text(note.unit)}"
+        if note.other:  # words of a rule say which way
+            way = "apart from" if note.words != note.rule else "more than" if note.value > 0 else "less than"
+            value += f" {say(way)} {say(SIDE_WORDS[note.other])}"
+            cycles += f"; {say('neither leg stands out by itself')}" if note.words == note.rule else ""
+        texts.append(f"{say(SIDE_WORDS[note.side])} {value} ({cycles}{less})".strip())
+    return ", ".join(texts)
 
 
 def outstanding_sentences(reading: ClinicalReading, say: Callable[[str], str] = str) -> dict[str, list[str]]:
@@ -75,10 +75,10 @@ def outstanding_sentences(reading: ClinicalReading, say: Callable[[str], str] = 
     if reading.silent:
         return {"": [say("No comparison with controls: {}.").format(reading.silent)]}
     tiers = {f"{MARKS[tier]} {say(words)}": write_noted(reading.noted, tier, say) for tier, words in TIERS.items()}
-    found = {words: sentences for words, sentences in tiers.items() if sentences}
+    tier_sentences = {words: sentences for words, sentences in tiers.items() if sentences}
     rest = []
-    enough = sum(one.cycles >= FEW for one in reading.numbers)
-    if enough and not found:
+    enough = sum(note.cycles >= FEW for note in reading.numbers)
+    if enough and not tier_sentences:
         rest.append(say("None of {} values lies outside 2 standard deviations of the reference.").format(enough))
     few = [f"{leg.count} {say(SIDE_WORDS[side])}" for side, leg in reading.legs.items() if leg.count < FEW]
     if few:
@@ -87,7 +87,7 @@ def outstanding_sentences(reading: ClinicalReading, say: Callable[[str], str] = 
     if people < MANY:
         which = f"{people}, {say(NEAREST[reading.nearest])}" if reading.nearest else people
         rest.append(say("With few controls ({}) the 95 % limits are wide: differences may be missed.").format(which))
-    return {**found, **({"": rest} if rest else {})}
+    return {**tier_sentences, **({"": rest} if rest else {})}
 
 
 def laboratory_sentences(person: PersonSession, say: PageWords = ENGLISH) -> list[str]:
@@ -122,33 +122,33 @@ def score_words(score: Score) -> str:
     if score.cycles > 1 and np.isfinite(score.low):
         parts.append(f"{score.cycles} cycles {number(score.low, 1)} to {number(score.high, 1)}")
     if np.isfinite(score.reference_mean):
-        own = f"{number(score.reference_mean, 1)} ± {number(score.reference_sd, 1)}"
-        parts.append(f"reference {own}, {score.people} people")
+        reference = f"{number(score.reference_mean, 1)} ± {number(score.reference_sd, 1)}"
+        parts.append(f"reference {reference}, {score.people} people")
     return f"{number(score.value, 1)} deg" + (f" ({'; '.join(parts)})" if parts else "")
 
 
 def score_sentences(reading: ClinicalReading) -> list[str]:
     """Gait profile score and gait deviation index and what they mean, or why there is none."""
-    found = []
+    sentences = []
     if reading.profile is None:
-        found.append(f"No gait profile score: {reading.no_profile}.")
+        sentences.append(f"No gait profile score: {reading.no_profile}.")
     else:
-        each = [f"{SIDE_WORDS[side]} {score_words(score)}" for side, score in reading.profile.legs.items()]
+        scores = [f"{SIDE_WORDS[side]} {score_words(score)}" for side, score in reading.profile.legs.items()]
         both = reading.profile.both
         means = f" {_meaning(both)}" if both and np.isfinite(both.reference_sd) else ""
-        found.append(
-            f"Gait profile score: {'; '.join([*([f'both {score_words(both)}'] if both else []), *each])}.{means}"
+        sentences.append(
+            f"Gait profile score: {'; '.join([*([f'both {score_words(both)}'] if both else []), *scores])}.{means}"
         )
     if reading.deviation_index:
-        each = [f"{SIDE_WORDS[side]} {number(value, 0)}" for side, value in reading.deviation_index.items()]
+        scores = [f"{SIDE_WORDS[side]} {number(value, 0)}" for side, value in reading.deviation_index.items()]
         far = max(0.0, (100 - min(reading.deviation_index.values())) / 10)
-        found.append(
-            f"Gait deviation index: {', '.join(each)} (controls 100 ± 10). The lowest value lies {number(far, 1)} "
+        sentences.append(
+            f"Gait deviation index: {', '.join(scores)} (controls 100 ± 10). The lowest value lies {number(far, 1)} "
             "standard deviations of the controls below their mean."
         )
     else:
-        found.append(f"No gait deviation index: {reading.no_index}.")
-    return found
+        sentences.append(f"No gait deviation index: {reading.no_index}.")
+    return sentences
 
 
 def _meaning(score: Score) -> str:
@@ -179,27 +179,27 @@ def contrast_heading(contrast: Contrast, say: Callable[[str], str] = str) -> str
 def contrast_sentences(contrast: Contrast) -> list[str]:
     """Where two sets of cycles differ and by how much; the largest first, and what was not tested."""
     first, second = contrast.names
-    found = [f"{SIDE_WORDS[side].capitalize()}: not tested; {why}" for side, why in contrast.untested.items()]
-    spans = sorted((one for one in contrast.spans if one.matters), key=lambda one: -abs(one.difference))
-    found += [_span(one, contrast) for one in spans[:MOST_SPANS]]
+    sentences = [f"{SIDE_WORDS[side].capitalize()}: not tested; {why}" for side, why in contrast.untested.items()]
+    spans = sorted((span for span in contrast.spans if span.matters), key=lambda span: -abs(span.difference))
+    sentences += [_span(span, contrast) for span in spans[:MOST_SPANS]]
     small = len(contrast.spans) - len(spans)
     if contrast.tested and not spans:
         sides = " and ".join(SIDE_WORDS[side] for side in contrast.tested)
-        found.append(
+        sentences.append(
             f"{sides.capitalize()}: no part of the cycle differs by 5 deg or more between ‘{first}’ and ‘{second}’."
         )
     if small:
-        found.append(f"In {counted(small, 'part')} of the cycle the walks differ, but by less than 5 deg.")
-    return found
+        sentences.append(f"In {counted(small, 'part')} of the cycle the walks differ, but by less than 5 deg.")
+    return sentences
 
 
-def _span(one: DifferingSpan, contrast: Contrast) -> str:
-    variable = BY_NAME[one.variable]
-    counts = [reading.legs[one.side].count for reading in (contrast.first, contrast.second)]
-    more = "more" if one.difference > 0 else "less"
-    amount = f"{number(abs(one.difference), 0)} {variable.unit} {more} ({variable.up})"
+def _span(span: DifferingSpan, contrast: Contrast) -> str:
+    variable = BY_NAME[span.variable]
+    counts = [reading.legs[span.side].count for reading in (contrast.first, contrast.second)]
+    more = "more" if span.difference > 0 else "less"
+    amount = f"{number(abs(span.difference), 0)} {variable.unit} {more} ({variable.up})"
     return (
-        f"{variable.words.capitalize()}, {SIDE_WORDS[one.side]}: {amount} in"
-        f" ‘{contrast.names[1]}’ than in ‘{contrast.names[0]}’, at {one.first} to "
-        f"{one.last} % of the cycle; {p_words(one.p)}, {counts[0]} and {counts[1]} cycles."
+        f"{variable.words.capitalize()}, {SIDE_WORDS[span.side]}: {amount} in"
+        f" ‘{contrast.names[1]}’ than in ‘{contrast.names[0]}’, at {span.first} to "
+        f"{span.last} % of the cycle; {p_words(span.p)}, {counts[0]} and {counts[1]} cycles."
     )

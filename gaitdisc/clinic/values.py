@@ -25,23 +25,23 @@ def values_table(reading: ClinicalReading) -> Table:
     """Spatiotemporal values of both legs, of the reference, and their asymmetry."""
     rows, records = [], []
     for value, (words, unit, digits) in VALUES.items():
-        each = {side: leg.values[value] for side, leg in reading.legs.items() if value in leg.values}
-        if not each:
+        by_side = {side: leg.values[value] for side, leg in reading.legs.items() if value in leg.values}
+        if not by_side:
             continue
-        left, right = (float(each[side].mean()) if len(each.get(side, ())) >= FEW else np.nan for side in FEET)
+        left, right = (float(by_side[side].mean()) if len(by_side.get(side, ())) >= FEW else np.nan for side in FEET)
         uneven = 100 * (left - right) / ((left + right) / 2) if left * right > 0 else None
         limits = reading.spatiotemporal.get(value)
-        cells = [_cell(each.get(side), digits) for side in FEET]
-        own = number(limits.mean, digits) if limits else NONE
-        own += f" ± {limits.sd:.{digits}f}" if limits and np.isfinite(limits.sd) else ""  # one control has no spread
-        rows.append((f"{words} [{unit}]", *cells, own, NONE if uneven is None else f"{number(uneven, 0)} %"))
+        cells = [_cell(by_side.get(side), digits) for side in FEET]
+        norm = number(limits.mean, digits) if limits else NONE
+        norm += f" ± {limits.sd:.{digits}f}" if limits and np.isfinite(limits.sd) else ""  # one control has no spread
+        rows.append((f"{words} [{unit}]", *cells, norm, NONE if uneven is None else f"{number(uneven, 0)} %"))
         record = {"value": value, "unit": unit, "asymmetry_percent": uneven}
-        for side, values in each.items():
+        for side, values in by_side.items():
             record |= {f"mean_{side}": values.mean(), f"sd_{side}": _spread(values), f"n_{side}": len(values)}
         if limits:
             record |= {"reference_mean": limits.mean, "reference_sd": limits.sd, "reference_people": limits.people}
         records.append(record)
-    people = max((one.people for one in reading.spatiotemporal.values()), default=0)
+    people = max((limits.people for limits in reading.spatiotemporal.values()), default=0)
     known = f"reference mean ± standard deviation over legs (n = {people} people)" if people else "no reference"
     caption = (
         f"Mean ± standard deviation (number of cycles), if at least {FEW} cycles are kept; {known}; asymmetry: left "
@@ -62,20 +62,20 @@ def _spread(values: NDArray[np.float64]) -> float:
 def numbers_table(reading: ClinicalReading) -> Table:
     """Every value that a rule looks at beside its limits, those that stand out first."""
     rows, records = [], []
-    for one in reading.numbers:
-        unit, limits = unit_text(one.unit), one.limits
+    for note in reading.numbers:
+        unit, limits = unit_text(note.unit), note.limits
         rows.append((
-            one.rule, " less ".join(SIDE_WORDS[side] for side in (one.side, one.other) if side),
-            f"{number(one.value, one.digits)} {unit} ({one.cycles})",
-            f"{number(limits.low, one.digits)} to {number(limits.high, one.digits)}",
-            f"{number(limits.mean, one.digits)} ± {number(limits.sd, max(one.digits, 1))} ({limits.people})",
-            f"{MARKS[one.tier]} {one.words}".strip(),
+            note.rule, " less ".join(SIDE_WORDS[side] for side in (note.side, note.other) if side),
+            f"{number(note.value, note.digits)} {unit} ({note.cycles})",
+            f"{number(limits.low, note.digits)} to {number(limits.high, note.digits)}",
+            f"{number(limits.mean, note.digits)} ± {number(limits.sd, max(note.digits, 1))} ({limits.people})",
+            f"{MARKS[note.tier]} {note.words}".strip(),
         ))  # fmt: skip
         records.append({
-            "rule": one.rule, "words": one.words, "side": one.side, "less": one.other,
-            "value": one.value, "unit": one.unit, "low": limits.low, "high": limits.high,
+            "rule": note.rule, "words": note.words, "side": note.side, "less": note.other,
+            "value": note.value, "unit": note.unit, "low": limits.low, "high": limits.high,
             "reference_mean": limits.mean, "reference_sd": limits.sd,
-            "people": limits.people, "cycles": one.cycles, "tier": one.tier,
+            "people": limits.people, "cycles": note.cycles, "tier": note.tier,
         })  # fmt: skip
     caption = (
         f"All values that the rules use, n = {len(rows)} (standing out: {len(reading.noted)}). □: outside 2 standard "
@@ -95,9 +95,9 @@ def profile_table(reading: ClinicalReading) -> Table | None:
     for name in PROFILE:
         scores = {side: profile.variables[name, side] for side in FEET if (name, side) in profile.variables}
         some = next(iter(scores.values()))
-        own = f"{number(some.reference_mean, 1)} ± {number(some.reference_sd, 1)}"
+        norm = f"{number(some.reference_mean, 1)} ± {number(some.reference_sd, 1)}"
         cells = [number(scores[side].value, 1) if side in scores else NONE for side in FEET]
-        rows.append((BY_NAME[name].words, *cells, own if np.isfinite(some.reference_mean) else NONE))
+        rows.append((BY_NAME[name].words, *cells, norm if np.isfinite(some.reference_mean) else NONE))
         for side, score in scores.items():
             records.append({"variable": name, "side": side, "score_deg": score.value, "low": score.low,
                             "high": score.high, "cycles": score.cycles, "reference_mean": score.reference_mean,
@@ -112,15 +112,15 @@ def change_table(contrast: Contrast) -> Table:
     columns = ("value", *(f"{SIDE_WORDS[side]}, {name}" for side in FEET for name in contrast.names))
     rows = []
     for value, (words, unit, digits) in VALUES.items():
-        each = [one.legs[side].values.get(value) if side in one.legs else None for side in FEET for one in pair]
-        if any(own is not None for own in each):
-            rows.append((f"{words} [{unit}]", *(_cell(own, digits) for own in each)))
-    scores = [one.profile.legs.get(side) if one.profile else None for side in FEET for one in pair]
+        samples = [walk.legs[side].values.get(value) if side in walk.legs else None for side in FEET for walk in pair]
+        if any(values is not None for values in samples):
+            rows.append((f"{words} [{unit}]", *(_cell(values, digits) for values in samples)))
+    scores = [walk.profile.legs.get(side) if walk.profile else None for side in FEET for walk in pair]
     if any(scores):
-        rows.append(("gait profile score [deg]", *(number(one.value, 1) if one else NONE for one in scores)))
+        rows.append(("gait profile score [deg]", *(number(score.value, 1) if score else NONE for score in scores)))
     caption = f"Mean ± standard deviation (cycles). A change of a profile score by {SCORE_LEAST:g} deg or more matters."
-    whole = ("value", *(f"{SIDE_WORDS[side]}, {one.pooled.where}" for side in FEET for one in pair))
-    numbers = pd.DataFrame(rows, columns=pd.Index(whole))
+    headings = ("value", *(f"{SIDE_WORDS[side]}, {walk.pooled.where}" for side in FEET for walk in pair))
+    numbers = pd.DataFrame(rows, columns=pd.Index(headings))
     return Table("changes", caption, columns, tuple(rows), numbers)
 
 
@@ -138,7 +138,7 @@ def profile_svg(profile: Profile, say: Callable[[str], str] = str) -> str:
         return LEFT + value / top * (RIGHT - LEFT)
 
     alt = "; ".join(
-        f"{say(words)} {', '.join(f'{say(SIDE_WORDS[s])} {number(one.value, 1)}' for s, one in scores.items())}"
+        f"{say(words)} {', '.join(f'{say(SIDE_WORDS[s])} {number(score.value, 1)}' for s, score in scores.items())}"
         for words, scores in rows
     )
     parts = [f'<svg viewBox="0 0 {WIDTH} {HEIGHT}" role="img" aria-label="Scores [deg]: {escape(alt, quote=True)}">']

@@ -104,14 +104,14 @@ def best_detector(order: Sequence[str], strides: Mapping[str, int], seen: Mappin
 
 def find_exchanged_contacts(events: Mapping[str, Contacts], other: Mapping[str, Contacts]) -> dict[str, list[float]]:
     """Contacts of a foot [s] that lie where the file marks the other foot, and none of this one; sides with any."""
-    found = {}
-    for side, one in other.items():
-        own, across = (events[foot].time if foot in events else np.empty(0) for foot in (side, "rl".replace(side, "")))
+    exchanged = {}
+    for side, marks in other.items():
+        same, across = (events[foot].time if foot in events else np.empty(0) for foot in (side, "rl".replace(side, "")))
         near = {
-            time: [np.abs(times - time).min(initial=np.inf) for times in (across, own)] for time in one.time.tolist()
+            time: [np.abs(times - time).min(initial=np.inf) for times in (across, same)] for time in marks.time.tolist()
         }
-        found[side] = [time for time, (foot, this) in near.items() if foot <= OTHER_FOOT_S and this > MATCH_S]
-    return {side: times for side, times in found.items() if times}
+        exchanged[side] = [time for time, (foot, this) in near.items() if foot <= OTHER_FOOT_S and this > MATCH_S]
+    return {side: times for side, times in exchanged.items() if times}
 
 
 def events_on_plates(
@@ -138,9 +138,9 @@ def events_on_plates(
     return {**seen, "events": moved}, [Finding("warning", "events and plates", file, what, "phase; check the events")]
 
 
-def _lag_ms(seen: Mapping[str, Mapping[str, Contacts]], one: str, other: str, within_s: float) -> float | None:
+def _lag_ms(seen: Mapping[str, Mapping[str, Contacts]], detector: str, other: str, within_s: float) -> float | None:
     """Median of how much later another detector places the contacts that both see [ms]; None without any."""
-    first, second = seen.get(one, {}), seen.get(other, {})
+    first, second = seen.get(detector, {}), seen.get(other, {})
     apart = [first[side].compared(second[side], within_s).difference_s for side in first if side in second]
     both = np.concatenate([np.empty(0), *apart])
     return float(1e3 * np.median(both)) if len(both) else None
@@ -163,15 +163,15 @@ def find_contacts(
         attempts["markers"] = lambda: marker_contacts(markers, *walking_markers(markers, direction))
     if "kinematics" in trial.streams:
         attempts["angles"] = partial(angle_contacts, trial.stream("kinematics"))
-    found: dict[str, dict[str, Contacts]] = {}
+    contacts: dict[str, dict[str, Contacts]] = {}
     refused: dict[str, GaitdiscError | None] = {}
     for name, attempt in attempts.items():
         try:
-            found[name] = attempt()
-            refused |= {} if _stride_count(found[name]) else {name: None}
+            contacts[name] = attempt()
+            refused |= {} if _stride_count(contacts[name]) else {name: None}
         except (StrideError, ChannelError) as error:
             refused[name] = error
-    return found, refused
+    return contacts, refused
 
 
 def _offset(chosen: str, seen: Mapping[str, Mapping[str, Contacts]]) -> tuple[str, float | None]:
@@ -186,7 +186,7 @@ def _offset(chosen: str, seen: Mapping[str, Mapping[str, Contacts]]) -> tuple[st
 
 
 def _move(contacts: Mapping[str, Contacts], offset_s: float) -> dict[str, Contacts]:
-    return {side: replace(one, time=one.time + offset_s) for side, one in contacts.items()}
+    return {side: replace(landings, time=landings.time + offset_s) for side, landings in contacts.items()}
 
 
 def offset_finding(file: str, detector: str, offset_s: float | None, by: str, spoils: str) -> Finding:
@@ -237,7 +237,7 @@ def walking_markers(markers: Recording, direction: str = "") -> tuple[dict[str, 
 
 def _stride_count(contacts: Mapping[str, Contacts]) -> int:
     """Strides that both feet have; the other foot may lack one at an end."""
-    counts = [max(0, len(one) - 1) for one in contacts.values()]
+    counts = [max(0, len(landings) - 1) for landings in contacts.values()]
     return max(counts, default=0) if len(counts) == 2 and min(counts) > 0 else 0
 
 

@@ -56,13 +56,13 @@ class Inspection:
     refusal: str = ""
 
     def __repr__(self) -> str:
-        kept = "".join(f", {count} strides {side}" for side, (count, _) in self.strides.items())
-        return f"Inspection({self.name!r}: {self.light}{kept}, {len(self.findings)} findings)"
+        strides = "".join(f", {count} strides {side}" for side, (count, _) in self.strides.items())
+        return f"Inspection({self.name!r}: {self.light}{strides}, {len(self.findings)} findings)"
 
     def _repr_html_(self) -> str:
         rows = [("light", self.light), ("refused", self.refusal), *self.streams.items()]
         rows += [(f"strides {side}", f"{kept}, {dropped} dropped") for side, (kept, dropped) in self.strides.items()]
-        rows += [(one.severity, one.line()) for one in self.findings]
+        rows += [(finding.severity, finding.line()) for finding in self.findings]
         return as_html(f"Inspection of {self.name}", [row for row in rows if row[1]])
 
     @property
@@ -91,8 +91,8 @@ class Inspection:
                 channels = list(dict.fromkeys(finding.channel for finding in same if finding.channel))
                 where = ", ".join(part for part in (first.file, list_names(channels, SHOWN, "")) if part)
                 spoils = f"; affects {first.spoils}" if first.spoils else ""
-                said = f"{first.channel}: {first.what}" if first.channel else first.what
-                shown = f"{severity}: {where}: {kind}, {len(same)} times, the first {said}{spoils}"
+                example = f"{first.channel}: {first.what}" if first.channel else first.what
+                shown = f"{severity}: {where}: {kind}, {len(same)} times, the first {example}{spoils}"
             lines.append(shown)
         return lines
 
@@ -103,14 +103,14 @@ def inspect_study(study: Study) -> Iterator[Inspection]:
     with C3DReader() as reader:
         for participant in study.participants:
             reason = why_refused(study, participant)
-            seen = _list_unused(study, participant, reader)
+            inspections = _list_unused(study, participant, reader)
             if not_compared(study, participant) and not reason:
-                seen |= _pool(study, participant, reader)
+                inspections |= _pool(study, participant, reader)
             else:
                 walks = _process(study, participant, reader)
-                refusals = not reason and any(one.refusal for one in walks.values())
-                seen |= (_pool(study, participant, reader, instead=True) if refusals else {}) or walks
-            yield from (seen[place] for place in sorted(seen))
+                refusals = not reason and any(walk.refusal for walk in walks.values())
+                inspections |= (_pool(study, participant, reader, instead=True) if refusals else {}) or walks
+            yield from (inspections[place] for place in sorted(inspections))
             if reason and not participant.excluded:
                 refused.append(Inspection("", participant.id, refusal=reason))
     yield from refused
@@ -118,7 +118,7 @@ def inspect_study(study: Study) -> Iterator[Inspection]:
 
 def _process(study: Study, participant: Participant, reader: C3DReader) -> dict[int, Inspection]:
     """Trials that models are to be fitted to, each alone, by their place in the study."""
-    found = {}
+    inspections = {}
     walks = StudyWalks(study, participant, lambda planned: read_planned_trial(study, participant, planned, reader))
     for place, planned in enumerate(participant.trials):
         if not is_walk(study, planned):
@@ -127,12 +127,12 @@ def _process(study: Study, participant: Participant, reader: C3DReader) -> dict[
             read = walks.read_walk(planned)
             try:
                 walk = read.processed(study)
-                found[place] = _findings(read.trial, _name(planned), walk.strides, walk.findings)
+                inspections[place] = _findings(read.trial, _name(planned), walk.strides, walk.findings)
             except GaitdiscError as error:
-                found[place] = replace(inspect_trial(read.trial, _name(planned)), refusal=str(error))
+                inspections[place] = replace(inspect_trial(read.trial, _name(planned)), refusal=str(error))
         except GaitdiscError as error:
-            found[place] = Inspection(_name(planned), participant.id, planned.condition, refusal=str(error))
-    return found
+            inspections[place] = Inspection(_name(planned), participant.id, planned.condition, refusal=str(error))
+    return inspections
 
 
 def _pool(study: Study, participant: Participant, reader: C3DReader, instead: bool = False) -> dict[int, Inspection]:
@@ -151,31 +151,31 @@ def _pool(study: Study, participant: Participant, reader: C3DReader, instead: bo
     if instead and not can_pool(every):
         return {}
     places = {id(planned): place for place, planned in enumerate(participant.trials)}
-    found: dict[int, Inspection] = {}
-    for one, pooled in zip(sets, every, strict=True):
+    inspections: dict[int, Inspection] = {}
+    for trial_set, pooled in zip(sets, every, strict=True):
         reasons = {refusal.condition: refusal.reason for refusal in pooled.refusals}
-        for number, planned in enumerate(one.trials, 1):
-            called = participant.trial_name(planned)
-            where = called.removeprefix(participant.id).strip()
+        for number, planned in enumerate(trial_set.trials, 1):
+            name = participant.trial_name(planned)
+            where = name.removeprefix(participant.id).strip()
             files = [Path(file).name for file in planned.files]
-            own = [f for f in pooled.findings if f.file in (called, pooled.where) or any(n in f.file for n in files)]
-            reason = reasons.pop(where, "")
-            if reason:  # why may be what the reader saw: a unit, a side
-                own += [finding for finding in read_with.get(called, ()) if finding not in own]
+            findings = [f for f in pooled.findings if f.file in (name, pooled.where) or any(n in f.file for n in files)]
+            if reason := reasons.pop(where, ""):  # why may be what the reader saw: a unit, a side
+                findings += [finding for finding in read_with.get(name, ()) if finding not in findings]
             rows = pooled.cycles[pooled.cycles["trial"] == number]
             kept, lost = (rows[rows["kept"] == wanted]["side"].value_counts() for wanted in (True, False))
             counts = {side: (int(kept.get(side, 0)), int(lost.get(side, 0))) for side in sorted(set(rows["side"]))}
-            found[places[id(planned)]] = Inspection(
-                _name(planned), participant.id, where, streams.get(called, {}), counts, _sort(own), refusal=reason
+            inspections[places[id(planned)]] = Inspection(
+                _name(planned), participant.id, where, streams.get(name, {}), counts, _sort(findings), refusal=reason
             )
         for reason in reasons.values():
-            found[len(participant.trials) + len(found)] = Inspection("", participant.id, pooled.where, refusal=reason)
-    return found
+            place = len(participant.trials) + len(inspections)
+            inspections[place] = Inspection("", participant.id, pooled.where, refusal=reason)
+    return inspections
 
 
 def _list_unused(study: Study, participant: Participant, reader: C3DReader) -> dict[int, Inspection]:
     """Trials that are not used as walks, standing or of unknown condition, by their place in the study."""
-    found = {}
+    inspections = {}
     for place, planned in enumerate(participant.trials):
         if is_walk(study, planned):
             continue
@@ -183,11 +183,11 @@ def _list_unused(study: Study, participant: Participant, reader: C3DReader) -> d
         try:
             trial = read_planned_trial(study, participant, planned, reader)
         except GaitdiscError as error:
-            found[place] = Inspection(name, participant.id, planned.condition, refusal=str(error))
+            inspections[place] = Inspection(name, participant.id, planned.condition, refusal=str(error))
             continue
         stands = is_calibration(study, planned)
-        found[place] = _findings(trial, name, {}, trial.findings) if stands else inspect_trial(trial, name)
-    return found
+        inspections[place] = _findings(trial, name, {}, trial.findings) if stands else inspect_trial(trial, name)
+    return inspections
 
 
 def _name(planned: PlannedTrial) -> str:

@@ -95,8 +95,8 @@ def joint_record(trial: Trial, study: Study, joint: str, mass_kg: float | None) 
 
 def _moment(trial: Trial, name: str, mass_kg: float | None, time: Values) -> Values:
     """Moment of a joint in N m on a time base."""
-    own = trial.stream("moments").selected([f"{name}_moment"])
-    unit = own.channels[0].unit
+    recording = trial.stream("moments").selected([f"{name}_moment"])
+    unit = recording.channels[0].unit
     if unit == "N m/kg" and mass_kg is None:
         raise UnitError(
             "to convert moments to N m, the person's body mass [kg] must be stated",
@@ -104,8 +104,8 @@ def _moment(trial: Trial, name: str, mass_kg: float | None, time: Values) -> Val
             "Write mass_kg of the participant in the study file.",
         )
     factor = mass_kg if unit == "N m/kg" and mass_kg is not None else 1.0
-    smooth = low_pass(own, MOMENT_HZ) if own.rate_hz > 3 * MOMENT_HZ else own
-    values = interpolate(own.time, smooth.values, time)
+    smooth = low_pass(recording, MOMENT_HZ) if recording.rate_hz > 3 * MOMENT_HZ else recording
+    values = interpolate(recording.time, smooth.values, time)
     return values[:, 0] * factor
 
 
@@ -114,38 +114,38 @@ def _per_kg(trial: Trial, study: Study, joint: str, time: Values) -> Values:
     if "markers" not in trial.streams:
         return np.empty(0)
     markers, side, labels = trial.stream("markers"), study.strides.side, marker_labels(trial.stream("markers"))
-    known = max(read_marker_sets().values(), key=lambda one: len(one.names(labels)))
-    own, smooth = known.names(labels), low_pass(markers, ANGLE_HZ, study.filters.order, study.filters.gap_s)
-    seen = {
-        (key, on): marker_places(smooth, [own[name] for name in names]).mean(axis=1)
+    known = max(read_marker_sets().values(), key=lambda marker_set: len(marker_set.names(labels)))
+    label_of, smooth = known.names(labels), low_pass(markers, ANGLE_HZ, study.filters.order, study.filters.gap_s)
+    points = {
+        (key, on): marker_places(smooth, [label_of[name] for name in names]).mean(axis=1)
         for on in "lr"
         for key in ("heel", "toe", "ankle_lateral", "knee_lateral", "asis", "sacrum")
-        if (names := known.landmark(key, on, own))
+        if (names := known.landmark(key, on, label_of))
     }
-    left, right, sacrum = (seen.get(one) for one in (("asis", "l"), ("asis", "r"), ("sacrum", side)))
+    left, right, sacrum = (points.get(landmark) for landmark in (("asis", "l"), ("asis", "r"), ("sacrum", side)))
     if joint == "hip_flexion" and left is not None and right is not None and sacrum is not None:
-        seen[JOINT_AT[joint], side] = hip_of_spines(left, right, sacrum, side)
-    if not all((key, side) in seen for key in (JOINT_AT[joint], "heel", "toe")):
+        points[JOINT_AT[joint], side] = hip_of_spines(left, right, sacrum, side)
+    if not all((key, side) in points for key in (JOINT_AT[joint], "heel", "toe")):
         return np.empty(0)
-    centre, heel, toe = (seen[key, side] for key in (JOINT_AT[joint], "heel", "toe"))
+    centre, heel, toe = (points[key, side] for key in (JOINT_AT[joint], "heel", "toe"))
     up = up_axis(np.nanmean(marker_places(markers, labels), axis=1), heel)
-    each = moment_per_foot_kg(centre, heel, toe, up, markers.rate_hz)
-    return interpolate(markers.time, (-each if joint == "knee_angle" else each)[:, None], time)[:, 0]
+    moment = moment_per_foot_kg(centre, heel, toe, up, markers.rate_hz)
+    return interpolate(markers.time, (-moment if joint == "knee_angle" else moment)[:, None], time)[:, 0]
 
 
 def _envelopes(trial: Trial, study: Study, side: str, time: Values) -> tuple[Values, tuple[str, ...], list[Finding]]:
     """Envelopes of the side's living muscles on a time base."""
-    own = trial.stream("emg").selected_by(lambda channel: channel.quantity == "emg" and channel.side == side)
-    dead = [one for one in emg_findings(own) if one.severity == "refused"] if is_raw(own) else []
-    lost = {one.channel for one in dead}
-    own = own.selected([name for name in own.names if name not in lost])
-    if not own.names:
+    emg = trial.stream("emg").selected_by(lambda channel: channel.quantity == "emg" and channel.side == side)
+    dead = [finding for finding in emg_findings(emg) if finding.severity == "refused"] if is_raw(emg) else []
+    lost = {finding.channel for finding in dead}
+    emg = emg.selected([name for name in emg.names if name not in lost])
+    if not emg.names:
         raise ChannelError(
             f"for a moment model driven by EMG, EMG of side {side!r} must be usable",
             f"{trial.name} has {'only dead channels: ' + ', '.join(sorted(lost)) if lost else 'none'}",
             "Name the muscles in [channels], or set side in [strides] to the leg with electrodes.",
         )
-    smooth = [make_envelope(own.selected([name]), study.filters) for name in own.names]
-    values = np.hstack([interpolate(one.time, one.values, time) for one in smooth])
-    left_out = [replace(one, severity="warning", spoils="this muscle, which is excluded") for one in dead]
-    return np.maximum(values, 0.0), own.names, left_out
+    smooth = [make_envelope(emg.selected([name]), study.filters) for name in emg.names]
+    values = np.hstack([interpolate(envelope.time, envelope.values, time) for envelope in smooth])
+    left_out = [replace(finding, severity="warning", spoils="this muscle, which is excluded") for finding in dead]
+    return np.maximum(values, 0.0), emg.names, left_out

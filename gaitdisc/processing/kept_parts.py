@@ -21,23 +21,23 @@ FOLDER = "kept"  # of a report: a file for each part
 
 def hash_content(content: Sequence[Any], *more: str) -> str:
     """Hash of all that dataclasses hold, of this package's code, and of what else a part rests on."""
-    found = hashlib.sha256("\n".join((code_sha256(), *more)).encode())
-    for value in (getattr(one, field.name) for one in content for field in fields(one)):
+    digest = hashlib.sha256("\n".join((code_sha256(), *more)).encode())
+    for value in (getattr(record, field.name) for record in content for field in fields(record)):
         if isinstance(value, np.ndarray):
-            found.update(np.ascontiguousarray(value).tobytes())
+            digest.update(np.ascontiguousarray(value).tobytes())
         elif isinstance(value, pd.DataFrame):
-            found.update(value.to_csv().encode())
+            digest.update(value.to_csv().encode())
         else:
-            found.update(repr(dict(value) if isinstance(value, Mapping) else value).encode())
-    return found.hexdigest()
+            digest.update(repr(dict(value) if isinstance(value, Mapping) else value).encode())
+    return digest.hexdigest()
 
 
 def read_part(report: Path, name: str, key: str) -> Any:
     """What was kept of a part, if it rests on the same and its files are whole; else None."""
     try:
-        kept = read_sealed(report / FOLDER / f"{name}.json")
-        whole = kept["key"] == key and all(file_sha256(report / file) == sha for file, sha in kept["files"].items())
-        return kept["data"] if whole else None
+        part = read_sealed(report / FOLDER / f"{name}.json")
+        unchanged = part["key"] == key and all(file_sha256(report / file) == sha for file, sha in part["files"].items())
+        return part["data"] if unchanged else None
     except (SchemaError, OSError, KeyError, AttributeError):
         return None
 

@@ -70,10 +70,10 @@ def make_legs(pooled: PooledCycles) -> dict[str, LegCurves]:
     units = {channel.name: channel.unit for channel in pooled.channels}
     kept, curves = pooled.kept, pooled.curves
     weight = _percent_per_newton(pooled)
-    found = {}
+    legs = {}
     for side in FEET:
-        own = (kept["side"] == side).to_numpy()
-        if not own.any():
+        rows = (kept["side"] == side).to_numpy()
+        if not rows.any():
             continue
         cycles = {}
         for variable in VARIABLES:
@@ -81,21 +81,21 @@ def make_legs(pooled: PooledCycles) -> dict[str, LegCurves]:
             newtons = variable.kind == FORCES and units.get(channel) == "N"
             factor = weight if newtons else 1.0
             if factor is not None and (newtons or units.get(channel) == variable.unit):
-                each = curves[own, :, places[channel]] * factor
+                leg_curves = curves[rows, :, places[channel]] * factor
                 must = KNOWN_UNTIL if variable.kind in (MOMENTS, POWERS) else len(PERCENT)
-                whole = each[np.isfinite(each[:, :must]).all(axis=1)]
-                if len(whole):
-                    cycles[variable.name] = variable.sign(side) * whole
+                complete = leg_curves[np.isfinite(leg_curves[:, :must]).all(axis=1)]
+                if len(complete):
+                    cycles[variable.name] = variable.sign(side) * complete
         turned = 0.0
         if "pelvis_rotation" in cycles:
             turned = float(np.abs(np.ptp(cycles["pelvis_rotation"][:, [0, -1]], axis=1)).mean())
         if turned > TURNED_DEG:
-            cycles = {name: each for name, each in cycles.items() if name not in ALONG_THE_PATH}
-        values = {value: kept.loc[own, value].dropna().to_numpy(float) for value in SPATIOTEMPORAL}
-        known = {value: each for value, each in values.items() if len(each)}
+            cycles = {name: leg_curves for name, leg_curves in cycles.items() if name not in ALONG_THE_PATH}
+        values = {value: kept.loc[rows, value].dropna().to_numpy(float) for value in SPATIOTEMPORAL}
+        known = {value: numbers for value, numbers in values.items() if len(numbers)}
         stance = float(known["stance_percent"].mean()) if "stance_percent" in known else float("nan")
-        found[side] = LegCurves(side, int(own.sum()), stance, cycles, known, turned)
-    return found
+        legs[side] = LegCurves(side, int(rows.sum()), stance, cycles, known, turned)
+    return legs
 
 
 def _percent_per_newton(pooled: PooledCycles) -> float | None:
@@ -182,4 +182,4 @@ VARIABLES = tuple(
         (FORCES, "fore_aft_force", "fore-aft force / body weight", "vx", "forwards", "backwards"),
     )
 )
-BY_NAME = {one.name: one for one in VARIABLES}
+BY_NAME = {variable.name: variable for variable in VARIABLES}

@@ -47,8 +47,8 @@ def compute_trial(
     one foot alone on a platform, has angles only and says why in its findings.
     """
     moved = motion(trial.stream("markers"), calibration)
-    own = [key for key in ("kinematics", "moments") if key in trial.streams]
-    streams = {key: recording for key, recording in trial.streams.items() if key not in own}
+    replaced = [key for key in ("kinematics", "moments") if key in trial.streams]
+    streams = {key: recording for key, recording in trial.streams.items() if key not in replaced}
     named = {"subject": trial.subject, "condition": trial.condition}
     streams["markers"] = moved.markers
     streams["kinematics"] = replace(moved.angles, **named)
@@ -60,8 +60,8 @@ def compute_trial(
     what += f"(median of {len(typical)} segments); the largest distance is {largest_mm:.1f} mm ({worst})"
     findings = [*trial.findings, *moved.findings, Finding("note", "residual", file, what, "")]
     steps = None
-    if own:
-        what = f"{' and '.join(own)} of the file were replaced by those computed from its markers"
+    if replaced:
+        what = f"{' and '.join(replaced)} of the file were replaced by those computed from its markers"
         findings.append(Finding("note", "own model", file, what, ""))
     if person is not None and "forces" in trial.streams:
         try:
@@ -80,23 +80,23 @@ def without_exchanged_markers(trial: Trial, calibration: Calibration) -> Trial:
 
     Angles that follow the markers as they are with the labels put right were computed before these were exchanged.
     """
-    moved, own = motion(trial.stream("markers"), calibration), trial.stream("kinematics")
-    values, said = np.array(own.values), [one for one in moved.findings if one.kind == "exchanged markers"]
-    exchanged = moved.exchanged if len(own.time) == len(moved.markers.time) else ()
-    for at, one in enumerate(exchanged, len(said) - len(exchanged)):  # the static trial's come before
-        if _follows_right_labels(own, trial.stream("markers"), one, calibration):
-            said[at] = replace(said[at], spoils=STAY)
+    moved, angles = motion(trial.stream("markers"), calibration), trial.stream("kinematics")
+    values, findings = np.array(angles.values), [f for f in moved.findings if f.kind == "exchanged markers"]
+    exchanged = moved.exchanged if len(angles.time) == len(moved.markers.time) else ()
+    for at, exchange in enumerate(exchanged, len(findings) - len(exchanged)):  # the static trial's come before
+        if _follows_right_labels(angles, trial.stream("markers"), exchange, calibration):
+            findings[at] = replace(findings[at], spoils=STAY)
             continue
-        parts = [(segment[:-2], segment[-1]) for segment in one.segments if segment != "pelvis"]
+        parts = [(segment[:-2], segment[-1]) for segment in exchange.segments if segment != "pelvis"]
         hang = [BELOW[part].format(side, side.upper()) for part, side in parts]
-        hang = [".*"] if "pelvis" in one.segments else hang
-        lost = [c.quantity == "angle" and any(re.fullmatch(name, c.name) for name in hang) for c in own.channels]
-        values[np.outer(one.frames, lost)] = np.nan
-    streams = {**trial.streams, "markers": moved.markers, "kinematics": own.with_values(values, own.suspect)}
-    return replace(trial, streams=streams, findings=(*trial.findings, *said))
+        hang = [".*"] if "pelvis" in exchange.segments else hang
+        lost = [c.quantity == "angle" and any(re.fullmatch(name, c.name) for name in hang) for c in angles.channels]
+        values[np.outer(exchange.frames, lost)] = np.nan
+    streams = {**trial.streams, "markers": moved.markers, "kinematics": angles.with_values(values, angles.suspect)}
+    return replace(trial, streams=streams, findings=(*trial.findings, *findings))
 
 
-def _follows_right_labels(own: Recording, markers: Recording, exchange: Exchange, calibration: Calibration) -> bool:
+def _follows_right_labels(angles: Recording, markers: Recording, exchange: Exchange, calibration: Calibration) -> bool:
     """Whether angles lie nearer to the lines between markers whose labels are put right than to those as they are."""
     names, values = calibration.marker_set.names(marker_labels(markers)), np.array(markers.values)
     first, second = ([markers.index(f"{names[name]}.{axis}") for axis in "xyz"] for name in exchange.pair)
@@ -104,11 +104,11 @@ def _follows_right_labels(own: Recording, markers: Recording, exchange: Exchange
     values[frames[:, None], first + second] = values[frames[:, None], second + first]
     as_is, right = line_angles(markers), line_angles(markers.with_values(values))
     apart = []
-    for name in set(as_is) & set(own.names):
-        both = [own[name] - lines[name] for lines in (as_is, right)]
-        if not all(np.isfinite(one[~exchange.frames]).any() for one in both):
+    for name in set(as_is) & set(angles.names):
+        both = [angles[name] - lines[name] for lines in (as_is, right)]
+        if not all(np.isfinite(difference[~exchange.frames]).any() for difference in both):
             continue  # exchanged throughout: no offset is known
-        both = [np.abs(one - np.nanmedian(one[~exchange.frames]))[frames] for one in both]
+        both = [np.abs(difference - np.nanmedian(difference[~exchange.frames]))[frames] for difference in both]
         apart.append(
             np.nan_to_num(np.where(np.abs(as_is[name] - right[name])[frames] > MOVES_DEG, both, 0.0)).sum(axis=1)
         )
@@ -123,17 +123,17 @@ def with_segment_angles(trial: Trial) -> Trial:
     try:
         angles, findings = segment_angles(trial.stream("segments"))
     except GaitdiscError as error:
-        said = Finding("warning", "no angles", trial.name, str(error).rstrip("."), "angles from segments")
-        return replace(trial, findings=(*trial.findings, said))
+        finding = Finding("warning", "no angles", trial.name, str(error).rstrip("."), "angles from segments")
+        return replace(trial, findings=(*trial.findings, finding))
     named = replace(angles, subject=trial.subject, condition=trial.condition)
     return replace(trial, streams={**trial.streams, "kinematics": named}, findings=(*trial.findings, *findings))
 
 
 def find_foot_paths(moved: Motion) -> dict[str, FootPath]:
     """Paths of heel and toes as the feet's segments carry them, with or without their markers in a frame."""
-    found = {}
+    paths = {}
     for side in "lr":
         foot, points = moved.poses[f"foot_{side}"], moved.calibration.points[f"foot_{side}"]
         places = (foot.to_laboratory(points[f"{part}_{side}"]) for part in ("heel", "toe"))
-        found[side] = FootPath(side, moved.angles.time, *places)
-    return found
+        paths[side] = FootPath(side, moved.angles.time, *places)
+    return paths

@@ -75,9 +75,9 @@ class Driven:
         from scipy.signal import lfilter
 
         at = np.arange(len(self.envelopes))
-        late = np.column_stack([np.interp(at - delay_s * self.rate_hz, at, one) for one in self.envelopes.T])
+        late = np.column_stack([np.interp(at - delay_s * self.rate_hz, at, curve) for curve in self.envelopes.T])
         keep = np.exp(-1 / (lag_s * self.rate_hz))
-        return np.column_stack([lfilter([1 - keep], [1, -keep], one - one[0]) + one[0] for one in late.T])
+        return np.column_stack([lfilter([1 - keep], [1, -keep], curve - curve[0]) + curve[0] for curve in late.T])
 
 
 def drives(record: JointRecord) -> Driven:
@@ -178,22 +178,22 @@ class Sums(NamedTuple):
 
     def of(self, weights: Values) -> Sums:
         """Return the sum over pieces, each so many times, as one piece without its axis."""
-        return Sums(*(np.tensordot(weights, one, 1) for one in self))
+        return Sums(*(np.tensordot(weights, term, 1) for term in self))
 
-    def left(self, found: Values) -> Values:
+    def left(self, solution: Values) -> Values:
         """Return the sum of squares that coefficients leave of each piece (piece,) [(N m)2]."""
-        return self.power - 2 * self.match @ found + np.einsum("pij,i,j->p", self.squares, found, found)
+        return self.power - 2 * self.match @ solution + np.einsum("pij,i,j->p", self.squares, solution, solution)
 
 
 def sum_pieces(columns: Values, moment: Values, pieces: NDArray[np.intp], count: int) -> Sums:
     """Return the normal equations of each piece 0 to count - 1; samples without a number or outside are left out."""
-    kept = np.isfinite(moment) & np.isfinite(columns).all(axis=1)
+    known = np.isfinite(moment) & np.isfinite(columns).all(axis=1)
     parts = []
     for piece in range(count):
-        own = kept & (pieces == piece)
-        a, b = columns[own], moment[own]
+        rows = known & (pieces == piece)
+        a, b = columns[rows], moment[rows]
         parts.append((a.T @ a, a.T @ b, b @ b))
-    return Sums(*(np.array(one, np.float64) for one in zip(*parts, strict=True)))
+    return Sums(*(np.array(term, np.float64) for term in zip(*parts, strict=True)))
 
 
 def solved(total: Sums, muscles: int, respect: float = GAIN_RIDGE) -> Values:
@@ -206,20 +206,20 @@ def solved(total: Sums, muscles: int, respect: float = GAIN_RIDGE) -> Values:
     first = np.setdiff1d(np.arange(len(total.match)), waves)
     signed = np.zeros(len(first), bool)
     signed[: 2 * muscles] = signed[2 * muscles + 1 : 2 * muscles + 1 + FIRMNESS] = True
-    own = solve_signed(tied(total.squares[np.ix_(first, first)], muscles, respect), total.match[first], signed)
-    found = np.zeros(len(total.match))
-    found[first] = own
-    left = total.match[waves] - total.squares[np.ix_(waves, first)] @ own
-    found[waves] = np.linalg.lstsq(total.squares[np.ix_(waves, waves)], left, rcond=None)[0]
-    return found
+    fitted = solve_signed(tied(total.squares[np.ix_(first, first)], muscles, respect), total.match[first], signed)
+    solution = np.zeros(len(total.match))
+    solution[first] = fitted
+    residual = total.match[waves] - total.squares[np.ix_(waves, first)] @ fitted
+    solution[waves] = np.linalg.lstsq(total.squares[np.ix_(waves, waves)], residual, rcond=None)[0]
+    return solution
 
 
 def tied(squares: Values, muscles: int, respect: float = GAIN_RIDGE) -> Values:
     """Normal equations in which the two gains of each muscle, the first columns, are pulled together by a ridge."""
     normal = squares.copy()
     for number in range(muscles):
-        own = slice(2 * number, 2 * number + 2)
-        normal[own, own] += respect * float(np.trace(normal[own, own])) / 2 * (np.eye(2) - 0.5)
+        pair = slice(2 * number, 2 * number + 2)
+        normal[pair, pair] += respect * float(np.trace(normal[pair, pair])) / 2 * (np.eye(2) - 0.5)
     return normal
 
 
@@ -233,9 +233,9 @@ def solve_signed(normal: Values, match: Values, signed: NDArray[np.bool_]) -> Va
     return np.asarray(lsq_linear(root.T, np.linalg.solve(root, match / size), (low, np.inf), method="bvls").x / size)
 
 
-def make_model(form: Form, found: Values, muscles: int, left_nm: float, before_nm: float) -> MuscleMoment:
+def make_model(form: Form, coefficients: Values, muscles: int, left_nm: float, before_nm: float) -> MuscleMoment:
     """Return the model of some coefficients."""
-    gains, rest = found[: 2 * muscles].reshape(muscles, 2), found[2 * muscles :]
+    gains, rest = coefficients[: 2 * muscles].reshape(muscles, 2), coefficients[2 * muscles :]
     firm, waves = rest[1 : 1 + FIRMNESS], rest[1 + FIRMNESS : 1 + FIRMNESS + 2 * HARMONICS]
     return MuscleMoment(form, gains, float(rest[0]), firmness=firm, unseen=waves, left_nm=left_nm, before_nm=before_nm)
 
@@ -252,14 +252,14 @@ def fit_moment(driven: Driven, moment: Values, blocks: NDArray[np.intp], like: F
     timings = [(like.delay_s, like.lag_s)] if like else [(float(delay), lag) for delay in DELAYS_S for lag in LAGS_S]
     muscles, count = driven.envelopes.shape[1], int(blocks.max()) + 1
     tried = []
-    for one in timings:
-        form = Form(*one, span, usual)
+    for timing in timings:
+        form = Form(*timing, span, usual)
         sums = sum_pieces(form.columns(driven), np.where(known, moment, np.nan), blocks, count)
         apart = 1.0 - np.eye(count)
-        left = sum(float(sums.left(solved(sums.of(apart[block]), muscles))[block]) for block in range(count))
-        tried.append((left, form, sums))
-    left, form, sums = min(tried, key=lambda one: one[0])
-    left_nm, before_nm = float(np.sqrt(left / known.sum())), float(np.std(moment[known]))
+        residual = sum(float(sums.left(solved(sums.of(apart[block]), muscles))[block]) for block in range(count))
+        tried.append((residual, form, sums))
+    residual, form, sums = min(tried, key=lambda attempt: attempt[0])
+    left_nm, before_nm = float(np.sqrt(residual / known.sum())), float(np.std(moment[known]))
     return make_model(form, solved(sums.of(np.ones(count)), muscles), muscles, left_nm, before_nm)
 
 

@@ -123,8 +123,8 @@ def save_cycle_blocks(run: StudyRun, folder: Path) -> list[Block[SavedFigure]]:
     people = list(dict.fromkeys(pooled.subject for pooled in run.of(CYCLES)))
     names, count = file_names(people), len(run.of(CYCLES))
     sets = {who: [pooled for pooled in run.of(CYCLES) if pooled.subject == who] for who in people}
-    parts = (_save(own, names[who], folder, largest_inline(count)) for who, own in sets.items())
-    return [save_block(first, folder), *parts]
+    blocks = (_save(person_sets, names[who], folder, largest_inline(count)) for who, person_sets in sets.items())
+    return [save_block(first, folder), *blocks]
 
 
 def person_block(sets: Sequence[PooledCycles], name: str, drawn: bool = True) -> Block:
@@ -146,16 +146,16 @@ def person_block(sets: Sequence[PooledCycles], name: str, drawn: bool = True) ->
 
 def _save(sets: Sequence[PooledCycles], name: str, folder: Path, most: int) -> Block[SavedFigure]:
     part, key, here = f"cycles-{name}", hash_content(sets, name), folder / "figures"
-    kept = read_part(folder, part, key)
-    block = person_block(sets, name, kept is None)
+    stored = read_part(folder, part, key)
+    block = person_block(sets, name, stored is None)
     save_tables(block.tables, folder)
-    if kept is None:
+    if stored is None:
         figures = save_figures(block.figures, folder, most)
         files = [here / f"{figure.name}.{ending}" for figure in figures for ending in ("svg", "csv")]
         keep_part(folder, part, key, [asdict(replace(figure, data="")) for figure in figures], files)
     else:  # in a page that may have grown
-        drawn = {one["name"]: (here / f"{one['name']}.svg").read_text(encoding="utf-8") for one in kept}
-        figures = [SavedFigure(**{**one, "data": inline_drawing(drawn[one["name"]], most)}) for one in kept]
+        drawn = {figure["name"]: (here / f"{figure['name']}.svg").read_text(encoding="utf-8") for figure in stored}
+        figures = [SavedFigure(**{**figure, "data": inline_drawing(drawn[figure["name"]], most)}) for figure in stored]
     return Block(block.anchor, block.heading, block.sentences, tuple(figures), block.tables)
 
 

@@ -118,10 +118,10 @@ def _read_trials(
     for number, planned in enumerate(trials.trials, 1):
         try:
             trial = read(planned)
-            whole = hashlib.sha256()  # equal for two files of one recording, whatever their headers and formats
+            digest = hashlib.sha256()  # equal for two files of one recording, whatever their headers and formats
             for key in sorted(trial.streams):
-                whole.update(trial.stream(key).values.tobytes())
-            twin = prints.setdefault(whole.hexdigest(), planned)
+                digest.update(trial.stream(key).values.tobytes())
+            twin = prints.setdefault(digest.hexdigest(), planned)
             if twin is not planned:
                 raise StrideError(
                     "a recording must belong to only one session and condition",
@@ -147,10 +147,10 @@ def _show_trial(standing: Standing, planned: PlannedTrial, number: int, read: Tr
     strides = {}  # between the contacts as they were seen, without what is too short, too long, or is two
     for side, times in steps.contacts.items():
         lengths = np.diff(times)
-        whole = (lengths >= study.strides.min_s) & (lengths <= study.strides.max_s)
-        whole &= np.diff(np.searchsorted(steps.contacts.get(other_side(side), ()), times)) <= 1
-        if whole.any():
-            strides[side] = Strides(times[:-1][whole], times[1:][whole], side, steps.detector)
+        plausible = (lengths >= study.strides.min_s) & (lengths <= study.strides.max_s)
+        plausible &= np.diff(np.searchsorted(steps.contacts.get(other_side(side), ()), times)) <= 1
+        if plausible.any():
+            strides[side] = Strides(times[:-1][plausible], times[1:][plausible], side, steps.detector)
     _verify(trial, strides, outside)
     sides = side_findings(trial, strides, standing.weighed_n or weight_n)
     if plate_steps is not None:  # whose findings say so already
@@ -166,9 +166,9 @@ def _show_trial(standing: Standing, planned: PlannedTrial, number: int, read: Tr
     plates = plate_loadings(trial, find_rise(weight_n))
     exchanged = any(finding.kind == "exchanged heels" for finding in steps.findings)
     feet = None if exchanged else heel_paths(trial, study.walking_direction)
-    kept = tuple(put_away(state, folder) for state in states)
+    shelved = tuple(put_away(state, folder) for state in states)
     raw_emg = put_away(raw, folder) if (raw := find_raw_emg(trial, states)) is not None else None
-    return _Seen(planned, number, steps, outside, plates, feet, legs, kept, findings, files, raw_emg, plate_steps)
+    return _Seen(planned, number, steps, outside, plates, feet, legs, shelved, findings, files, raw_emg, plate_steps)
 
 
 def _verify(trial: Trial, strides_of: Mapping[str, Strides], outside: bool) -> None:
@@ -264,9 +264,9 @@ def _cut(standing: Standing, seen: _Seen, later: Later) -> _CutTrial:
 def _too_few(standing: Standing, trials: TrialSet, cut: Sequence[_CutTrial], outside: bool) -> str:
     """Why the cycles that are left do not do, and which labels spoiled those that are not; empty where they do."""
     quality = standing.study.quality
-    kept = Counter(cycle.side for trial in cut for cycle in trial.kept)
+    n_kept = Counter(cycle.side for trial in cut for cycle in trial.kept)
     needed, key = (quality.min_cycles, "min_cycles") if outside else (quality.min_strides, "min_strides")
-    if max(kept.values(), default=0) >= needed:
+    if max(n_kept.values(), default=0) >= needed:
         return ""
     reasons = [cycle.reason for trial in cut for cycle in trial.cycles if cycle.reason]
     first = f"; {len(reasons)} excluded, the first: {reasons[0]}" if reasons else ""
@@ -278,7 +278,7 @@ def _too_few(standing: Standing, trials: TrialSet, cut: Sequence[_CutTrial], out
         for start, end in finding.spans
         if any(cycle.reason and start < cycle.end and cycle.start < end for cycle in trial.cycles)
     ]
-    counts = ", ".join(f"{kept[side]} of side {side}" for side in "rl")
+    counts = ", ".join(f"{n_kept[side]} of side {side}" for side in "rl")
     have = "1 trial has" if len(trials.trials) == 1 else f"{len(trials.trials)} trials have"
     who = " ".join((standing.participant.id, trials.where))
     where = "over ground" if outside else "on a treadmill"
@@ -309,7 +309,7 @@ def _curves(cut: Sequence[_CutTrial]) -> tuple[tuple[Channel, ...], Values]:
         for channel in shelved.kept.channels:
             by_name.setdefault(channel.name, channel)
     names = list(by_name)
-    whole = np.full((sum(len(trial.kept) for trial in cut), len(PERCENT), len(names)), np.nan)
+    curves = np.full((sum(len(trial.kept) for trial in cut), len(PERCENT), len(names)), np.nan)
     row = 0
     for trial in cut:
         for shelved in trial.seen.states:  # the first unit counts
@@ -320,18 +320,18 @@ def _curves(cut: Sequence[_CutTrial]) -> tuple[tuple[Channel, ...], Values]:
                 values = Strides(*ends, cycle.side, trial.seen.steps.detector).normalised(chosen)[0]
                 bare = [not cycle.kinetic and channel.quantity in KINETIC for channel in chosen.channels]
                 values[:, bare] = np.nan
-                whole[place][:, columns] = values
+                curves[place][:, columns] = values
         row += len(trial.kept)
-    return tuple(by_name.values()), whole
+    return tuple(by_name.values()), curves
 
 
 def _raw_emg(cut: Sequence[_CutTrial], channels: Sequence[Channel], curves: Values) -> dict[str, Values]:
     """Raw EMG of each leg's most typical cycle (sample, channel of that leg), from contact to contact."""
-    kept = [(trial.seen.raw_emg, cycle) for trial in cut for cycle in trial.kept]
-    sides, typical = pd.DataFrame({"side": [cycle.side for _, cycle in kept]}), {}
+    cycles = [(trial.seen.raw_emg, cycle) for trial in cut for cycle in trial.kept]
+    sides, typical = pd.DataFrame({"side": [cycle.side for _, cycle in cycles]}), {}
     for side in "lr":
         row = choose_typical(curves, sides, channels, side)
-        shelved, cycle = kept[row] if row is not None else (None, None)
+        shelved, cycle = cycles[row] if row is not None else (None, None)
         if shelved is None or cycle is None:
             continue
         raw = shelved.recording()

@@ -143,8 +143,8 @@ class PooledCycles(Saved, file="cycles.json"):
         return self.cycles
 
     def __repr__(self) -> str:
-        kept, cut = len(self.kept), len(self.cycles)
-        return f"PooledCycles({self.subject}, {self.where}: {kept} of {cut} cycles kept, {self.trials} trials)"
+        n_kept, n_cut = len(self.kept), len(self.cycles)
+        return f"PooledCycles({self.subject}, {self.where}: {n_kept} of {n_cut} cycles kept, {self.trials} trials)"
 
     def mean_curves(self) -> pd.DataFrame:
         """Mean and standard deviation of every channel on 101 points, over the kept cycles of its own foot.
@@ -169,7 +169,7 @@ class PooledCycles(Saved, file="cycles.json"):
 def stack_means(means: Sequence[Mapping[str, np.ndarray]], word: str) -> pd.DataFrame:
     """Table of mean curves that are of a side or walk, the column of that word; of none the columns."""
     columns = ("channel", "unit", word, "percent", "n", "mean", "sd")  # joined before the table: half of its time
-    return pd.DataFrame({name: np.concatenate([one[name] for one in means] or [[]]) for name in columns})
+    return pd.DataFrame({name: np.concatenate([curve[name] for curve in means] or [[]]) for name in columns})
 
 
 def mean_curve(curves: Values, **words: str) -> dict[str, np.ndarray]:
@@ -180,8 +180,8 @@ def mean_curve(curves: Values, **words: str) -> dict[str, np.ndarray]:
         mean = np.where(present, curves, 0.0).sum(axis=0) / count
         square = np.where(present, (curves - mean) ** 2, 0.0).sum(axis=0)
         spread = np.where(count > 1, np.sqrt(square / (count - 1)), np.nan)
-    said = {name: np.full(len(PERCENT), word) for name, word in words.items()}
-    return {**said, "percent": PERCENT, "n": count, "mean": mean, "sd": spread}
+    columns = {name: np.full(len(PERCENT), word) for name, word in words.items()}
+    return {**columns, "percent": PERCENT, "n": count, "mean": mean, "sd": spread}
 
 
 def choose_typical(curves: Values, kept: pd.DataFrame, channels: Sequence[Channel], side: str) -> int | None:

@@ -270,8 +270,8 @@ def make_filter_null(walk: Walk, filters: Filters) -> dict[str, float]:
 
 def _differentiate(values: Values, rate_hz: float) -> tuple[Values, Values, Values]:
     parts = (values, derivative(values, rate_hz, 1), derivative(values, rate_hz, 2))
-    whole = np.isfinite(np.hstack(parts)).all(axis=1)
-    x, xdot, xddot = (part[whole] for part in parts)
+    known = np.isfinite(np.hstack(parts)).all(axis=1)
+    x, xdot, xddot = (part[known] for part in parts)
     return x, xdot, xddot
 
 

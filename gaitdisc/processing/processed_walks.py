@@ -31,17 +31,17 @@ def unit_keys(study: Study, participant: Participant) -> dict[str, str]:
     for word in study.conditions.both:
         trial = participant.trials_of(word)[0]
         beside = (calibration_trial(study, participant, trial.session or "", kind) for kind in (STATIC, FUNCTIONAL))
-        parts = [person_key(study, participant), *(unit_key(study, one) for one in (trial, *beside) if one)]
+        parts = [person_key(study, participant), *(unit_key(study, planned) for planned in (trial, *beside) if planned)]
         keys[word] = hashlib.sha256("\n".join(parts).encode()).hexdigest()
     return keys
 
 
 def person_key(study: Study, participant: Participant) -> str:
     """What the study says of a person's body, and the bytes of its marker-set file."""
-    said = f"{participant.mass_kg} {participant.height_m} {participant.sex} {participant.age_years}"
+    body = f"{participant.mass_kg} {participant.height_m} {participant.sex} {participant.age_years}"
     named = study.kinematics.marker_set if study.kinematics else ""
-    own = named.endswith(".toml") and study.path_of(named).is_file()
-    return f"{said} {file_sha256(study.path_of(named))}" if own else said
+    has_file = named.endswith(".toml") and study.path_of(named).is_file()
+    return f"{body} {file_sha256(study.path_of(named))}" if has_file else body
 
 
 def response_key(keys: Mapping[str, str]) -> str:
@@ -77,12 +77,12 @@ def walks_and_errors(study: Study, participant: Participant) -> tuple[dict[str, 
     walks, errors = {}, {}
     words = list_words(study, participant)
     with C3DReader() as reader:  # starts its process at the first C3D file, one for both walks
-        own = StudyWalks(study, participant, partial(public_trial, study, participant, words, reader))
+        study_walks = StudyWalks(study, participant, partial(public_trial, study, participant, words, reader))
         for word in study.conditions.both:
             planned = participant.trials_of(word)[0]
             public = of_trial(words, participant, planned)
             try:
-                walk = own.read_walk(planned).processed(study)
+                walk = study_walks.read_walk(planned).processed(study)
                 left_away = gait_samples(walk.trajectory, study.models.outputs)[1]
             except GaitdiscError as error:
                 errors[word] = public.error(error)
@@ -103,14 +103,14 @@ def compute_cycles(study: Study, participant: Participant, folder: Path) -> tupl
     """Pooled cycles of a participant, computed, or loaded where an earlier run had the same files and settings."""
     key = cycles_key(study, participant)
     places = [
-        folder / "cycles" / cycles_name(participant.id, one.session, one.condition)
-        for one in trial_sets(study, participant)
+        folder / "cycles" / cycles_name(participant.id, trial_set.session, trial_set.condition)
+        for trial_set in trial_sets(study, participant)
     ]
-    stored = tuple(one for one in (CYCLES.kept(place, key) for place in places) if one is not None)
+    stored = tuple(pooled for pooled in (CYCLES.kept(place, key) for place in places) if pooled is not None)
     if len(stored) == len(places):
         return stored
-    found, unread = pool_public(study, participant)
-    for pooled, place in zip(found, places, strict=True):  # unread files may be readable another time
+    cycles, unread = pool_public(study, participant)
+    for pooled, place in zip(cycles, places, strict=True):  # unread files may be readable another time
         CYCLES.save(pooled, place, "" if unread else key)
     return tuple(CYCLES.load(place) for place in places)
 
@@ -130,7 +130,7 @@ def pool_public(study: Study, participant: Participant) -> tuple[list[PooledCycl
                 unread.append(error)
                 raise
 
-        found = [
+        cycles = [
             replace(  # no word of the recordings stands in a sentence
                 pooled,
                 findings=tuple(map(words.finding, pooled.findings)),
@@ -138,14 +138,14 @@ def pool_public(study: Study, participant: Participant) -> tuple[list[PooledCycl
             )
             for pooled in pool_cycles(study, participant, read)
         ]
-    return found, bool(unread)
+    return cycles, bool(unread)
 
 
 def cycles_key(study: Study, participant: Participant) -> str:
     """Hash of all that decides a participant's pooled cycles: files, settings, and the package's own code."""
     parts = [participant.id, participant.group, person_key(study, participant)]
-    for one in trial_sets(study, participant):
-        beside = (calibration_trial(study, participant, one.session, kind) for kind in (STATIC, FUNCTIONAL))
-        trials = (*one.trials, *(trial for trial in beside if trial))
-        parts += [one.session, one.condition, *(unit_key(study, trial) for trial in trials)]
+    for trial_set in trial_sets(study, participant):
+        beside = (calibration_trial(study, participant, trial_set.session, kind) for kind in (STATIC, FUNCTIONAL))
+        trials = (*trial_set.trials, *(trial for trial in beside if trial))
+        parts += [trial_set.session, trial_set.condition, *(unit_key(study, trial) for trial in trials)]
     return hashlib.sha256("\n".join(parts).encode()).hexdigest()

@@ -73,43 +73,43 @@ def _plate_findings(trial: Trial, weight_n: float | None) -> list[Finding]:
     """Steps whose force contradicts the feet or the weight, or that two feet made; or that two plates are exchanged."""
     markers, file = trial.stream("markers"), trial.stream("forces").source.file or trial.name
     try:
-        feet, found, pelvis = _feet_on_plates(trial)
-        steps = plate_steps(found, feet) if len(markers.time) > 1 else []  # a static trial may be a single frame
+        feet, plates, pelvis = _feet_on_plates(trial)
+        steps = plate_steps(plates, feet) if len(markers.time) > 1 else []  # a static trial may be a single frame
         if weight_n:
-            height = np.mean([marker_position(markers, name) for name in pelvis], axis=0) @ found[0].up
-            steps = weigh_steps(steps, found, swings(trial, feet), Weight(weight_n, markers.time, height))
-        other = [_exchange_place(one, second) for one, second in zip(found, found[::-1], strict=True)]
+            height = np.mean([marker_position(markers, name) for name in pelvis], axis=0) @ plates[0].up
+            steps = weigh_steps(steps, plates, swings(trial, feet), Weight(weight_n, markers.time, height))
+        other = [_exchange_place(plate, second) for plate, second in zip(plates, plates[::-1], strict=True)]
         as_is = [not step.doubt for step in steps]
-        astray = len(found) == 2 and len(as_is) >= FEWEST and sum(as_is) <= LEAST * len(as_is)
+        astray = len(plates) == 2 and len(as_is) >= FEWEST and sum(as_is) <= LEAST * len(as_is)
         exchanged = [not step.doubt for step in plate_steps(other, feet)] if astray else []
     except GaitdiscError:  # no wrench or no foot: moments says why
         return []
     if exchanged and sum(exchanged) >= MOST * len(exchanged):
-        names = " and ".join(platform.name for platform in found)
+        names = " and ".join(platform.name for platform in plates)
         what = f"the centre of pressure lies under the foot in {sum(as_is)} of {len(as_is)} steps, and in "
         what += f"{sum(exchanged)} of {len(exchanged)} if the channels of {names} are swapped"
         spoils = "the assignment of feet to plates, moments and powers; swap the channels of the two plates"
         spans = tuple(step.span for step in steps)
         return [Finding("warning", "swapped plates", file, what=what, spoils=spoils, channel=names, spans=spans)]
-    said = []
+    findings = []
     for doubt in ("warning", "note"):  # one finding of all such steps: a belt has hundreds
-        own = [finding for step in steps if step.doubt == doubt and (finding := step.finding(file))]
-        more = f" (and {len(own) - 1} more)" if len(own) > 1 else ""
-        spans = tuple(span for finding in own for span in finding.spans)
-        said += [replace(own[0], what=own[0].what + more, spans=spans)] if own else []
-    return said
+        doubted = [finding for step in steps if step.doubt == doubt and (finding := step.finding(file))]
+        more = f" (and {len(doubted) - 1} more)" if len(doubted) > 1 else ""
+        spans = tuple(span for finding in doubted for span in finding.spans)
+        findings += [replace(doubted[0], what=doubted[0].what + more, spans=spans)] if doubted else []
+    return findings
 
 
 def standing_weight_n(trial: Trial) -> float | None:
     """Weight of who stands still with heels and toes of both feet on the plates [N]; None where that is not seen."""
     try:
-        feet, found, _ = _feet_on_plates(trial)
+        feet, plates, _ = _feet_on_plates(trial)
     except GaitdiscError:
         return None
-    loaded = [one.surface for one in found if one.surface is not None and np.median(one.load_n) > LEAST_LOAD_N]
-    parts = [part for foot in feet.values() for part in (foot.heel, foot.toe + TOES_AHEAD * (foot.toe - foot.heel))]
-    on = all(any(np.nanmedian(one.outside(part)) < BEYOND_EDGE_M for one in loaded) for part in parts)
-    total = np.sum([one.load_n for one in found], axis=0)
+    loaded = [plate.surface for plate in plates if plate.surface is not None and np.median(plate.load_n) > LEAST_LOAD_N]
+    points = [point for foot in feet.values() for point in (foot.heel, foot.toe + TOES_AHEAD * (foot.toe - foot.heel))]
+    on = all(any(np.nanmedian(surface.outside(point)) < BEYOND_EDGE_M for surface in loaded) for point in points)
+    total = np.sum([plate.load_n for plate in plates], axis=0)
     still = loaded and np.std(total) < STANDS_STILL * np.median(total)
     return float(np.median(total)) if on and still else None
 
@@ -126,9 +126,9 @@ def check_weight(weighed_n: float | None, mass_kg: float | None, file: str) -> l
     return [Finding("warning", "body weight", file, what, f"moments and powers, by {100 * off:.0f} %; weigh again")]
 
 
-def _exchange_place(one: Platform, other: Platform) -> Platform:
+def _exchange_place(platform: Platform, other: Platform) -> Platform:
     """Platform with its own force at the other's place, or with the other's foot where the file names feet."""
-    if one.surface is None or other.surface is None:
-        return replace(one, side=other.side)
-    wrench = Wrench.at(other.point, one.wrench.force, one.wrench.about(one.point))
-    return replace(one, wrench=wrench, point=other.point, surface=other.surface)
+    if platform.surface is None or other.surface is None:
+        return replace(platform, side=other.side)
+    wrench = Wrench.at(other.point, platform.wrench.force, platform.wrench.about(platform.point))
+    return replace(platform, wrench=wrench, point=other.point, surface=other.surface)

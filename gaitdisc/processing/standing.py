@@ -49,13 +49,13 @@ FEWEST_DISTANCES = 4  # fewer show nothing
 def segment_distances(markers: Recording) -> dict[tuple[str, str], float]:
     """Median distance between markers that lie on one segment and are ever seen together: two markers -> [m]."""
     there = {name.rsplit(".", 1)[0] for name in markers.names}
-    found = {}
+    distances = {}
     for segment in SEGMENTS:
-        for one, other in itertools.combinations((name for name in segment if name in there), 2):
-            apart = np.linalg.norm(marker_position(markers, one) - marker_position(markers, other), axis=1)
+        for marker, other in itertools.combinations((name for name in segment if name in there), 2):
+            apart = np.linalg.norm(marker_position(markers, marker) - marker_position(markers, other), axis=1)
             if np.isfinite(apart).any():
-                found[one, other] = float(np.nanmedian(apart))
-    return found
+                distances[marker, other] = float(np.nanmedian(apart))
+    return distances
 
 
 def person_findings(static: Recording, walk: Recording, file: str) -> list[Finding]:
@@ -68,12 +68,12 @@ def person_findings(static: Recording, walk: Recording, file: str) -> list[Findi
     worst = sorted(both, key=lambda pair: -apart[pair])[:2]
     if apart[worst[1]] < MOST_LOG_RATIO:
         return []
-    said = " and ".join(
-        f"the distance from {one} to {other} is {1000.0 * standing[one, other]:.0f} mm when standing, but "
-        f"{1000.0 * walking[one, other]:.0f} mm in the walk"
-        for one, other in worst
+    moves = " and ".join(
+        f"the distance from {marker} to {other} is {1000.0 * standing[marker, other]:.0f} mm when standing, but "
+        f"{1000.0 * walking[marker, other]:.0f} mm in the walk"
+        for marker, other in worst
     )
-    what = f"the static trial is of another person, or its markers were moved: {said}"
+    what = f"the static trial is of another person, or its markers were moved: {moves}"
     return [Finding("warning", "static trial", file, what, "angles from these markers; name the correct static trial")]
 
 
@@ -118,20 +118,20 @@ class Standing:
         person, findings = self._person(planned, trial)
         settings = KineticsSettings(marker_cutoff_hz=self.study.filters.kinematics_hz)
         try:
-            found = compute_trial(trial, calibration, person, settings)
+            result = compute_trial(trial, calibration, person, settings)
         except GaitdiscError as error:
             return ComputedTrial(self._without_angles(given_up, trial.name, error))
-        made = found.trial.findings[len(trial.findings) :]
-        return replace(found, trial=replace(found.trial, findings=(*trial.findings, *self._new((*made, *findings)))))
+        made = result.trial.findings[len(trial.findings) :]
+        return replace(result, trial=replace(result.trial, findings=(*trial.findings, *self._new((*made, *findings)))))
 
     def _with_own_kinetics(self, planned: PlannedTrial, trial: Trial) -> Trial:
         """Trial with the moments of its file, but where the person weighs something else than they were divided by."""
         try:
-            said = check_weight(self.weighed_n, self.mass_kg(planned), trial.name)
+            findings = check_weight(self.weighed_n, self.mass_kg(planned), trial.name)
         except GaitdiscError as error:
-            said = [Finding("warning", "no moments", trial.name, str(error).rstrip("."), "moments and powers")]
-            trial = replace(trial, streams={key: one for key, one in trial.streams.items() if key != "moments"})
-        return replace(trial, findings=(*trial.findings, *said))
+            findings = [Finding("warning", "no moments", trial.name, str(error).rstrip("."), "moments and powers")]
+            trial = replace(trial, streams={key: stream for key, stream in trial.streams.items() if key != "moments"})
+        return replace(trial, findings=(*trial.findings, *findings))
 
     def findings(self, trial: Trial, with_angles: bool) -> tuple[Finding, ...]:
         """What the static trial says of a walk: that it is another person's, of another unit, or that there is none."""
@@ -149,14 +149,14 @@ class Standing:
         """Size of a walk's EMG beside that of the static trial, or of the session's first walk where that has none."""
         if "emg" not in trial.streams:
             return []
-        own = emg_sizes(trial.stream("emg"))
+        walk_sizes = emg_sizes(trial.stream("emg"))
         if len(self.emg_sizes) >= FEWEST:
-            return other_unit_findings(own, self.emg_sizes, OVER_STANDING, trial.name, "the static trial")
+            return other_unit_findings(walk_sizes, self.emg_sizes, OVER_STANDING, trial.name, "the static trial")
         if self._walked is None:
-            self._walked = trial.name, own
+            self._walked = trial.name, walk_sizes
             return []
         other, sizes = self._walked
-        return other_unit_findings(own, sizes, OVER_WALKING, trial.name, other)
+        return other_unit_findings(walk_sizes, sizes, OVER_WALKING, trial.name, other)
 
     def mass_kg(self, planned: PlannedTrial) -> float | None:
         """Mass of the person: by the study, else the static file, else the walk's; None where none states one."""
@@ -173,31 +173,31 @@ class Standing:
     def leg_m(self, planned: PlannedTrial) -> float | None:
         """Leg length of the person [m]: as the static file or the walk's has it, else by the study's stature."""
         try:
-            found = (self._measures(self.planned), self._measures(planned))
+            known = (self._measures(self.planned), self._measures(planned))
         except GaitdiscError:
-            found = ()
-        measured = next((one for one in found if one.leg_length_m), BodyMeasures(height_m=self.participant.height_m))
-        return measured.leg_m or next((one.leg_m for one in found if one.leg_m), None)
+            known = ()
+        measured = next((body for body in known if body.leg_length_m), BodyMeasures(height_m=self.participant.height_m))
+        return measured.leg_m or next((body.leg_m for body in known if body.leg_m), None)
 
     def _without_angles(self, trial: Trial, whose: str, error: GaitdiscError) -> Trial:
-        said = Finding("warning", "no angles", whose, str(error).rstrip("."), "angles from markers")
-        return replace(trial, findings=(*trial.findings, *self._new((said,))))
+        finding = Finding("warning", "no angles", whose, str(error).rstrip("."), "angles from markers")
+        return replace(trial, findings=(*trial.findings, *self._new((finding,))))
 
     def _without_exchanged(self, trial: Trial) -> Trial:
         """Trial of the file's own angles, without the frames in which its markers bear another's label."""
         if self.markers is None or not {"markers", "kinematics"} <= set(trial.streams):
             return trial
         try:
-            found = without_exchanged_markers(trial, self._calibration(self.markers, trial.stream("markers")))
+            checked = without_exchanged_markers(trial, self._calibration(self.markers, trial.stream("markers")))
         except ShapeError as error:
             return self._without_angles(trial, trial.name, error)
         except GaitdiscError:  # markers of no set that is known: nothing is checked
             return trial
-        return replace(found, findings=(*trial.findings, *self._new(found.findings[len(trial.findings) :])))
+        return replace(checked, findings=(*trial.findings, *self._new(checked.findings[len(trial.findings) :])))
 
     def _new(self, findings: Sequence[Finding]) -> tuple[Finding, ...]:
         """Those that no earlier trial has said."""
-        new = tuple(one for one in dict.fromkeys(findings) if one not in self._said)
+        new = tuple(finding for finding in dict.fromkeys(findings) if finding not in self._said)
         self._said.update(new)
         return new
 
@@ -205,12 +205,12 @@ class Standing:
         """Of the person, with the marker set that the study names or the labels are of."""
         wanted = self.study.kinematics
         named = wanted.marker_set if wanted else ""  # a file lies relative to the study's
-        own = self.study.path_of(named) if named.endswith(".toml") else named or None
-        chosen = choose_marker_set(markers, static, own)
+        named_set = self.study.path_of(named) if named.endswith(".toml") else named or None
+        chosen = choose_marker_set(markers, static, named_set)
         if chosen.name not in self._calibrations:
-            kept = chosen.with_joints(wanted.joints) if wanted and wanted.joints else chosen
-            kept = kept.with_hip(wanted.hip) if wanted and wanted.hip else kept
-            self._calibrations[chosen.name] = self._calibrated(static, kept)
+            marker_set = chosen.with_joints(wanted.joints) if wanted and wanted.joints else chosen
+            marker_set = marker_set.with_hip(wanted.hip) if wanted and wanted.hip else marker_set
+            self._calibrations[chosen.name] = self._calibrated(static, marker_set)
         return self._calibrations[chosen.name]
 
     def _calibrated(self, static: Recording, chosen: MarkerSet) -> Calibration:
@@ -223,20 +223,20 @@ class Standing:
             hips, findings = functional_hips(self.circled, body)
         except GaitdiscError as error:
             file = self.circled.source.file or "the functional trial"
-            said = Finding("warning", "functional hip", file, str(error).rstrip("."), "hip joint centres, by 1 to 2 cm")
-            return replace(body, findings=(*body.findings, said))
-        own = calibrate_body(static, chosen, measures, hips) if hips else body
-        return replace(own, findings=(*own.findings, *findings))
+            note = Finding("warning", "functional hip", file, str(error).rstrip("."), "hip joint centres, by 1 to 2 cm")
+            return replace(body, findings=(*body.findings, note))
+        calibrated = calibrate_body(static, chosen, measures, hips) if hips else body
+        return replace(calibrated, findings=(*calibrated.findings, *findings))
 
     def _person(self, planned: PlannedTrial, trial: Trial) -> tuple[Person | None, tuple[Finding, ...]]:
         """Mass and sex: the study's own, else the static file's, else the walk's; without a mass why not."""
         if "forces" not in trial.streams:
             return None, ()
         try:
-            found = self._measures(self.planned)
-            mass = self.participant.mass_kg or found.mass_kg or self._measures(planned).mass_kg
-            said = check_weight(self.weighed_n, mass, trial.name)
-            return Person(mass, self.participant.sex, self.weighed_n), tuple(said)
+            measures = self._measures(self.planned)
+            mass = self.participant.mass_kg or measures.mass_kg or self._measures(planned).mass_kg
+            findings = check_weight(self.weighed_n, mass, trial.name)
+            return Person(mass, self.participant.sex, self.weighed_n), tuple(findings)
         except GaitdiscError as error:
             what = str(error).rstrip(".")
             return None, (Finding("warning", "no moments", self.participant.id, what, "moments and powers"),)

@@ -57,29 +57,29 @@ class StepEvents:
 
     def later_s(self, kind: str) -> Values:
         """How much later the ground places the events that both see [s]; only steps that both see count."""
-        own, ground = self._of(kind)
+        detected, ground = self._of(kind)
         apart = []
-        for side, times in own.items():
+        for side, times in detected.items():
             for at, _ in ground.get(side, ()):
                 nearest = times[np.argmin(np.abs(times - at))] if len(times) else np.inf
                 apart.append(at - nearest)
-        found = np.asarray(apart, float)
-        return found[np.abs(found) <= MOST_OFFSET_S]
+        delays = np.asarray(apart, float)
+        return delays[np.abs(delays) <= MOST_OFFSET_S]
 
     def corrected(self, kind: str, offset_s: float) -> dict[str, tuple[tuple[float, str], ...]]:
         """Events moved later by `offset_s` [s] or replaced by the ground's own: side -> (time, what placed it)."""
-        own, ground = self._of(kind)
+        detected, ground = self._of(kind)
         by = self.detector if kind == "contacts" else self.off_detector
-        found = {}
-        for side in sorted(set(own) | set(ground)):
-            seen = list(ground.get(side, ()))
-            moved = own.get(side, np.empty(0)) + offset_s
+        events = {}
+        for side in sorted(set(detected) | set(ground)):
+            placed = list(ground.get(side, ()))
+            moved = detected.get(side, np.empty(0)) + offset_s
             if kind == "contacts" and len(moved):  # what the ground alone saw between the markers' contacts is false
-                near = {at: np.abs(moved - at).min() <= ONE_EVENT_S for at, _ in seen}
-                seen = [(at, word) for at, word in seen if near[at] or at < moved[0] or at > moved[-1]]
-            alone = [at for at in moved if all(abs(at - there) > ONE_EVENT_S for there, _ in seen)]
-            found[side] = tuple(sorted([*seen, *((float(at), by) for at in alone)]))
-        return found
+                near = {at: np.abs(moved - at).min() <= ONE_EVENT_S for at, _ in placed}
+                placed = [(at, word) for at, word in placed if near[at] or at < moved[0] or at > moved[-1]]
+            alone = [at for at in moved if all(abs(at - there) > ONE_EVENT_S for there, _ in placed)]
+            events[side] = tuple(sorted([*placed, *((float(at), by) for at in alone)]))
+        return events
 
     def _of(self, kind: str) -> tuple[Mapping[str, Values], Timed]:
         return (self.contacts, self.ground_contacts) if kind == "contacts" else (self.foot_offs, self.ground_offs)
@@ -99,13 +99,13 @@ def step_events(
     strides = {
         name: count
         for name, contacts in seen.items()
-        if (count := sum(max(0, len(one) - 1) for one in contacts.values()))
+        if (count := sum(max(0, len(marks) - 1) for marks in contacts.values()))
     }
     if not strides if detector == "auto" else detector not in strides:
         reasons = []
         for name in dict.fromkeys([*seen, *refused]):
             error = refused.get(name)
-            counts = ", ".join(f"{len(one)} of side {side}" for side, one in sorted(seen.get(name, {}).items()))
+            counts = ", ".join(f"{len(marks)} of side {side}" for side, marks in sorted(seen.get(name, {}).items()))
             reasons.append(f"{name}: {error.found if error else f'contacts: {counts or 0}'}")
         by = "events, force, markers or joint angles" if detector == "auto" else detector
         needed = f"a cycle must have two initial contacts of the same foot, from {by}"
@@ -118,13 +118,13 @@ def step_events(
             what += "file's events mark the other foot: the heels seem to be exchanged; the events are used"
             spoils = "step lengths and widths, which are excluded for this trial; correct the labels of the heels"
             findings.append(Finding("warning", "exchanged heels", trial.name, what, spoils))
-    contacts = {side: one.time for side, one in seen[chosen].items()}
+    contacts = {side: marks.time for side, marks in seen[chosen].items()}
     off_detector, offs = _find_offs(trial, contacts, direction)
     ground = {name: seen[name] for name in GROUND if name in seen}
-    ground_offs = {name: {s: one.foot_off for s, one in sides.items()} for name, sides in ground.items()}
+    ground_offs = {name: {s: marks.foot_off for s, marks in sides.items()} for name, sides in ground.items()}
     for side, times in ground_offs.get("force", {}).items():  # a foot that leaves a plate may still be on the floor
-        own = offs.get(side, np.empty(0))
-        shown = [not len(own) or np.abs(own - at).min() <= MOST_OFFSET_S for at in times]
+        detected = offs.get(side, np.empty(0))
+        shown = [not len(detected) or np.abs(detected - at).min() <= MOST_OFFSET_S for at in times]
         ground_offs["force"][side] = times[np.array(shown, bool)]
     late = ground if chosen in SEEN_LATE else {}
     return StepEvents(
@@ -132,7 +132,7 @@ def step_events(
         off_detector=off_detector,
         contacts=contacts,
         foot_offs=offs,
-        ground_contacts=_merge({name: {s: one.time for s, one in sides.items()} for name, sides in late.items()}),
+        ground_contacts=_merge({name: {s: marks.time for s, marks in sides.items()} for name, sides in late.items()}),
         ground_offs=_merge(ground_offs),
         findings=tuple(findings),
     )
@@ -153,10 +153,10 @@ def walking_part(trial: Trial) -> Trial:
     if not cut:
         return trial
     what = f"no walking from {' and from '.join(cut)} (standing, or turning on the spot); this part was cut out"
-    said = Finding("note", "standing", trial.name, what, "")
-    streams = {key: part for key, one in trial.streams.items() if len((part := one.between(start, end)).time) > 1}
+    finding = Finding("note", "standing", trial.name, what, "")
+    streams = {key: part for key, stream in trial.streams.items() if len((part := stream.between(start, end)).time) > 1}
     events = tuple(event for event in trial.events if start <= event.time < end)
-    return replace(trial, streams=streams, events=events, findings=(*trial.findings, said))
+    return replace(trial, streams=streams, events=events, findings=(*trial.findings, finding))
 
 
 def _stepping(trial: Trial) -> tuple[Values, NDArray[np.bool_]] | None:
@@ -211,12 +211,12 @@ def trial_markers(trial: Trial, direction: str = "") -> tuple[dict[str, str], li
 
 
 def _merge(seen: Mapping[str, Mapping[str, Values]]) -> dict[str, tuple[tuple[float, str], ...]]:
-    found: dict[str, list[tuple[float, str]]] = {}
+    events: dict[str, list[tuple[float, str]]] = {}
     for name in GROUND:
         for side, times in seen.get(name, {}).items():
-            there = found.setdefault(side, [])
+            there = events.setdefault(side, [])
             there += [(float(at), name) for at in times if all(abs(at - other) > ONE_EVENT_S for other, _ in there)]
-    return {side: tuple(sorted(times)) for side, times in found.items()}
+    return {side: tuple(sorted(times)) for side, times in events.items()}
 
 
 def _find_offs(trial: Trial, contacts: Mapping[str, Values], direction: str) -> tuple[str, dict[str, Values]]:

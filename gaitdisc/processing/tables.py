@@ -47,21 +47,21 @@ def mean_recordings(cycles: Sequence[PooledCycles]) -> dict[str, Recording]:
     Percent of the cycle becomes time, 0 to the mean duration of the cycles; a channel without a side is that over the
     cycles of the foot; one that is not known over the whole cycle is left out.
     """
-    found = {}
+    recordings = {}
     for pooled in cycles:
         means = pooled.mean_curves()
         known = {channel.name: channel for channel in pooled.channels}
         for side in sorted(set(means["side"])):
-            own = means[means["side"] == side].pivot_table("mean", "percent", "channel")
-            own = own[[name for name in known if name in own and bool(np.isfinite(own[name]).all())]]
+            grid = means[means["side"] == side].pivot_table("mean", "percent", "channel")
+            grid = grid[[name for name in known if name in grid and bool(np.isfinite(grid[name]).all())]]
             duration_s = float(pooled.kept.loc[pooled.kept["side"] == side, "stride_s"].mean())
-            if own.empty or not len(own.columns):
+            if grid.empty or not len(grid.columns):
                 continue
             words = (pooled.subject, pooled.session, pooled.condition, side)
-            time, channels = own.index.to_numpy(float) / 100.0 * duration_s, [known[str(name)] for name in own.columns]
-            mean = Recording(time, own.to_numpy(float), tuple(channels), pooled.subject, pooled.condition)
-            found["_".join(word.replace(" ", "-") for word in words if word)] = mean
-    return found
+            time, channels = grid.index.to_numpy(float) / 100 * duration_s, [known[str(name)] for name in grid.columns]
+            mean = Recording(time, grid.to_numpy(float), tuple(channels), pooled.subject, pooled.condition)
+            recordings["_".join(word.replace(" ", "-") for word in words if word)] = mean
+    return recordings
 
 
 def all_curves(cycles: Sequence[PooledCycles]) -> pd.DataFrame:
@@ -86,8 +86,8 @@ def all_spatiotemporal(cycles: Sequence[PooledCycles]) -> pd.DataFrame:
         who, feet = _who(pooled).values(), pooled.kept["side"].to_numpy()
         for side in FEET:
             for value in SPATIOTEMPORAL:
-                own = pooled.kept[value].to_numpy(float)[feet == side]
-                known = own[~np.isnan(own)]
+                values = pooled.kept[value].to_numpy(float)[feet == side]
+                known = values[~np.isnan(values)]
                 spread = float(known.std(ddof=1)) if len(known) > 1 else np.nan
                 rows.append((*who, value, side, len(known), float(known.mean()) if len(known) else np.nan, spread))
     return pd.DataFrame(rows, columns=pd.Index([*WHO, "value", "side", "n", "mean", "sd"]))
@@ -176,8 +176,8 @@ def spatiotemporal_table(sets: Sequence[PooledCycles], name: str) -> Table:
         cells = []
         for pooled in sets:
             for side in FEET:
-                own = known[value, side, pooled.session, pooled.condition]
-                cells.append(mean_cell(own["mean"], own["sd"], own["n"], digits))
+                row = known[value, side, pooled.session, pooled.condition]
+                cells.append(mean_cell(row["mean"], row["sd"], row["n"], digits))
         if set(cells) != {NONE}:
             rows.append((f"{words} [{unit}]", *cells))
     columns = ("value", *(f"{SIDE_WORDS[side]}" for _ in sets for side in FEET))

@@ -67,24 +67,24 @@ def cut_cycles(contacts: Timed, offs: Timed) -> list[Cycle]:
     >>> one.foot_off, one.opposite_off, one.opposite_contact, one.reason
     (0.6, 0.1, 0.5, '')
     """
-    found = []
-    for side, own in sorted(contacts.items()):
+    cycles = []
+    for side, times in sorted(contacts.items()):
         other = other_side(side)
         across = [at for at, _ in contacts.get(other, ())]
-        for (start, by), (end, next_by) in itertools.pairwise(own):
+        for (start, by), (end, next_by) in itertools.pairwise(times):
             length = end - start
             off, off_by = _first(offs.get(side, ()), start + 0.2 * length, start + 0.95 * length)
             inside = [at for at in across if start < at < end]
             landed = inside[0] if len(inside) == 1 else NAN
             until = landed if inside else start + 0.5 * length
-            left, _ = _first(offs.get(other, ()), start - EDGE_S, until)
+            lift, _ = _first(offs.get(other, ()), start - EDGE_S, until)
             seen = bool(across) and across[0] < start and across[-1] > end
             reason = ""
             if len(inside) > 1 or (seen and not inside):
                 count = f"{len(inside)} contacts" if inside else "no contact"
                 reason = f"{count} of the other foot within the cycle: a contact was missed or is false"
-            found.append(Cycle(side, start, end, (by, next_by), off, max(left, start), landed, off_by, False, reason))
-    return found
+            cycles.append(Cycle(side, start, end, (by, next_by), off, max(lift, start), landed, off_by, False, reason))
+    return cycles
 
 
 @dataclass(frozen=True)
@@ -103,19 +103,19 @@ def plate_loadings(trial: Trial, rise_n: float = RISE_N) -> PlateLoadings:
         return PlateLoadings()
     forces = trial.stream("forces").selected_by(lambda channel: channel.quantity == "vertical_force")
     belts = any(channel.side for channel in forces.channels)
-    found: dict[str, list[Span]] = {}
+    loadings: dict[str, list[Span]] = {}
     for channel, force in zip(forces.channels, forces.values.T, strict=True):
         known = finite_values(force)
         if not len(known) or (belts and not channel.side):
             continue
         upward = -force if -known.min() > known.max() else force
         rise = BELT_RISE * np.abs(known).max() if belts else rise_n  # a foot's own force may be in N/kg
-        spans = found.setdefault(channel.side, [])
+        spans = loadings.setdefault(channel.side, [])
         for start, end in loaded(upward, forces.rate_hz, rise):
             if belts or (start > 0 and end < len(force)):
                 spans.append(Span(float(forces.time[start]), float(forces.time[end - 1])))
-    plates = tuple(found.pop("", ()))
-    return PlateLoadings({side: tuple(spans) for side, spans in found.items()}, plates)
+    plates = tuple(loadings.pop("", ()))
+    return PlateLoadings({side: tuple(spans) for side, spans in loadings.items()}, plates)
 
 
 def with_plates(cycles: list[Cycle], plates: PlateLoadings) -> list[Cycle]:
@@ -124,40 +124,40 @@ def with_plates(cycles: list[Cycle], plates: PlateLoadings) -> list[Cycle]:
     One plate is loaded from this contact to this foot off, for no longer than a stance, and no other begins then. A
     force of its own is there for more than half of the stance: over ground a foot also steps beside its plates.
     """
-    found = []
-    for one in cycles:
-        begun = [span for span in plates.spans if abs(span.start - one.start) <= EDGE_S]
-        alone = len(begun) == 1 and abs(begun[0].end - one.foot_off) <= EDGE_S
-        stance = alone and begun[0].seconds <= LONGEST_STANCE * one.duration_s
-        off = one.foot_off if np.isfinite(one.foot_off) else one.start + 0.5 * one.duration_s
-        steps = [span.shared(Span(one.start, off)).seconds for span in plates.belts.get(one.side, ())]
-        carried = sum(max(0.0, seconds) for seconds in steps) > 0.5 * (off - one.start)
-        found.append(replace(one, kinetic=bool(carried or stance)))
-    return found
+    new_cycles = []
+    for cycle in cycles:
+        begun = [span for span in plates.spans if abs(span.start - cycle.start) <= EDGE_S]
+        alone = len(begun) == 1 and abs(begun[0].end - cycle.foot_off) <= EDGE_S
+        stance = alone and begun[0].seconds <= LONGEST_STANCE * cycle.duration_s
+        off = cycle.foot_off if np.isfinite(cycle.foot_off) else cycle.start + 0.5 * cycle.duration_s
+        steps = [span.shared(Span(cycle.start, off)).seconds for span in plates.belts.get(cycle.side, ())]
+        carried = sum(max(0.0, seconds) for seconds in steps) > 0.5 * (off - cycle.start)
+        new_cycles.append(replace(cycle, kinetic=bool(carried or stance)))
+    return new_cycles
 
 
 def with_plate_steps(cycles: list[Cycle], steps: Sequence[PlateStep]) -> list[Cycle]:
     """Same cycles, kinetic where a clean step of the foot, whole in the recording, is this cycle's stance."""
-    whole = [(step.side, step.start, step.end) for step in steps if step.clean and step.whole]
+    clean = [(step.side, step.start, step.end) for step in steps if step.clean and step.whole]
 
-    def stance(one: Cycle) -> bool:
-        ends = [(start - one.start, end - one.foot_off) for side, start, end in whole if side == one.side]
+    def stance(cycle: Cycle) -> bool:
+        ends = [(start - cycle.start, end - cycle.foot_off) for side, start, end in clean if side == cycle.side]
         return any(max(abs(first), abs(last)) <= EDGE_S for first, last in ends)
 
-    return [replace(one, kinetic=stance(one)) for one in cycles]
+    return [replace(cycle, kinetic=stance(cycle)) for cycle in cycles]
 
 
 def without_doubted(cycles: list[Cycle], spans: Sequence[Span]) -> list[Cycle]:
     """Same cycles, not kinetic where more than half of the stance lies in a step whose force is doubted."""
-    found = []
-    for one in cycles:
-        stance = Span(one.start, one.foot_off)
+    new_cycles = []
+    for cycle in cycles:
+        stance = Span(cycle.start, cycle.foot_off)
         inside = max([0.0, *(span.shared(stance).seconds for span in spans)])
-        found.append(replace(one, kinetic=one.kinetic and not inside > 0.5 * stance.seconds))
-    return found
+        new_cycles.append(replace(cycle, kinetic=cycle.kinetic and not inside > 0.5 * stance.seconds))
+    return new_cycles
 
 
-def without_stated(cycles: list[Cycle], said: Sequence[str], file: str) -> tuple[list[Cycle], list[Finding]]:
+def without_stated(cycles: list[Cycle], entries: Sequence[str], file: str) -> tuple[list[Cycle], list[Finding]]:
     """Same cycles, left out where the study says so, by side and start, and a finding for what it says of no cycle.
 
     >>> cycles = [Cycle("l", 2.305, 3.4, ("force", "force"))]
@@ -165,18 +165,18 @@ def without_stated(cycles: list[Cycle], said: Sequence[str], file: str) -> tuple
     >>> found[0].reason, unknown[0].what
     ('left out by the study: stumbled', "leave_out_cycles contains 'right 9.1', but no cycle begins there")
     """
-    found, findings = list(cycles), []
-    for words in said:
+    new_cycles, findings = list(cycles), []
+    for words in entries:
         parts = LEFT_OUT_CYCLE.fullmatch(words)
         side, start, reason = (parts[1], float(parts[2]), parts[3]) if parts else ("", 0.0, "")
-        near = {abs(one.start - start): i for i, one in enumerate(found) if one.side == side}
+        near = {abs(cycle.start - start): i for i, cycle in enumerate(new_cycles) if cycle.side == side}
         if near and min(near) <= SAME_START_S:
             at = near[min(near)]
-            found[at] = replace(found[at], reason=f"left out by the study: {reason or 'no reason is given'}")
+            new_cycles[at] = replace(new_cycles[at], reason=f"left out by the study: {reason or 'no reason is given'}")
         else:
             what = f"leave_out_cycles contains {words!r}, but no cycle begins there"
             findings.append(Finding("warning", "cycle not found", file, what, "nothing; correct it with cycles.csv"))
-    return found, findings
+    return new_cycles, findings
 
 
 @dataclass(frozen=True, eq=False)
@@ -202,43 +202,43 @@ def feet_in(cycles: list[Cycle], feet: HeelPaths | None, belt_m_per_s: float = 0
     """Where the feet were in each cycle, a belt's way at its speed [m/s] added; without paths the step's time alone."""
     if feet is None:
         ran = belt_m_per_s or NAN
-        return [Places(one.end - one.opposite_contact, ran * one.duration_s) for one in cycles]
+        return [Places(cycle.end - cycle.opposite_contact, ran * cycle.duration_s) for cycle in cycles]
     paths, way = feet.heels, feet.way
-    found = []
-    for one in cycles:
-        other = other_side(one.side)
+    places = []
+    for cycle in cycles:
+        other = other_side(cycle.side)
         first, beside, last = (
             interpolate(feet.time, paths[side], np.array([at]))[0]
-            for side, at in ((one.side, one.start), (other, one.opposite_contact), (one.side, one.end))
+            for side, at in ((cycle.side, cycle.start), (other, cycle.opposite_contact), (cycle.side, cycle.end))
         )
         stride = _level(last - first, way.up)
         length = float(np.linalg.norm(stride))
         over_ground = way.headings is not None and length >= SHORTEST_STRIDE_M
         forward = stride / length if over_ground else _level(way.forward, way.up)
-        across = np.cross(forward, way.up) * (1.0 if one.side == "r" else -1.0)
-        step_s = one.end - one.opposite_contact
-        found.append(
+        across = np.cross(forward, way.up) * (1.0 if cycle.side == "r" else -1.0)
+        step_s = cycle.end - cycle.opposite_contact
+        places.append(
             Places(
                 step_s,
-                float(np.dot(stride, forward)) + belt_m_per_s * one.duration_s,
+                float(np.dot(stride, forward)) + belt_m_per_s * cycle.duration_s,
                 float(np.dot(last - beside, forward)) + belt_m_per_s * step_s,
                 float(np.dot(first - beside, across)),
             )
         )
-    return found
+    return places
 
 
 def with_gaps(cycles: list[Cycle], legs: Recording | None) -> list[Cycle]:
     """Same cycles, left out where an angle of the own leg is missing after bridging, or nothing was recorded."""
     if legs is None:
         return cycles
-    own = {side: legs.selected([channel.name for channel in legs.channels if channel.side == side]) for side in "lr"}
-    found = list(cycles)
-    for place, one in enumerate(cycles):
-        if not one.reason and own[one.side].names:
-            (reason,) = gap_reasons(np.array([one.start]), np.array([one.end]), own[one.side])
-            found[place] = replace(one, reason=reason)
-    return found
+    angles = {side: legs.selected([channel.name for channel in legs.channels if channel.side == side]) for side in "lr"}
+    new_cycles = list(cycles)
+    for place, cycle in enumerate(cycles):
+        if not cycle.reason and angles[cycle.side].names:
+            (reason,) = gap_reasons(np.array([cycle.start]), np.array([cycle.end]), angles[cycle.side])
+            new_cycles[place] = replace(cycle, reason=reason)
+    return new_cycles
 
 
 def _first(times: tuple[tuple[float, str], ...], start: float, end: float) -> tuple[float, str]:
@@ -276,17 +276,17 @@ def cycle_channels(
             findings.append(Finding("warning", "left out", trial.name, f"{key}: {error}", f"curves of the {key}"))
             continue
         if key == "kinematics":
-            own = [channel.name for channel in recording.channels if channel.name.startswith(LEGS)]
-            legs = fill_gaps(without_spikes(recording.selected(own)), None, filters.gap_s) if own else None
+            names = [channel.name for channel in recording.channels if channel.name.startswith(LEGS)]
+            legs = fill_gaps(without_spikes(recording.selected(names)), None, filters.gap_s) if names else None
         if state is not None:
             states.append(state)
             words.append(how)
     weighed = scale_forces(trial)
-    if weighed is not None and not any(set(weighed.names) & set(one.names) for one in states):
+    if weighed is not None and not any(set(weighed.names) & set(state.names) for state in states):
         states.append(weighed)
         words.append("forces in % of body weight as in the file")
-    said = [Finding("note", "filter", trial.name, "; ".join(words), "")] if words else []
-    return legs, tuple(states), (*findings, *said)
+    notes = [Finding("note", "filter", trial.name, "; ".join(words), "")] if words else []
+    return legs, tuple(states), (*findings, *notes)
 
 
 def _list_known(trial: Trial, key: str, quantities: tuple[str, ...]) -> Recording | None:
@@ -297,11 +297,11 @@ def _list_known(trial: Trial, key: str, quantities: tuple[str, ...]) -> Recordin
     recording = trial.stream(key)
     if key == "kinematics":
         recording = with_pelvis_and_foot(recording)
-    own = recording.selected_by(
-        lambda one: one.name in words and one.quantity in quantities and (key != "forces" or bool(one.side))
+    known = recording.selected_by(
+        lambda c: c.name in words and c.quantity in quantities and (key != "forces" or bool(c.side))
     )
-    names = [name for name in own.names if np.isfinite(own[name]).any()]
-    return own.selected(names) if names else None
+    names = [name for name in known.names if np.isfinite(known[name]).any()]
+    return known.selected(names) if names else None
 
 
 def _filter(key: str, recording: Recording, filters: Filters, computed: bool) -> tuple[Recording | None, str]:
@@ -318,10 +318,10 @@ def _filter(key: str, recording: Recording, filters: Filters, computed: bool) ->
         return recording, f"moments and powers from markers ({low}) and forces ({FORCE_HZ:g} Hz)"
     if key == "moments":
         return fill_gaps(recording, None, filters.gap_s), "moments and powers as in the file"
-    whole = fill_gaps(without_spikes(plateau_marked(recording)), None, filters.gap_s)
+    angles = fill_gaps(without_spikes(plateau_marked(recording)), None, filters.gap_s)
     if not computed:
-        return whole, "angles as in the file"
-    return low_pass(whole, filters.kinematics_hz, filters.order, filters.gap_s), f"angles from markers, {low}"
+        return angles, "angles as in the file"
+    return low_pass(angles, filters.kinematics_hz, filters.order, filters.gap_s), f"angles from markers, {low}"
 
 
 def scale_forces(trial: Trial) -> Recording | None:
@@ -333,7 +333,7 @@ def scale_forces(trial: Trial) -> Recording | None:
     if "moments" not in trial.streams:
         return None
     moments = trial.stream("moments")
-    found: dict[Channel, Values] = {}
+    forces: dict[Channel, Values] = {}
     for side, letter in (("l", "L"), ("r", "R")):
         labels = [f"{letter}NormalisedGRF.{axis}" for axis in "xz"]
         if any(label not in moments.names or moments.channels[moments.index(label)].unit != "%" for label in labels):
@@ -342,11 +342,11 @@ def scale_forces(trial: Trial) -> Recording | None:
         loaded = upwards > LOADED_PERCENT
         if loaded.any():
             braking = sum(float(along[a : (a + b) // 2].sum()) for a, b in runs(loaded))
-            found[Channel(f"ground_force_{side}_vx", "force", "%", side)] = -along if braking > 0 else along
-            found[Channel(f"ground_force_{side}_vy", "vertical_force", "%", side)] = upwards
-    if not found:
+            forces[Channel(f"ground_force_{side}_vx", "force", "%", side)] = -along if braking > 0 else along
+            forces[Channel(f"ground_force_{side}_vy", "vertical_force", "%", side)] = upwards
+    if not forces:
         return None
-    return Recording(moments.time, np.column_stack(list(found.values())), tuple(found), trial.subject, trial.condition)
+    return Recording(moments.time, np.column_stack([*forces.values()]), tuple(forces), trial.subject, trial.condition)
 
 
 def with_pelvis_and_foot(angles: Recording) -> Recording:
@@ -363,12 +363,12 @@ def with_pelvis_and_foot(angles: Recording) -> Recording:
         return angles
     columns, signs = list(taken), np.array([sign for _, sign in taken.values()])
     marks = angles.suspect
-    own = [channel for channel, _ in taken.values()]
-    new = replace(angles, values=angles.values[:, columns] * signs, channels=tuple(own), suspect=None)
+    channels = [channel for channel, _ in taken.values()]
+    new = replace(angles, values=angles.values[:, columns] * signs, channels=tuple(channels), suspect=None)
     return replace(
         angles,
         values=np.column_stack([angles.values, _from_own_heading(new).values]),
-        channels=(*angles.channels, *own),
+        channels=(*angles.channels, *channels),
         suspect=None if marks is None else np.column_stack([marks, marks[:, columns]]),
     )
 

@@ -61,14 +61,14 @@ def without_contradicted(trial: Trial) -> Trial:
         if not set(streams) <= set(trial.streams):
             continue
         recording = trial.stream(streams[0])
-        found = list(check(*(trial.stream(key) for key in streams)))
+        contradictions = list(check(*(trial.stream(key) for key in streams)))
         file, spoils = recording.source.file, "the channel, which is excluded; correct the file"
-        said = [Finding("refused", KIND, file, what, spoils, list_names(names)) for names, what in found]
-        lost = {name for names, _ in found for name in names}
+        findings = [Finding("refused", KIND, file, what, spoils, list_names(names)) for names, what in contradictions]
+        lost = {name for names, _ in contradictions for name in names}
         kept = [name for name in recording.names if name not in lost]
         rest = {key: value for key, value in trial.streams.items() if kept or key != streams[0]}
         rest |= {streams[0]: recording.selected(kept)} if kept and lost else {}
-        trial = replace(trial, streams=rest, findings=(*trial.findings, *said))
+        trial = replace(trial, streams=rest, findings=(*trial.findings, *findings))
     return trial
 
 
@@ -76,31 +76,31 @@ def line_angles(markers: Recording) -> dict[str, Values]:
     """Angles of the lines hip to knee to ankle and heel to toe, each (frame,) [deg], as far as there are markers."""
     labels = marker_labels(markers)
     named: dict[tuple[str, str], list[str]] = {}
-    for known in sorted(read_marker_sets().values(), key=lambda one: len(one.names(labels))):  # the best one last
-        own, on = known.names(labels), itertools.product(NEEDED, "lr")
-        named |= {place: [own[name] for name in names] for place in on if (names := known.landmark(*place, own))}
-    seen = {place: marker_places(markers, names).mean(axis=1) for place, names in named.items()}
-    seen = {place: points for place, points in seen.items() if np.isfinite(points).any()}
-    found, axes, spines = {}, (), [("asis", "l"), ("asis", "r"), ("sacrum", "l")]
-    if set(spines) <= set(seen):
-        left, right, back = (seen[place] for place in spines)
+    for known in sorted(read_marker_sets().values(), key=lambda marker_set: len(marker_set.names(labels))):  # best last
+        label, on = known.names(labels), itertools.product(NEEDED, "lr")
+        named |= {place: [label[name] for name in names] for place in on if (names := known.landmark(*place, label))}
+    centres = {place: marker_places(markers, names).mean(axis=1) for place, names in named.items()}
+    centres = {place: points for place, points in centres.items() if np.isfinite(points).any()}
+    angles, axes, spines = {}, (), [("asis", "l"), ("asis", "r"), ("sacrum", "l")]
+    if set(spines) <= set(centres):
+        left, right, back = (centres[place] for place in spines)
         across = _unit(right - left)
         upward = _unit(np.cross(across, (left + right) / 2 - back))
         axes = (np.cross(upward, across), -upward, across)
-        seen |= {("hip", side): hip_of_spines(left, right, back, side) for side in "lr"}
+        centres |= {("hip", side): hip_of_spines(left, right, back, side) for side in "lr"}
     for side in "lr":
         thigh, shank, foot = (
-            _unit(seen[end, side] - seen[start, side]) if {(start, side), (end, side)} <= set(seen) else None
+            _unit(centres[end, side] - centres[start, side]) if {(start, side), (end, side)} <= set(centres) else None
             for start, end in (("hip", "knee_lateral"), ("knee_lateral", "ankle_lateral"), ("heel", "toe"))
         )
         if thigh is not None:
             ahead, down, aside = ((thigh * axis).sum(axis=1) for axis in axes)
-            found[f"hip_flexion_{side}"] = np.degrees(np.arctan2(ahead, down))
-            found[f"hip_adduction_{side}"] = np.degrees(np.arcsin(-aside if side == "r" else aside))
+            angles[f"hip_flexion_{side}"] = np.degrees(np.arctan2(ahead, down))
+            angles[f"hip_adduction_{side}"] = np.degrees(np.arcsin(-aside if side == "r" else aside))
         for name, above, below, straight in (("knee_angle", thigh, shank, 0.0), ("ankle_angle", shank, foot, 90.0)):
             if above is not None and below is not None:
-                found[f"{name}_{side}"] = np.degrees(np.arccos(np.clip((above * below).sum(axis=1), -1, 1))) - straight
-    return found
+                angles[f"{name}_{side}"] = np.degrees(np.arccos(np.clip((above * below).sum(axis=1), -1, 1))) - straight
+    return angles
 
 
 def _unit(vectors: NDArray) -> Values:
@@ -111,7 +111,7 @@ def _in_radians(angles: Recording) -> Contradictions:
     """Angles of a walk that move less than skin does and stay within half a turn counted in radians."""
     names = [c.name for c in angles.channels if c.unit == "deg" and _ANGLE.fullmatch(c.name)]
     reach = {name: _range(angles[name]) for name in names}
-    found = [
+    still = [
         name
         for name in names
         if LOCKED_DEG < reach[name] < (STILL_DEG if _FLEXION.fullmatch(name) else STILL_OTHER_DEG)
@@ -119,10 +119,10 @@ def _in_radians(angles: Recording) -> Contradictions:
     ]
     legs = [name for name in names if name.startswith(("hip_flexion", "knee_angle"))]
     most = max((reach[name] for name in legs), default=0.0)
-    whole = set(legs) <= set(found) and most >= WALKS_RAD
-    if found and (whole or most >= WALKS_DEG):
-        what = f"{found[0]} varies by {reach[found[0]]:.2g} deg in a walk, less than skin moves: it seems to be in rad"
-        yield names if whole else found, what
+    all_legs = set(legs) <= set(still) and most >= WALKS_RAD
+    if still and (all_legs or most >= WALKS_DEG):
+        what = f"{still[0]} varies by {reach[still[0]]:.2g} deg in a walk, less than skin moves: it seems to be in rad"
+        yield names if all_legs else still, what
 
 
 def _against_markers(angles: Recording, markers: Recording) -> Contradictions:
@@ -137,20 +137,20 @@ def _against_markers(angles: Recording, markers: Recording) -> Contradictions:
         if not np.isfinite(line).any():
             continue
         known = np.isfinite(angles[name]) & (np.abs(line - np.nanmedian(line)) < OTHER_PLACE_DEG)
-        own, line = angles[name][known], line[known]
-        moved, r = (_range(own), _range(line)), _correlation(own, line)
+        angle, line = angles[name][known], line[known]
+        moved, r = (_range(angle), _range(line)), _correlation(angle, line)
         what = f"{name} varies by {moved[0]:.3g} deg, the lines between its markers by {moved[1]:.3g} deg (r = {r:.2f})"
         if moved[1] >= MOVES_DEG and r < -AGAINST:
             yield [name], f"{what}: its sign is wrong, or two of the markers are exchanged"
         elif (
             moved[1] >= MOVES_DEG
             and r > ALIKE
-            and not 1 / SCALE < median_abs_deviation(own) / median_abs_deviation(line) < SCALE
+            and not 1 / SCALE < median_abs_deviation(angle) / median_abs_deviation(line) < SCALE
         ):
             yield [name], f"{what}: its unit or scale is wrong"
         elif len(line) >= FEWEST:
             bent = line > np.median(line)
-            offsets[name] = np.array([np.median((own - line)[part]) for part in (bent, ~bent)])
+            offsets[name] = np.array([np.median((angle - line)[part]) for part in (bent, ~bent)])
     for joint, usual in USUAL_OFFSET_DEG.items():
         both = {name: offsets[name] for name in (f"{joint}_l", f"{joint}_r") if name in offsets}
         apart = np.subtract(*both.values()) if len(both) == 2 else np.zeros(2)
@@ -223,9 +223,9 @@ def _find_turned_moments(moments: Recording, source: Recording) -> Contradiction
         if moment not in moments.names or beside not in source.names:
             continue
         other = interpolate(source.time, source[beside][:, None], moments.time)[:, 0]
-        own = np.where(moments[moment] == 0, np.nan, moments[moment])
-        r = _correlation(own, other)
-        if r > AGAINST and _range(other) >= MOVES_DEG and (beside.startswith("hip") or np.nanmean(own) > 0):
+        values = np.where(moments[moment] == 0, np.nan, moments[moment])
+        r = _correlation(values, other)
+        if r > AGAINST and _range(other) >= MOVES_DEG and (beside.startswith("hip") or np.nanmean(values) > 0):
             what = f"{moment} correlates with {beside} (r = {r:.2f}), although the two oppose each other in walking"
             yield [moment], f"{what}: its sign is wrong"
 
@@ -236,9 +236,9 @@ def _range(values: Values) -> float:
     return float(np.ptp(np.quantile(known, [0.05, 0.95]))) if len(known) >= FEWEST else 0.0
 
 
-def _correlation(one: Values, other: Values) -> float:
+def _correlation(first: Values, second: Values) -> float:
     """Of the ranks, which single wild frames do not move; 0 where one stands still."""
-    known = np.isfinite(one) & np.isfinite(other)
-    if known.sum() < FEWEST or not np.ptp(one[known]) or not np.ptp(other[known]):
+    known = np.isfinite(first) & np.isfinite(second)
+    if known.sum() < FEWEST or not np.ptp(first[known]) or not np.ptp(second[known]):
         return 0.0
-    return float(np.corrcoef(rankdata(one[known]), rankdata(other[known]))[0, 1])
+    return float(np.corrcoef(rankdata(first[known]), rankdata(second[known]))[0, 1])

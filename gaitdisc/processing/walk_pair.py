@@ -58,7 +58,7 @@ def walk_pair(
     given = (first, second)
     trials = [_with_strides(trial) for trial in given]
     chosen, contacts = _common_contacts(trials, detector)
-    one, other = (
+    first_summary, second_summary = (
         _summary(trials[k], contacts[k], cutoff_hz, repeated=trials[k] is not given[k]) for k in range(len(given))
     )
     what = f"percent stride begins at the contacts from {chosen} in both walks"
@@ -67,7 +67,7 @@ def walk_pair(
         foot = {"r": "right", "l": "left"}[next(iter(contacts[0]))]
         spoils = "percent stride of the other leg"
         note = replace(note, severity="warning", what=f"{what}; the {foot} foot is used for both legs", spoils=spoils)
-    return one, replace(other, findings=(*other.findings, note))
+    return first_summary, replace(second_summary, findings=(*second_summary.findings, note))
 
 
 def _with_strides(trial: Trial) -> Trial:
@@ -83,7 +83,7 @@ def _with_strides(trial: Trial) -> Trial:
 
 def _common_contacts(trials: list[Trial], detector: str) -> tuple[str, list[Mapping[str, Contacts]]]:
     names = PREFERRED if detector == "auto" else (detector,)
-    found, reasons = [], []
+    contacts, reasons = [], []
     for trial, joints in zip(trials, _with_common_joints(trials), strict=True):
         here: dict[str, Mapping[str, Contacts]] = {}
         why = []
@@ -92,15 +92,15 @@ def _common_contacts(trials: list[Trial], detector: str) -> tuple[str, list[Mapp
                 here[name] = _contacts(trial, name, joints)
             except GaitdiscError as error:
                 why.append(f"{name}: {error.found}")
-        found.append(here)
+        contacts.append(here)
         reasons.append(f"{trial.name} {'by ' + '; by '.join(why) if why else 'has contacts by ' + ', '.join(here)}")
-    most = [max(map(_stride_count, here.values()), default=0) for here in found]
+    most = [max(map(_stride_count, here.values()), default=0) for here in contacts]
     for name in names:
         serves = [
-            name in here and _stride_count(here[name]) >= ENOUGH * top for here, top in zip(found, most, strict=True)
+            name in here and _stride_count(here[name]) >= ENOUGH * top for here, top in zip(contacts, most, strict=True)
         ]
-        if all(serves) and min(most) and (sides := found[0][name].keys() & found[1][name].keys()):
-            return name, [{side: here[name][side] for side in sides} for here in found]
+        if all(serves) and min(most) and (sides := contacts[0][name].keys() & contacts[1][name].keys()):
+            return name, [{side: here[name][side] for side in sides} for here in contacts]
     raise StrideError(
         "the same detector must find strides in both walks: force, events, markers or hip angles",
         ". ".join(reasons),
@@ -111,7 +111,7 @@ def _common_contacts(trials: list[Trial], detector: str) -> tuple[str, list[Mapp
 def _contacts(trial: Trial, name: str, joints: Recording | None) -> Mapping[str, Contacts]:
     if name != "angles":
         seen, _ = find_contacts(trial)  # as placed: one recording may lack the plate that corrects the other
-        contacts = {side: one for side, one in seen.get(name, {}).items() if len(one) > 1}
+        contacts = {side: foot_contacts for side, foot_contacts in seen.get(name, {}).items() if len(foot_contacts) > 1}
         return contacts or choose_contacts(trial, name).contacts  # which says why there are none
     if joints is None:
         raise StrideError(
@@ -136,11 +136,11 @@ def _with_common_joints(trials: list[Trial]) -> list[Recording | None]:
 
 
 def _stride_count(contacts: Mapping[str, Contacts]) -> int:
-    return sum(len(one) - 1 for one in contacts.values())
+    return sum(len(foot_contacts) - 1 for foot_contacts in contacts.values())
 
 
 def _summary(trial: Trial, contacts: Mapping[str, Contacts], cutoff_hz: float, repeated: bool) -> WalkSummary:
-    strides = {side: cut_strides(found) for side, found in sorted(contacts.items())}
+    strides = {side: cut_strides(foot_contacts) for side, foot_contacts in sorted(contacts.items())}
     if "kinematics" in trial.streams and not repeated:
         names = {f"{joint}_{side}" for joint in ("hip_flexion", "knee_angle", "ankle_angle") for side in "rl"}
         legs = trial.stream("kinematics").selected_by(lambda channel: channel.name in names)
@@ -157,12 +157,12 @@ def _summary(trial: Trial, contacts: Mapping[str, Contacts], cutoff_hz: float, r
         if f"knee_angle_{follow}" in legs.names:
             verify_sides(legs, strides[follow])
         findings += [] if repeated else stride_findings(trial.stream("kinematics"), strides[follow])
-    found = walk_summary(trial, states, strides, follow, findings)
-    found = replace(found, condition=trial.condition or trial.name)
+    walk = walk_summary(trial, states, strides, follow, findings)
+    walk = replace(walk, condition=trial.condition or trial.name)
     if not repeated:
-        return found
+        return walk
     # all strides are the same
-    return replace(found, duration_s=found.duration_s / TIMES, curves=found.curves[len(found.curves) // 2 :][:1])
+    return replace(walk, duration_s=walk.duration_s / TIMES, curves=walk.curves[len(walk.curves) // 2 :][:1])
 
 
 def _state(trial: Trial, key: str, cutoff_hz: float) -> Recording | None:
@@ -191,7 +191,7 @@ def repeat_stride(trial: Trial) -> Trial:
     """
     kinematics = trial.stream("kinematics")
     count = _period(kinematics, trial.name)
-    kept = {
+    streams = {
         key: replace(
             recording,
             time=recording.time[0] + np.arange(TIMES * count) / recording.rate_hz,
@@ -201,13 +201,13 @@ def repeat_stride(trial: Trial) -> Trial:
         for key, recording in trial.streams.items()
         if len(recording.time) == len(kinematics.time) and np.allclose(recording.time, kinematics.time, atol=1e-6)
     }
-    left = sorted(set(trial.streams) - set(kept))
+    excluded = sorted(set(trial.streams) - set(streams))
     what = f"one stride of {count / kinematics.rate_hz:.3f} s that ends as it began, repeated {TIMES} times"
-    if left:
-        what += f"; excluded because of a different time base: {', '.join(left)}"
+    if excluded:
+        what += f"; excluded because of a different time base: {', '.join(excluded)}"
     spread = "the spread over strides, which a single stride does not have"
     note = Finding("note", "one stride", kinematics.source.file or trial.name, what, spread)
-    return replace(trial, streams=kept, events=(), findings=(*trial.findings, note))
+    return replace(trial, streams=streams, events=(), findings=(*trial.findings, note))
 
 
 def _period(kinematics: Recording, name: str) -> int:
@@ -215,8 +215,8 @@ def _period(kinematics: Recording, name: str) -> int:
     angles = kinematics.selected_by(lambda channel: channel.quantity == "angle" and channel.name.startswith(LEGS))
     needed = f"one stride of a periodic simulation must last {MIN_S:g} to {MAX_S:g} s and end as it began"
     if not MIN_S <= kinematics.duration_s <= MAX_S or len(kinematics.time) < 8:
-        found = f"{name} lasts {kinematics.duration_s:.2f} s in {len(kinematics.time)} samples"
-        raise StrideError(needed, found, "Use one complete stride, or a walk of several strides.")
+        defect = f"{name} lasts {kinematics.duration_s:.2f} s in {len(kinematics.time)} samples"
+        raise StrideError(needed, defect, "Use one complete stride, or a walk of several strides.")
     x = angles.values
     reach = np.ptp(x, axis=0)
     moving = np.isfinite(reach) & (reach > 1.0)
@@ -225,8 +225,8 @@ def _period(kinematics: Recording, name: str) -> int:
     apart = np.abs(x[-1] - x[0])[moving] / reach[moving]
     if np.median(apart) > CLOSES:
         worst = int(np.flatnonzero(moving)[np.argmax(apart)])
-        found = f"in {name}, {angles.names[worst]} ends {abs(x[-1, worst] - x[0, worst]):.1f} deg from where it began"
-        raise StrideError(needed, found, "Use a complete stride (two steps), or a walk of several strides.")
+        defect = f"in {name}, {angles.names[worst]} ends {abs(x[-1, worst] - x[0, worst]):.1f} deg from where it began"
+        raise StrideError(needed, defect, "Use a complete stride (two steps), or a walk of several strides.")
     step = np.abs(np.diff(x, axis=0)).mean(axis=0)[moving] / reach[moving]
     beside = np.abs(x[1] - x[-1])[moving] / reach[moving]
     closing = np.median(apart) < 0.25 * np.median(step) and np.median(beside) > np.median(apart)
