@@ -59,6 +59,14 @@ def make_unique(labels: Sequence[str], word: str) -> list[str]:
     return names
 
 
+def find_equal_labels(labels: Iterable[str], file: str) -> list[Finding]:
+    """Say which labels several points have, which `make_unique` numbers."""
+    doubled = sorted(label for label, count in Counter(labels).items() if label and count > 1)
+    what = f"labels that several points have, now numbered ({len(doubled)} in all): {', '.join(doubled[:3])}"
+    finding = Finding("warning", "equal labels", file, what, "these points; give each point its own label")
+    return [finding] if doubled else []
+
+
 class LabelMap:
     """The study's map from labels of the file to names of channels.
 

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import re
-from collections import Counter
 from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
@@ -13,7 +12,7 @@ from numpy.typing import NDArray
 
 from gaitdisc.channel import Channel, vocabulary
 from gaitdisc.errors import ReadError, UnitError
-from gaitdisc.ingest.c3d_labels import LabelMap, make_unique, without_prefix
+from gaitdisc.ingest.c3d_labels import LabelMap, find_equal_labels, make_unique, without_prefix
 from gaitdisc.ingest.c3d_parameters import BLOCK, C3DHeader, C3DParameters, decoded
 from gaitdisc.ingest.columns import name_channel
 from gaitdisc.ingest.stated_units import METRES_AT_MOST, MILLIMETRES_AT_LEAST, distance_from_origin, refuse_other_unit
@@ -84,13 +83,8 @@ def point_streams(rows: Values, parameters: C3DParameters, labels: LabelMap) -> 
     names, file = point_names(parameters, rows.shape[1] // 3), parameters.file
     kinds = _kinds(names, parameters)
     plain, suffixed = _without_suffix(names, kinds, file)
-    findings: list[Finding] = []
-    counts = Counter(without_prefix(label) for label in parameters.texts("POINT", "LABELS")[: len(names)])
-    doubled = sorted(label for label, count in counts.items() if label and count > 1)
-    if doubled:
-        what = f"labels that several points have, now numbered ({len(doubled)} in all): {', '.join(doubled[:3])}"
-        findings.append(Finding("warning", "equal labels", file, what, "these points; give each point its own label"))
-    findings += suffixed
+    listed = map(without_prefix, parameters.texts("POINT", "LABELS")[: len(names)])
+    findings = [*find_equal_labels(listed, file), *suffixed]
     places = [point for point, name in enumerate(names) if name not in kinds]
     markers = rows[:, _columns(places)]
     triples = markers.reshape(len(markers), markers.shape[1] // 3, 3)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import os
 from collections import Counter
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -33,11 +33,13 @@ from gaitdisc.ingest.people_table import (
 from gaitdisc.ingest.reading import ENDINGS, read_trial
 from gaitdisc.ingest.study import FUNCTIONAL, STATIC, UNKNOWN, Conditions, Participant, PlannedTrial, Study
 from gaitdisc.ingest.study_settings import ANGLES, OUTPUTS, Models
+from gaitdisc.own_files import KINDS, LIST
 from gaitdisc.recording import Recording, Trial
 
 if TYPE_CHECKING:
     from gaitdisc.ingest.c3d import C3DReader
 
+OURS = ("", ".toml", ".toml-held")  # endings of no recording: none, a study file's and its lock's
 CONSTANT_DEG = 1e-6  # range below which an angle does not vary
 STILL_M, STILL_DEG = 0.05, 8.0  # who stands sways by some centimetres
 
@@ -94,8 +96,8 @@ def draft_study(
     notes: list[str] = []
     if files is None:
         files = recording_files(folder)
-        endings = Counter(path.suffix.lower() for path in folder.rglob("*.*") if path.is_file())
-        unread = [f"{count} {ending}" for ending, count in sorted(endings.items()) if ending not in (*ENDINGS, "")]
+        endings = Counter(path.suffix.lower() for path in list_files(folder))
+        unread = [f"{count} {ending}" for ending, count in sorted(endings.items()) if ending not in (*ENDINGS, *OURS)]
         _note(notes, "files not read because of their ending: ", unread)
     tables = [path for path in files if is_people_table(path)]
     measured = read_people(folder, tables, notes)
@@ -155,10 +157,16 @@ def _note(notes: list[str], before: str, names: Iterable[str], after: str = "") 
 
 def recording_files(folder: Path) -> list[Path]:
     """Files of a folder that a recording may be, relative to it."""
-    inside = (path.relative_to(folder) for path in folder.rglob("*") if path.is_file())
-    return sorted(
-        path for path in inside if path.suffix.lower() in ENDINGS and not any(p.startswith(".") for p in path.parts)
-    )
+    return sorted(path for path in list_files(folder) if path.suffix.lower() in ENDINGS)
+
+
+def list_files(folder: Path) -> Iterator[Path]:
+    """List files of a folder, relative to it, that are not hidden and not in a run of a study."""
+    runs = {path.parent for path in folder.rglob(LIST) if (path.parent / KINDS[0]).is_file()} - {folder}
+    for path in folder.rglob("*"):
+        inside = path.relative_to(folder)
+        if path.is_file() and runs.isdisjoint(path.parents) and not any(p.startswith(".") for p in inside.parts):
+            yield inside
 
 
 def _bodies(

@@ -11,6 +11,7 @@ import numpy as np
 
 from gaitdisc.channel import Channel
 from gaitdisc.errors import ReadError, SamplingError, UnitError
+from gaitdisc.ingest.c3d_labels import find_equal_labels, make_unique
 from gaitdisc.ingest.cells import Form, check_counts, even_time, parse_cells
 from gaitdisc.ingest.columns import Column, map_label, sort_trial, split_unit
 from gaitdisc.ingest.raw_file import read_raw
@@ -68,9 +69,11 @@ def read_trc(path: Path | str, channels: Mapping[str, str] | None = None) -> Tri
     places = positions.reshape(len(positions), -1, 3).copy()
     places[(places == 0).all(axis=2)] = np.nan
     plain = [label.rpartition(":")[2].strip() or label for label in header.labels]
-    pairs = zip(header.labels, plain, strict=True)
+    findings += find_equal_labels(plain, raw.name)
+    unlike = make_unique(plain, "marker")
+    pairs = zip(header.labels, unlike, strict=True)
     said = [map_label(label, channels) or map_label(short, channels) for label, short in pairs]
-    names = [split_unit(name)[0] if name else short for name, short in zip(said, plain, strict=True)]
+    names = [split_unit(name)[0] if name else short for name, short in zip(said, unlike, strict=True)]
     if plain != list(header.labels):
         findings.append(Finding("note", "identifier", raw.name, "the part of the labels before ':' was removed", ""))
     columns = [Column(name, Channel(f"{name}.{axis}", "marker", "m"), header.unit) for name in names for axis in "xyz"]

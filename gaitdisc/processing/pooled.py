@@ -46,6 +46,7 @@ from gaitdisc.signals.contacts import find_rise
 from gaitdisc.signals.sides import verify_sides
 from gaitdisc.signals.strides import LEAST_COVERAGE, duration_reasons, verify_walking
 
+SAMPLES = ("gap", "jump")  # kinds of findings about samples alone
 DOUBTED = ("plate step", "swapped plates")  # findings whose spans no kinetics are shown of
 KINETIC = ("moment", "power", "force", "vertical_force")  # quantities that need a plate under the foot
 # kind of event and detector -> how much later the ground places each that both see [s], of all trials of a session
@@ -83,6 +84,24 @@ class _CutTrial:
     def kept(self) -> list[Cycle]:
         """Cycles that nothing speaks against."""
         return [cycle for cycle in self.cycles if not cycle.reason]
+
+    @property
+    def findings(self) -> list[Finding]:
+        """Findings of the trial; a person who enters or leaves the measured volume spoils no kept cycle."""
+        outside = "nothing: before the first kept cycle of the leg or after its last"
+        return [
+            replace(finding, severity="note", spoils=outside) if self._spoils_none(finding) else finding
+            for finding in self.seen.findings
+        ]
+
+    def _spoils_none(self, finding: Finding) -> bool:
+        known = vocabulary().by_name.get(finding.channel)
+        if not self.seen.over_ground or finding.kind not in SAMPLES or known is None or not finding.spans:
+            return False
+        cycles = [cycle for cycle in self.kept if known.side in ("", cycle.side)]
+        first = min((cycle.start for cycle in cycles), default=0.0)
+        last = max((cycle.end for cycle in cycles), default=np.inf)
+        return all(span.end <= first or span.start >= last for span in finding.spans)
 
 
 def pool_cycles(study: Study, participant: Participant, read: Read) -> tuple[PooledCycles, ...]:
@@ -211,7 +230,7 @@ def _pool(
     late = next((trial.steps.detector for trial in seen if trial.steps.detector in SEEN_LATE), "")
     off_late = next((trial.steps.off_detector for trial in seen), "")
     offset_s, steps = _offset_s(later, "contacts", late), len(later.get(("contacts", late), ()))
-    findings = [finding for trial in seen for finding in trial.findings]
+    findings = [finding for trial in cut for finding in trial.findings]
     findings += [finding for trial in cut for finding in trial.unknown]
     if late:
         by = "the difference at one step" if steps == 1 else f"the median difference at {steps} steps"

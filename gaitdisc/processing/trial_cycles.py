@@ -382,11 +382,13 @@ def _from_own_heading(angles: Recording) -> Recording:
     if not {"pelvis_tilt", "pelvis_list", "pelvis_rotation"} <= set(angles.names):
         return angles
     turned = unwrap(angles)["pelvis_rotation"]
-    known, time = np.isfinite(turned), np.arange(len(turned))
-    half = max(round(PATH_S * angles.rate_hz / 2), 1)
-    padded = np.pad(np.interp(time, time[known], turned[known]) if known.any() else turned, half, mode="edge")
-    heading = np.convolve(padded, np.full(2 * half + 1, 1 / (2 * half + 1)), "valid")
-    if not np.ptp(heading) >= STRAIGHT_DEG:
+    seen, half = np.flatnonzero(np.isfinite(turned)), max(round(PATH_S * angles.rate_hz / 2), 1)
+    if not len(seen) or seen[-1] - seen[0] < 2 * half:
+        return angles
+    between = np.interp(np.arange(seen[0], seen[-1] + 1), seen, turned[seen])
+    means = np.convolve(between, np.full(2 * half + 1, 1 / (2 * half + 1)), "valid")  # of whole seconds, held beyond
+    heading = np.pad(means, (seen[0] + half, len(turned) - 1 - seen[-1] + half), mode="edge")
+    if np.ptp(heading) < STRAIGHT_DEG:
         return angles
     level = make_rotation(np.stack([0 * heading, 0 * heading, heading], axis=1))
     lab = make_rotation(np.stack([angles["pelvis_tilt"], angles["pelvis_list"], turned], axis=1))

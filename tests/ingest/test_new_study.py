@@ -16,6 +16,7 @@ from gaitdisc.ingest.storage import write_storage
 from gaitdisc.ingest.study import Conditions, Participant, PlannedTrial, Study
 from gaitdisc.ingest.study_file import grow_study, load_study, write_study
 from gaitdisc.ingest.study_settings import ANGLES
+from gaitdisc.own_files import LIST
 from gaitdisc.recording import Event, Recording, Trial
 
 TIME = np.arange(300) / 100
@@ -106,7 +107,9 @@ def test_the_way_to_the_folder_does_not_matter_but_hidden_folders_are_passed_ove
 def test_folders_without_recordings_are_refused(tmp_path):
     with pytest.raises(ReadError, match="none must be a folder"):
         draft_study(tmp_path / "none")
-    (tmp_path / "plates.forces").touch()
+    (tmp_path / "run").mkdir()
+    for name in ("plates.forces", "study.toml", "run/run.json", f"run/{LIST}", "run/cycles.csv"):  # a study and its run
+        (tmp_path / name).touch()
     with pytest.raises(ReadError, match=r"none.*; files not read because of their ending: 1 \.forces\. Name"):
         draft_study(tmp_path)
     (tmp_path / "a.mot").write_text("x")

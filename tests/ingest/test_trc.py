@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from texts import says
 
-from gaitdisc.errors import ChannelError, ReadError, SamplingError, UnitError
+from gaitdisc.errors import ReadError, SamplingError, UnitError
 from gaitdisc.ingest.trc import parse_trc_header, read_trc
 
 ROWS = "".join(f"{i + 1}\t{i / 100:.3f}\t{i}\t2\t3\t{10 * i + 1}\t\t30\n" for i in range(10))
@@ -75,7 +75,6 @@ def test_names_of_subjects_are_dropped_and_labels_mapped(tmp_path):
         ("\t10\t2\t", "\tten\t2\t", ReadError, "NumFrames in line 3 must be above 0; found 'ten'"),
         ("\t10\t2\t", "\t12\t2\t", ReadError, "have 12 frames,.* ends after 10 frames, at line 16"),
         ("\n100\t", "\n50\t", SamplingError, r"DataRate states 50 Hz, but the times step by 0.01 s \(100 Hz\)"),
-        ("LHEE", "RHEE", ChannelError, "'RHEE.x' in columns"),
         ("\t41\t\t30\n", "\t41\n", ReadError, "must have 8 cells, one per column; line 11 has 6"),
         ("\t41\t", "\tx\t", ReadError, r"line 11, column 'LHEE\.x'"),
         ("5\t0.040", "5\t0.035", SamplingError, "constant rate"),
@@ -86,6 +85,12 @@ def test_bad_files_are_refused_in_words(tmp_path, old, new, kind, words):
     with pytest.raises(kind, match=words) as refusal:
         _read(tmp_path, TEXT.replace(old, new))
     assert "a.trc" in str(refusal.value)
+
+
+def test_equal_labels_are_numbered_as_in_a_c3d_file(tmp_path):
+    trial = _read(tmp_path, TEXT.replace("LHEE", "RHEE"), {"RHEE_2": "heel_l"})
+    assert trial.streams["markers"].names[::3] == ("RHEE_1.x", "heel_l.x")
+    assert [finding.kind for finding in trial.findings] == ["equal labels"]
 
 
 def test_wrong_counts_that_do_no_harm_are_reported(tmp_path):

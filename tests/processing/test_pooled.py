@@ -28,7 +28,7 @@ def _study(trials, **parts):
 
 @pytest.fixture(scope="module")
 def pieces():
-    """One walk of 40 s with belts, cut into eight short trials of 3.5 s each."""
+    """One walk of 40 s with belts, cut into eight short trials of 3.5 s each and one of 12 s."""
     from driven_walker import DrivenWalker
 
     trial = DrivenWalker("P01", stride_s=1.1, seed=4).walked(40.0, "walk")
@@ -36,7 +36,7 @@ def pieces():
     for k in range(8):
         streams = {key: r.between(4.0 * k, 4.0 * k + 3.5) for key, r in trial.streams.items()}
         cut.append(replace(trial, name=f"piece {k}", streams=streams))
-    return cut
+    return [*cut, replace(trial, streams={key: r.between(0.0, 12.0) for key, r in trial.streams.items()})]
 
 
 OVERGROUND = {"strides": StrideRules(ground="overground")}
@@ -132,6 +132,29 @@ def test_a_cycle_that_the_study_leaves_out_stays_with_its_reason(pieces):
     assert found.counted("l") == whole.counted("l") - 1 and found.counted("r") == whole.counted("r")
     assert "left out by the study: looked aside" in set(found.left_out["reason"])
     assert [says(one.what, "'right 99'") for one in found.findings if one.kind == "cycle not found"] == [True]
+
+
+@pytest.mark.parametrize(
+    ("ground", "gaps", "severity"),
+    [
+        ("overground", ((0.0, 0.3), (11.7, 12.0)), "note"),  # the person enters and leaves the measured volume
+        ("overground", ((0.0, 0.3), (6.0, 6.3)), "warning"),  # a marker was hidden between kept cycles
+        ("treadmill", ((0.0, 0.3), (11.7, 12.0)), "warning"),
+    ],
+)
+def test_only_gaps_at_the_ends_of_a_walk_over_ground_spoil_nothing(pieces, ground, gaps, severity):
+    def read(planned):
+        angles = pieces[8].stream("kinematics")
+        values = np.array(angles.values)
+        for start, end in gaps:
+            values[(angles.time >= start) & (angles.time < end), angles.names.index("knee_angle_r")] = np.nan
+        return replace(pieces[8], streams=pieces[8].streams | {"kinematics": angles.with_values(values)})
+
+    study, person = _study(_planned(1), strides=StrideRules(ground=ground), quality=Quality(min_strides=1))
+    (found,) = pool_cycles(study, person, read)
+    assert len(found.kept)
+    (gap,) = (finding for finding in found.findings if finding.kind == "gap")
+    assert (gap.channel, gap.severity) == ("knee_angle_r", severity)
 
 
 def test_too_few_cycles_are_refused_by_the_setting_of_the_ground(pieces):

@@ -281,6 +281,14 @@ def test_a_pelvis_that_turns_keeps_its_tilt_and_list_about_its_own_heading():
     assert np.isnan(found["foot_progression_angle_r"]).all()
 
 
+def test_a_straight_walk_that_is_seen_from_one_extreme_of_the_pelvis_to_the_other_does_not_turn():
+    time = np.arange(400) / 100
+    rotation = np.where((time > 1.0) & (time < 2.5), 10.0 * np.cos(2 * np.pi * (time - 1.0)), np.nan)
+    values = np.column_stack([0 * time, 0 * time, rotation, 0 * time, 0 * time])
+    found = with_pelvis_and_foot(Recording(time, values, tuple(Channel(label, "angle", "deg") for label in LABELS)))
+    np.testing.assert_array_equal(found["pelvis_rotation"], rotation)
+
+
 def test_tilt_and_list_of_real_turns_are_those_of_the_markers(gait_data):
     """Against `gaitdisc angles` of the same markers; about the laboratory's axes they differ by 5 to 15 deg (rms)."""
     folder = gait_data / "young_straight_and_turn"
