@@ -99,9 +99,9 @@ def _list_shared(walks: Sequence[WalkSummary], wanted: Sequence[str], findings: 
     for channel in walks[0].channels:
         if channel.name not in everywhere or (wanted and channel.name not in wanted):
             continue
-        found = sorted({unit[channel.name] for unit in units})
-        if len(found) > 1:
-            what = f"given in {' and in '.join(map(repr, found))}"
+        stated_units = sorted({unit[channel.name] for unit in units})
+        if len(stated_units) > 1:
+            what = f"given in {' and in '.join(map(repr, stated_units))}"
             findings.append(Finding("warning", "unit", _both(walks), what, "comparison of this channel", channel.name))
         else:
             kept.append(channel)
@@ -112,7 +112,7 @@ def _whole_strides(walks: Sequence[WalkSummary], channel: Channel) -> list[Value
     """Strides of one channel without a gap, (stride, phase) a walk; headings by whole turns near the first walk's."""
     parts = []
     for walk in walks:
-        curves = walk.curves[:, :, [one.name for one in walk.channels].index(channel.name)]
+        curves = walk.curves[:, :, [c.name for c in walk.channels].index(channel.name)]
         parts.append(finite_rows(curves))
     turn = find_turn(channel)
     if turn is None or not len(parts[0]):
@@ -222,5 +222,5 @@ def align(walks: Sequence[Values], percent: float) -> list[Values]:
 
 def _correlation(first: Values, second: Values) -> Values:
     """Correlation of two curves over the stride, (channel,); 0 where one does not move."""
-    one, other = (curves[:-1] - curves[:-1].mean(axis=0) for curves in (first, second))
-    return (one * other).sum(axis=0) / np.maximum(np.sqrt((one**2).sum(axis=0) * (other**2).sum(axis=0)), 1e-12)
+    a, b = (curves[:-1] - curves[:-1].mean(axis=0) for curves in (first, second))
+    return (a * b).sum(axis=0) / np.maximum(np.sqrt((a**2).sum(axis=0) * (b**2).sum(axis=0)), 1e-12)

@@ -61,9 +61,9 @@ class _Compared:
         """Clusters in which the gap reaches the smallest difference that is named."""
         gap = np.abs(self.gap)
         return [
-            one
-            for one in self.test.clusters
-            if gap[one.first : one.last + 1, one.channel].max() >= self.limits[one.channel]
+            cluster
+            for cluster in self.test.clusters
+            if gap[cluster.first : cluster.last + 1, cluster.channel].max() >= self.limits[cluster.channel]
         ]
 
 
@@ -89,34 +89,34 @@ def compare_walks(
     """
     names = (walk_name(first), walk_name(second))
     common = common_curves((first, second), wanted)
-    one, other = common.curves
-    alignment = common_shift(one.mean(axis=0), other.mean(axis=0))
+    tested, reference = common.curves
+    alignment = common_shift(tested.mean(axis=0), reference.mean(axis=0))
     if alignment.applied:
-        [one] = align([one], alignment.percent)
-    as_curve = len(one) < FEWEST_IN_EACH
+        [tested] = align([tested], alignment.percent)
+    as_curve = len(tested) < FEWEST_IN_EACH
     fewest = FEWEST_IN_ONE if as_curve else FEWEST_IN_EACH
-    if len(other) < fewest:
+    if len(reference) < fewest:
         raise ComparisonError(
             f"{names[1]}, the reference walk, must have at least {fewest} strides, because they give the spread",
-            f"it has {len(other)}, and {names[0]} has {len(one)}",
+            f"it has {len(reference)}, and {names[0]} has {len(tested)}",
             "Record longer. If one walk is a single stride, such as a periodic simulation, give it as the first.",
         )
-    correlation, shortest = stride_correlation(other), len(other)
+    correlation, shortest = stride_correlation(reference), len(reference)
     if not as_curve:
-        correlation, shortest = np.maximum(stride_correlation(one), correlation), min(len(one), shortest)
+        correlation, shortest = np.maximum(stride_correlation(tested), correlation), min(len(tested), shortest)
     length = block_length(float(correlation.max()), shortest)
-    worth, blocks = block_worth(correlation, length), block_means(other, length)
+    worth, blocks = block_worth(correlation, length), block_means(reference, length)
     if as_curve:
-        mean, count = one.mean(axis=0), 1
+        mean, count = tested.mean(axis=0), 1
         test = one_sample_test(blocks - mean, plan, worth)
     else:
-        own = block_means(one, length)
-        mean, count = own.mean(axis=0), len(own)
-        test = two_sample_test(own, blocks, plan, worth)
+        tested_blocks = block_means(tested, length)
+        mean, count = tested_blocks.mean(axis=0), len(tested_blocks)
+        test = two_sample_test(tested_blocks, blocks, plan, worth)
     unit = "stride" if length == 1 else f"block of {length} strides"
-    before = _Side(names[0], mean, _sd(one), count, len(one))
-    after = _Side(names[1], blocks.mean(axis=0), _sd(other), len(blocks), len(other))
-    limits = _limits(common.channels, other.mean(axis=0), smallest)
+    before = _Side(names[0], mean, _sd(tested), count, len(tested))
+    after = _Side(names[1], blocks.mean(axis=0), _sd(reference), len(blocks), len(reference))
+    limits = _limits(common.channels, reference.mean(axis=0), smallest)
     compared = _Compared(before, after, unit, test, after.mean - before.mean, alignment=alignment, limits=limits)
     return _mismatch(common, compared, (first, second), plan, smallest)
 
@@ -144,16 +144,16 @@ def compare_people(
     walks = [walk for pair in zip(first, second, strict=True) for walk in pair]
     common = common_curves(walks, wanted)
     curves = [list(common.curves[k::2]) for k in (0, 1)]
-    alignment = common_shift(*(np.mean([own.mean(axis=0) for own in part], axis=0) for part in curves))
+    alignment = common_shift(*(np.mean([strides.mean(axis=0) for strides in part], axis=0) for part in curves))
     if alignment.applied:
         curves[0] = align(curves[0], alignment.percent)
-    means = [np.array([own.mean(axis=0) for own in part]) for part in curves]
+    means = [np.array([strides.mean(axis=0) for strides in part]) for part in curves]
     test = one_sample_test(means[1] - means[0], plan)
     before, after = (
         _Side(
             name=walk.condition,
             mean=mean.mean(axis=0),
-            sd=np.sqrt(np.mean(np.square([_sd(own) for own in part]), axis=0)),
+            sd=np.sqrt(np.mean(np.square([_sd(strides) for strides in part]), axis=0)),
             units=len(part),
             strides=sum(map(len, part)),
         )
@@ -171,10 +171,10 @@ def best_shift(first: Values, second: Values) -> tuple[float, float]:
     >>> [round(value, 3) for value in best_shift(np.roll(wave[:-1], -3)[np.arange(101) % 100], wave)]
     [3.0, 0.0]
     """
-    one, other = first[:-1], second[:-1]
+    curve, target = first[:-1], second[:-1]
     shifts = sorted(range(-MOST_SHIFT, MOST_SHIFT + 1), key=abs)  # of equals the smallest
-    left = [_rms(np.roll(one, shift) - other) for shift in shifts]
-    return float(shifts[int(np.argmin(left))]), min(left)
+    gaps = [_rms(np.roll(curve, shift) - target) for shift in shifts]
+    return float(shifts[int(np.argmin(gaps))]), min(gaps)
 
 
 def _limits(channels: Sequence[Channel], curves: Values, smallest: Smallest) -> Values:

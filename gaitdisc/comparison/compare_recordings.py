@@ -35,10 +35,10 @@ def compare_files(
     ]
     for end in (0, -1):  # without the words that both begin or end with
         while min(map(len, words)) > 1 and words[0][end] == words[1][end]:
-            for own in words:
-                del own[end]
-    one, other = map("_".join, words)
-    names = (one, other) if one and other and one != other else ("first walk", "second walk")
+            for path_words in words:
+                del path_words[end]
+    stems = ["_".join(path_words) for path_words in words]
+    names = stems if all(stems) and stems[0] != stems[1] else ["first walk", "second walk"]
     public = PublicWords(frozenset(channels), dict(zip((first.name, second.name), names, strict=True)))
     trials = []
     for path, name in zip((first, second), names, strict=True):
@@ -51,9 +51,9 @@ def compare_files(
             f"{first.name} and {second.name} are identical files",
             "Name a simulated and a measured walk, or two conditions.",
         )
-    found = compare_walks(walks[0], walks[1], channels, smallest=smallest)
-    found = replace(found, findings=tuple(map(public.finding, found.findings)))
-    return _with_settings(found, {"cutoff_hz": cutoff_hz, "detector": walks[0].detector})
+    mismatch = compare_walks(walks[0], walks[1], channels, smallest=smallest)
+    mismatch = replace(mismatch, findings=tuple(map(public.finding, mismatch.findings)))
+    return _with_settings(mismatch, {"cutoff_hz": cutoff_hz, "detector": walks[0].detector})
 
 
 def compare_study(
@@ -96,7 +96,7 @@ def _pick_walks(study: Study, participant: str) -> tuple[WalkSummary, WalkSummar
     if not refusals:
         return walks[nominal].summary(), walks[device].summary()
     pooled, _ = pool_public(study, person)  # walks of a few strides each
-    kept = {(one.session, one.condition): one for one in pooled if len(one.kept)}
+    kept = {(cycles.session, cycles.condition): cycles for cycles in pooled if len(cycles.kept)}
     session = next((word for word, _ in kept if (word, nominal) in kept and (word, device) in kept), None)
     if session is None:
         return "; ".join(f"{refusal.condition}: {refusal.reason}".removeprefix(": ") for refusal in refusals)

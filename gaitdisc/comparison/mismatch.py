@@ -133,9 +133,9 @@ class Mismatch(Saved, file="mismatch.json"):
         """Check shapes and columns once."""
         wanted = (len(PERCENT), len(self.channels))
         for name in CURVES:
-            found = np.shape(self.curves[name]) if name in self.curves else "none"
-            if found != wanted:
-                raise ShapeError(f"{name!r} of a mismatch must have shape {wanted}", f"found {found}", AGAIN)
+            shape = np.shape(self.curves[name]) if name in self.curves else "none"
+            if shape != wanted:
+                raise ShapeError(f"{name!r} of a mismatch must have shape {wanted}", f"found {shape}", AGAIN)
         columns = {"regions": REGION_COLUMNS, "summary": CHANNEL_COLUMNS}
         check_columns(self, columns, "a mismatch must have", AGAIN)
         curves = {name: np.asarray(self.curves[name], float) for name in CURVES}

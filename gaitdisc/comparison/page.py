@@ -55,13 +55,13 @@ def mismatch_numbers(mismatch: Mismatch, names: list[str]) -> pd.DataFrame:
 def _figure(mismatch: Mismatch, names: list[str], name: str, kind: str, draw: Draw) -> Figure:
     drawn, cells = panels_for(len(names), COLUMNS, 1.3, Room(left=0.6, across=0.62, down=0.46))
     numbers = mismatch_numbers(mismatch, names)
-    said = []
+    gaps = []
     for axes, channel in zip(cells, names, strict=True):
         curves, regions = numbers[numbers["channel"] == channel], mismatch.regions_of(channel)
         draw(axes, curves, regions, SIDES[find_side(channel)].colour)
         spans = ", ".join(f"{row['from_percent']:.0f}-{row['to_percent']:.0f} %" for row in regions)
         largest = f"{spoken(channel)} {curves['gap'].iloc[int(curves['gap'].abs().argmax())]:.3g}"
-        said.append(f"{largest}, differs at {spans}" if spans else f"{largest}, no significant gap")
+        gaps.append(f"{largest}, differs at {spans}" if spans else f"{largest}, no significant gap")
         axes.set_title(label(channel), color=SIDES[find_side(channel)].colour, fontsize=7.6)
         up = upwards(channel)
         unit = unit_text(str(curves["unit"].iloc[0]))
@@ -71,7 +71,7 @@ def _figure(mismatch: Mismatch, names: list[str], name: str, kind: str, draw: Dr
     for axes in cells[-COLUMNS:]:
         axes.set_xlabel("stride [%]", labelpad=1)
     legend(drawn, mismatch_key(mismatch, kind))
-    alt = f"{mismatch.first} against {mismatch.second} over the stride. Largest gaps: {'; '.join(said)}."
+    alt = f"{mismatch.first} against {mismatch.second} over the stride. Largest gaps: {'; '.join(gaps)}."
     return Figure(name, _caption(mismatch, kind, len(names)), alt, numbers, drawn)
 
 
@@ -99,10 +99,10 @@ def draw_gap(axes: Axes, curves: pd.DataFrame, regions: list[dict[str, Any]], co
     _bars(axes, regions)
 
 
-def _shade(axes: Axes, curves: pd.DataFrame, one: pd.Series, other: pd.Series | float) -> None:
+def _shade(axes: Axes, curves: pd.DataFrame, first: pd.Series, second: pd.Series | float) -> None:
     """Shade what lies between two curves where the walks differ by more than chance."""
     where = curves["differs"].to_numpy(bool)
-    axes.fill_between(curves["percent"], one, other, where=where, color=SHADE, alpha=0.55, linewidth=0, zorder=2)
+    axes.fill_between(curves["percent"], first, second, where=where, color=SHADE, alpha=0.55, linewidth=0, zorder=2)
 
 
 def _bars(axes: Axes, regions: list[dict[str, Any]]) -> None:
@@ -160,9 +160,9 @@ def regions_table(mismatch: Mismatch) -> Table:
 
 def channels_table(mismatch: Mismatch) -> Table:
     """Every channel, whether it differs or not, and what the comparison could have seen of it."""
-    found = mismatch.alignment
-    other_way = "without" if found.applied else "with"
-    others = map(amount, found.otherwise) if found.otherwise else [NONE] * len(mismatch.names)  # in an older folder
+    alignment = mismatch.alignment
+    other_way = "without" if alignment.applied else "with"
+    others = map(amount, alignment.otherwise) if alignment.otherwise else [NONE] * len(mismatch.names)  # older folder
     rows = tuple(
         (
             spoken(str(row["channel"])),
@@ -190,7 +190,7 @@ def channels_table(mismatch: Mismatch) -> Table:
         f"comparisons would detect at a typical point; shift: the best-fitting delay of {mismatch.first}, and the rms "
         "gap after it; offset: the mean gap; shape: the largest gap without the offset; named from: the smallest "
         f"difference that is named; last column: the largest gap {other_way} the common shift of {mismatch.first}, "
-        f"{found.percent:+.1f} % of the stride, which was {'' if found.applied else 'not '}applied."
+        f"{alignment.percent:+.1f} % of the stride, which was {'' if alignment.applied else 'not '}applied."
     )
     headings = (
         "channel", "differs", "largest gap", "at [%]", "rms gap", "rms SD", "p", "agrees within", "visible",

@@ -63,25 +63,25 @@ def mismatch_sentences(mismatch: Mismatch) -> list[str]:
 
 def alignment_sentences(mismatch: Mismatch) -> list[str]:
     """Which shift most channels share, whether it was applied, and the gap the other way; nothing in the scatter."""
-    found = mismatch.alignment
-    if abs(found.percent) < SAID_FROM or not (found.applied or 2 * found.agreeing > found.channels):
+    alignment = mismatch.alignment
+    if abs(alignment.percent) < SAID_FROM or not (alignment.applied or 2 * alignment.agreeing > alignment.channels):
         return []
-    size = f"{number(abs(found.percent), 1)} % of the stride {'later' if found.percent > 0 else 'earlier'}"
-    gaps = f"the gap of {found.agreeing} of {counted(found.channels, 'channel')}"
-    said = f"{mismatch.first} was not shifted, because a shift of {size} would narrow {gaps} only slightly."
-    if found.applied:
-        said = (
+    size = f"{number(abs(alignment.percent), 1)} % of the stride {'later' if alignment.percent > 0 else 'earlier'}"
+    gaps = f"the gap of {alignment.agreeing} of {counted(alignment.channels, 'channel')}"
+    sentence = f"{mismatch.first} was not shifted, because a shift of {size} would narrow {gaps} only slightly."
+    if alignment.applied:
+        sentence = (
             f"All curves of {mismatch.first} were shifted {size} before the test; with this shift {gaps} narrows. "
             "Either the initial contacts differ by this time, or all joints move at another time."
         )
-    if found.otherwise:  # not in a folder of an earlier version
+    if alignment.otherwise:  # not in a folder of an earlier version
         name = (mismatch.ordered() or mismatch.names)[0]
         row = mismatch.summary_of(name)
-        sizes = abs(float(row["largest_gap"])), found.otherwise[mismatch.names.index(name)]
-        moved, unmoved = map(amount, sizes if found.applied else sizes[::-1])
+        sizes = abs(float(row["largest_gap"])), alignment.otherwise[mismatch.names.index(name)]
+        moved, unmoved = map(amount, sizes if alignment.applied else sizes[::-1])
         unmoved = with_unit(unmoved, str(row["unit"]))
-        said += f" With the shift, the largest gap of {spoken(name)} is {moved} instead of {unmoved}."
-    return [said]
+        sentence += f" With the shift, the largest gap of {spoken(name)} is {moved} instead of {unmoved}."
+    return [sentence]
 
 
 def smallest_p_sentence(mismatch: Mismatch) -> str:

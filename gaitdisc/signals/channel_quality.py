@@ -123,13 +123,13 @@ def swing_baseline(force_n: Values, rate_hz: float) -> Values:
     if -np.nanmin(upward) > np.nanmax(upward):
         upward = -upward
     spans = loaded(upward, rate_hz, 2 * RISE_N)
-    found = []
+    baseline = []
     for (_, off), (on, _) in itertools.pairwise(spans):
         quarter = (on - off) // 4
         middle = force_n[off + quarter : on - quarter]
         if len(middle) and np.isfinite(middle).any():
-            found.append(((off + on) / 2, float(np.nanmedian(middle))))
-    return np.array(found).reshape(-1, 2)
+            baseline.append(((off + on) / 2, float(np.nanmedian(middle))))
+    return np.array(baseline).reshape(-1, 2)
 
 
 def drift_findings(forces: Recording) -> list[Finding]:
@@ -197,7 +197,7 @@ def plateaus(kinematics: Recording) -> list[Plateau]:
     """
     if kinematics.source.reader.startswith(NO_MODEL):
         return []
-    found = []
+    limits = []
     for column, channel in enumerate(kinematics.channels):
         if channel.quantity != "angle":
             continue
@@ -208,8 +208,8 @@ def plateaus(kinematics: Recording) -> list[Plateau]:
         for sign in (-1.0, 1.0):
             marks = _dwells(sign * x, kinematics.rate_hz)
             if marks is not None:
-                found.append(Plateau(channel.name, float(np.median(x[marks])), marks))
-    return found
+                limits.append(Plateau(channel.name, float(np.median(x[marks])), marks))
+    return limits
 
 
 def plateau_findings(kinematics: Recording) -> list[Finding]:

@@ -48,7 +48,7 @@ def marker_contacts(
     needed = {f"{name}.{axis}" for name in [*heels.values(), *pelvis] for axis in "xyz"}
     bridged = fill_gaps(without_spikes(markers.selected([name for name in markers.names if name in needed])))
     centre = pelvis_position(bridged, pelvis)
-    found = {}
+    contacts = {}
     for side, heel in heels.items():
         swung = marker_position(bridged, heel) - centre
         ahead = direction.ahead(swung)
@@ -66,8 +66,8 @@ def marker_contacts(
         times = np.array([markers.time[peak] + step * _vertex(ahead, peak) for peak in swings])
         times = _of_each_step(markers.time, swung, direction, times)
         note = f"contact if {heel} is farthest in front of {', '.join(pelvis)}; {direction.how}"
-        found[side] = Contacts(times, side, "markers", note=note)
-    return found
+        contacts[side] = Contacts(times, side, "markers", note=note)
+    return contacts
 
 
 def _of_each_step(time: Values, swung: Values, direction: Direction, times: Values) -> Values:
@@ -76,15 +76,15 @@ def _of_each_step(time: Values, swung: Values, direction: Direction, times: Valu
         return times
     step = mean_step(time)
     reach = round(MIN_S / 2 / step)
-    found = []
+    peaks = []
     for at in times:
         middle = round((at - time[0]) / step)
         ahead = direction.ahead(swung, middle)
         first, last = max(1, middle - reach), min(len(ahead) - 1, middle + reach + 1)
         top = first + int(np.argmax(np.where(np.isfinite(ahead[first:last]), ahead[first:last], -np.inf)))
         inside = ahead[top] >= max(ahead[top - 1], ahead[top + 1])
-        found.append(time[top] + step * _vertex(ahead, top) if inside else at)
-    return np.unique(found)
+        peaks.append(time[top] + step * _vertex(ahead, top) if inside else at)
+    return np.unique(peaks)
 
 
 def _prominent(x: Values, peak: int, prominence: float) -> bool:
@@ -114,7 +114,7 @@ def angle_contacts(kinematics: Recording, sides: tuple[str, ...] = ("r", "l")) -
 
     kinematics: `hip_flexion_<side>` and, for the better mark, `knee_angle_<side>`, flexion positive [deg]
     """
-    found = {}
+    contacts = {}
     for side in sides:
         name = f"hip_flexion_{side}"
         if name not in kinematics.names:
@@ -131,8 +131,8 @@ def angle_contacts(kinematics: Recording, sides: tuple[str, ...] = ("r", "l")) -
         else:
             times = _hip_peaks(kinematics, name, peaks, period)
             note = "peak hip flexion, about 86 % of the stride as a force plate would detect it"
-        found[side] = Contacts(np.unique(times), side, "angles", note=note)
-    return found
+        contacts[side] = Contacts(np.unique(times), side, "angles", note=note)
+    return contacts
 
 
 def _cycles(kinematics: Recording, name: str) -> tuple[Values, float]:
@@ -150,14 +150,14 @@ def _cycles(kinematics: Recording, name: str) -> tuple[Values, float]:
         )
     slow = low_pass(hip, CYCLE_CUTOFF / period).values[:, 0]
     slow_reach = float(np.subtract(*np.nanpercentile(slow, [95, 5])))
-    whole = np.where(np.isfinite(slow), slow, np.nanmin(slow))
-    peaks, _ = find_peaks(whole, prominence=slow_reach / 3, distance=max(1, round(0.5 * period * hip.rate_hz)))
+    filled = np.where(np.isfinite(slow), slow, np.nanmin(slow))
+    peaks, _ = find_peaks(filled, prominence=slow_reach / 3, distance=max(1, round(0.5 * period * hip.rate_hz)))
     return hip.time[peaks], period
 
 
 def _terminal_extensions(kinematics: Recording, knee: str, peaks: Values, period: float) -> Values:
     time, x = _smooth(kinematics, knee)
-    found = []
+    times = []
     for peak in peaks:
         first, last = np.searchsorted(time, [peak - BEFORE_HIP_PEAK * period, peak + 0.1 * period])
         swing = x[first:last]
@@ -167,20 +167,20 @@ def _terminal_extensions(kinematics: Recording, knee: str, peaks: Values, period
         after = x[top : np.searchsorted(time, time[top] + AFTER_KNEE_PEAK * period)]
         lows = np.flatnonzero((after[1:-1] < after[:-2]) & (after[1:-1] <= after[2:])) + 1
         if top > first and len(lows) and np.isfinite(after).all():
-            found.append(float(time[top + lows[np.argmin(after[lows])]]))
-    return np.array(found)
+            times.append(float(time[top + lows[np.argmin(after[lows])]]))
+    return np.array(times)
 
 
 def _hip_peaks(kinematics: Recording, hip: str, peaks: Values, period: float) -> Values:
     time, x = _smooth(kinematics, hip)
-    found = []
+    times = []
     for peak in peaks:
         first, last = np.searchsorted(time, [peak - 0.25 * period, peak + 0.25 * period])
         if np.isfinite(x[first:last]).all():
             top = first + int(np.argmax(x[first:last]))
             if first < top < last - 1:
-                found.append(float(time[top]))
-    return np.array(found)
+                times.append(float(time[top]))
+    return np.array(times)
 
 
 def stance_windows(contacts: Values, stride_s: float) -> list[Span]:
@@ -195,7 +195,7 @@ def stance_windows(contacts: Values, stride_s: float) -> list[Span]:
         return []
     starts = [float(contacts[0]) - stride_s, *map(float, contacts)]
     lengths = [stride_s, *map(float, np.diff(contacts)), stride_s]
-    return [Span(start + FROM * own, start + TO * own) for start, own in zip(starts, lengths, strict=True)]
+    return [Span(start + FROM * length, start + TO * length) for start, length in zip(starts, lengths, strict=True)]
 
 
 def marker_foot_off(

@@ -168,17 +168,17 @@ def order_findings(right: Contacts, left: Contacts, file: str = "") -> list[Find
     strides of side r without exactly one contact of side l: 1 of 3 (at 1.00 s)
     """
     findings = []
-    for one, other in ((right, left), (left, right)):
+    for contacts, other in ((right, left), (left, right)):
         wrong = []
-        for start, end in zip(one.time, one.time[1:], strict=False):
+        for start, end in zip(contacts.time, contacts.time[1:], strict=False):
             if not len(other) or end < other.time[0] or start > other.time[-1]:
                 continue
             if np.sum((other.time > start) & (other.time < end)) != 1:
                 wrong.append(Span(float(start), float(end)))
         if wrong:
             at = ", ".join(f"{start:.2f}" for start, _ in wrong[:5]) + (" ..." if len(wrong) > 5 else "")
-            what = f"strides of side {one.side} without exactly one contact of side {other.side}: "
-            what += f"{len(wrong)} of {len(one) - 1} (at {at} s)"
+            what = f"strides of side {contacts.side} without exactly one contact of side {other.side}: "
+            what += f"{len(wrong)} of {len(contacts) - 1} (at {at} s)"
             spoils = "these strides: a contact was missed, or a foot stepped on the other plate or belt"
             findings.append(Finding("warning", "crossover", file, what, spoils, spans=tuple(wrong)))
     return findings
@@ -203,15 +203,15 @@ def event_contacts(trial: Trial) -> dict[str, Contacts]:
             f"{trial.name} has {seen}",
             "Label the contacts in the motion capture software, or choose another detector in [strides].",
         )
-    found = {}
+    by_side = {}
     for side in ("r", "l"):
         times = np.unique([event.time for event in contacts if event.side == side])
         offs = np.unique([event.time for event in trial.events if event.label == OFF and event.side == side])
         lost = sum(event.side == "" for event in contacts)
         if len(times):
             note = "events of the file" + (f"; excluded: {counted(lost, 'contact')} without a side" if lost else "")
-            found[side] = Contacts(times, side, "events", offs, note)
-    return found
+            by_side[side] = Contacts(times, side, "events", offs, note)
+    return by_side
 
 
 def find_rise(body_weight_n: float | None) -> float:
@@ -242,9 +242,9 @@ def loaded(force_n: Values, rate_hz: float, rise_n: float = RISE_N) -> NDArray[n
     spans = [(start + int(np.argmax(high[start:end])), end) for start, end in runs(on) if high[start:end].any()]
     shortest = SHORTEST_S * rate_hz
     last = len(force_n)
-    kept = [(a, b) for a, b in spans if b - a >= shortest or a == 0 or b == last]
+    loadings = [(a, b) for a, b in spans if b - a >= shortest or a == 0 or b == last]
     joined: list[tuple[int, int]] = []
-    for start, end in kept:
+    for start, end in loadings:
         if joined and start - joined[-1][1] < shortest:
             joined[-1] = (joined[-1][0], end)
         else:
@@ -268,13 +268,13 @@ def force_contacts(forces: Recording, body_weight_n: float | None = None) -> dic
             f"{forces.source.file or 'the recording'} has {', '.join(forces.names) or 'no channel'}",
             "Name the foot of each plate or belt in [channels], or add markers, which show the foot.",
         )
-    found = {}
+    contacts = {}
     for side in sorted(set(sides.values())):
-        own = [_contacts(forces, name, body_weight_n) for name, owner in sides.items() if owner == side]
-        on, off, notes = zip(*own, strict=True)
+        plates = [_contacts(forces, name, body_weight_n) for name, owner in sides.items() if owner == side]
+        on, off, notes = zip(*plates, strict=True)
         times, offs = np.sort(np.concatenate(on)), np.sort(np.concatenate(off))
-        found[side] = Contacts(times, side, "force", offs, "; ".join(notes))
-    return found
+        contacts[side] = Contacts(times, side, "force", offs, "; ".join(notes))
+    return contacts
 
 
 def plate_contacts(

@@ -228,24 +228,24 @@ def emg_sizes(emg: Recording) -> dict[str, float]:
 
     The amplifier's range separates them, and only where the recording shows it: a usual range would depend on the unit.
     """
-    found = {name: float(np.nanstd(emg[name])) for name in emg.names if np.isfinite(emg[name]).any()}
+    sizes = {name: float(np.nanstd(emg[name])) for name in emg.names if np.isfinite(emg[name]).any()}
     limit = amplifier_range(emg)
     least, most = (DEAD_SHARE * limit.volts, UNPLUGGED_SHARE * limit.volts) if limit.shown else (0.0, np.inf)
-    return {name: size for name, size in found.items() if size > least and size <= most}
+    return {name: size for name, size in sizes.items() if size > least and size <= most}
 
 
 def other_unit_findings(
-    own: Mapping[str, float], others: Mapping[str, float], usual: Limits, trial: str, other: str
+    sizes: Mapping[str, float], others: Mapping[str, float], usual: Limits, trial: str, other: str
 ) -> list[Finding]:
     """Say that EMG of a trial is so much weaker or stronger than that of another that one states a wrong unit.
 
-    own, others: of `emg_sizes`; the channels in common are compared
+    sizes, others: of `emg_sizes`; the channels in common are compared
     usual: ratios that need no other unit
     """
-    common = sorted(set(own) & set(others))
+    common = sorted(set(sizes) & set(others))
     if len(common) < FEWEST:
         return []
-    ratios = np.array([own[name] / others[name] for name in common])
+    ratios = np.array([sizes[name] / others[name] for name in common])
     weak, strong = float(np.mean(ratios < usual.least)), float(np.mean(ratios > usual.most))
     if max(weak, strong) < AGREE:
         return []
@@ -292,23 +292,23 @@ def order_of_muscles(envelope: Recording, strides: Mapping[str, Strides]) -> lis
     seen: dict[tuple[str, str], _Muscle] = {}
     for name in envelope.names:
         for kind, pattern in (("calf", _CALF), ("shin", _SHIN)):
-            found = pattern.fullmatch(name)
-            if found and found[2] in strides:
+            match = pattern.fullmatch(name)
+            if match and match[2] in strides:
                 by_foot = {side: stance_over_swing(envelope, cut, name) for side, cut in strides.items()}
-                own, other = by_foot[found[2]], by_foot.get(other_side(found[2]), np.nan)
-                value = (own - other) / 2 if np.isfinite(other) else own
-                worst = seen.get((kind, found[2]))
+                own_ratio, other_ratio = by_foot[match[2]], by_foot.get(other_side(match[2]), np.nan)
+                value = (own_ratio - other_ratio) / 2 if np.isfinite(other_ratio) else own_ratio
+                worst = seen.get((kind, match[2]))
                 if np.isfinite(value) and (worst is None or value > worst.by_both):
-                    seen[kind, found[2]] = _Muscle(name, value, own)
-    calf_swings = {side for (kind, side), one in seen.items() if kind == "calf" and one.by_both < -CLEAR}
-    shin_stands = {side for (kind, side), one in seen.items() if kind == "shin" and one.by_both > CLEAR}
+                    seen[kind, match[2]] = _Muscle(name, value, own_ratio)
+    calf_swings = {side for (kind, side), muscle in seen.items() if kind == "calf" and muscle.by_both < -CLEAR}
+    shin_stands = {side for (kind, side), muscle in seen.items() if kind == "shin" and muscle.by_both > CLEAR}
     pairs = [(seen["calf", side], seen["shin", side]) for side in sorted(calf_swings & shin_stands)]
     if calf_swings == {"l", "r"} and not shin_stands:
         pairs.append((seen["calf", "l"], seen["calf", "r"]))
     findings = []
-    for one, other in pairs:
-        what = f"{one.name} and {other.name} seem to be exchanged, or the muscles of both legs"
-        what += f": {one.words()}, {other.words()}"
-        file, both = envelope.source.file, f"{one.name}, {other.name}"
+    for first, second in pairs:
+        what = f"{first.name} and {second.name} seem to be exchanged, or the muscles of both legs"
+        what += f": {first.words()}, {second.words()}"
+        file, both = envelope.source.file, f"{first.name}, {second.name}"
         findings.append(Finding("warning", "exchanged EMG", file, what, "both muscles; correct the labels", both))
     return findings

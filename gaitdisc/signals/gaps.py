@@ -46,8 +46,8 @@ def fill_gaps(
         template = None
         if strides is not None:
             curves = strides.normalised(recording.selected([recording.names[column]]))[:, :, 0]
-            whole = finite_rows(curves)
-            template = whole.mean(axis=0) if len(whole) >= FEWEST_TEMPLATE_STRIDES else None
+            complete = finite_rows(curves)
+            template = complete.mean(axis=0) if len(complete) >= FEWEST_TEMPLATE_STRIDES else None
         for start, end in runs(missing):
             length_s = (end - start) / rate
             put = None

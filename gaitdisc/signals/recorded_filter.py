@@ -76,26 +76,26 @@ def find_filter(
         return None
     # the lines beyond the last one that is surely signal, without those next to half the rate
     surely = np.flatnonzero(spectrum.power > SIGNAL * spectrum.power[2:].max())
-    kept = slice(int(surely[-1]) + 1, len(spectrum.power) - 3)
-    above = Spectrum(spectrum.frequency[kept], spectrum.power[kept], spectrum.windows)
+    lines = slice(int(surely[-1]) + 1, len(spectrum.power) - 3)
+    above = Spectrum(spectrum.frequency[lines], spectrum.power[lines], spectrum.windows)
     if len(above.frequency) < FEWEST_LINES:
         return None
     model = mean_spectrum(like) if like is not None else None
     shape = np.ones(len(above.power)) if model is None else np.interp(above.frequency, model.frequency, model.power)
     fits = [_Fit(above, shape / shape[0], order) for order in (ORDER, OTHER)]
-    found, other = (max(fit.best((begin,)) for begin in BEGINNINGS) for fit in fits)
-    beside, enough = fits[0].best((at_hz / rate_hz,), held=True) if at_hz else found, CLEARLY
-    if at_hz and (found[0] - beside[0]) * spectrum.windows < CLEARLY:
-        found, enough = beside, LIKELIER
-    likelihood, cutoff = found[0] * spectrum.windows, found[1]
+    best, other = (max(fit.best((begin,)) for begin in BEGINNINGS) for fit in fits)
+    beside, enough = fits[0].best((at_hz / rate_hz,), held=True) if at_hz else best, CLEARLY
+    if at_hz and (best[0] - beside[0]) * spectrum.windows < CLEARLY:
+        best, enough = beside, LIKELIER
+    likelihood, cutoff = best[0] * spectrum.windows, best[1]
     gained = likelihood - fits[0].best(())[0] * spectrum.windows
-    steeper = (other[0] - found[0]) * spectrum.windows > CLEARLY
+    steeper = (other[0] - best[0]) * spectrum.windows > CLEARLY
     # the power above the cut-off goes on falling, instead of ending on the noise of a sensor
     near = above.power[(above.frequency > cutoff) & (above.frequency < 1.5 * cutoff)]
     falls_far = bool(near.size) and np.median(near) > FALLEN * np.median(above.power[-12:])
     if gained < enough or cutoff > HIGHEST or not falls_far or steeper:
         return None
-    return RecordedFilter(cutoff * rate_hz, gained, likelihood, found[2])
+    return RecordedFilter(cutoff * rate_hz, gained, likelihood, best[2])
 
 
 def mean_spectrum(trials: Sequence[Values]) -> Spectrum | None:
@@ -104,7 +104,7 @@ def mean_spectrum(trials: Sequence[Values]) -> Spectrum | None:
     trials each (sample,): NaN where nothing was measured: a window takes the longest stretch without any
     """
     stretches = [trial[first:end] for trial in trials for first, end in runs(np.isfinite(trial))]
-    length = min(max((len(one) for one in stretches), default=0), WINDOW)
+    length = min(max((len(stretch) for stretch in stretches), default=0), WINDOW)
     if length < FEWEST:
         return None
     angle = 2 * np.pi * np.arange(length) / length
@@ -148,12 +148,12 @@ class _Fit:
 
         begun = self._begun(cutoff)
         bounds = (*BOUNDS[:4], (begun[4], begun[4])) if held else BOUNDS[: len(begun)]
-        found = minimize(self._misfit, begun, method="L-BFGS-B", jac=True, bounds=bounds, options={"maxiter": 200})
-        noise, signal, decay, _ = found.x[:4]
-        at = float(np.exp(found.x[4])) if cutoff else float(self.frequency[-1])
+        optimum = minimize(self._misfit, begun, method="L-BFGS-B", jac=True, bounds=bounds, options={"maxiter": 200})
+        noise, signal, decay, _ = optimum.x[:4]
+        at = float(np.exp(optimum.x[4])) if cutoff else float(self.frequency[-1])
         shape = float(np.interp(at, self.frequency, self.shape))
         over = signal - noise - np.exp(decay) * (at - self.frequency[0]) + np.log(max(shape, 1e-300))
-        return -float(found.fun), at, float(np.exp(np.clip(over, -99, 99)))
+        return -float(optimum.fun), at, float(np.exp(np.clip(over, -99, 99)))
 
     def _begun(self, cutoff: tuple[float, ...]) -> Values:
         low = self.frequency < 2 * cutoff[0] if cutoff else np.zeros(len(self.power), bool)
@@ -172,7 +172,7 @@ class _Fit:
         over = 1 / expected - self.power / expected**2
         slopes = [noise, signal, -decay * signal, np.full(len(expected), floor)]
         slopes += [] if steeper is None else [(noise + signal) * steeper]
-        return float(np.sum(np.log(expected) + self.power / expected)), np.array([over @ one for one in slopes])
+        return float(np.sum(np.log(expected) + self.power / expected)), np.array([over @ slope for slope in slopes])
 
     def _passband(self, cutoff: Values) -> tuple[Values, Values | None]:
         """What the filter passes of the power, and by which share that grows with the logarithm of the cut-off."""

@@ -53,18 +53,18 @@ def verify_sides(kinematics: Recording, strides: Strides) -> float:
 
     returns: percent stride of the knee's peak; NaN where no stride has the knee
     """
-    own, other = (f"knee_angle_{side}" for side in (strides.side, other_side(strides.side)))
-    at = knee_peak_percent(kinematics, strides, own)
+    knee, other_knee = (f"knee_angle_{side}" for side in (strides.side, other_side(strides.side)))
+    at = knee_peak_percent(kinematics, strides, knee)
     if not np.isfinite(at) or SWING[0] <= at <= SWING[1]:
         return at
-    across = knee_peak_percent(kinematics, strides, other) if other in kinematics.names else float("nan")
+    across = knee_peak_percent(kinematics, strides, other_knee) if other_knee in kinematics.names else float("nan")
     if SWING[0] <= across + 50 <= SWING[1]:  # the other knee swings while this foot stands: this knee is stiff
         return at
     swapped = SWING[0] <= across <= SWING[1]
     raise StrideError(
         f"in strides of side {strides.side!r} the knee must bend most at {SWING[0]:g} to {SWING[1]:g} % (swing)",
-        f"{kinematics.source.file or 'the recording'}: {own} peaks at {at:.0f} %"
-        + (f", {other} at {across:.0f} %: left and right are exchanged" if swapped else ""),
+        f"{kinematics.source.file or 'the recording'}: {knee} peaks at {at:.0f} %"
+        + (f", {other_knee} at {across:.0f} %: left and right are exchanged" if swapped else ""),
         f"Exchange the sides of the {strides.detector} contacts or of the angles."
         if swapped
         else "Check that knee flexion is positive and that the contacts are initial contacts.",
@@ -99,10 +99,10 @@ def marker_side_findings(markers: Recording) -> list[Finding]:
     legs = [pair for pair in wrong if pair in pairs]
     if pelvis[:2] not in wrong and len(legs) < FEWEST:
         return []
-    said = ", ".join(f"{pair[0]} is {-100 * across[pair]:.0f} cm to the left of {pair[1]}" for pair in wrong[:3])
+    examples = ", ".join(f"{pair[0]} is {-100 * across[pair]:.0f} cm to the left of {pair[1]}" for pair in wrong[:3])
     what = (
         f"left and right are exchanged in the labels of {len(wrong)} of {len(across)} pairs, or the frame is mirrored: "
-        f"{said}"
+        f"{examples}"
     )
     spoils = "both sides; correct the labels"
     return [Finding("warning", "sides", markers.source.file, what, spoils, ", ".join(wrong[0]))]
@@ -121,12 +121,12 @@ def sway_findings(kinematics: Recording, strides: Sequence[Strides]) -> list[Fin
     pelvis = kinematics.selected(["pelvis_tz"])
     pelvis = pelvis.with_values(place[:, None])
     towards = {}
-    for own in strides:
-        curves = own.normalised(pelvis)[:, :, 0]
+    for foot_strides in strides:
+        curves = foot_strides.normalised(pelvis)[:, :, 0]
         sway = curves[:, SUPPORT[0]].mean(axis=1) - curves[:, SUPPORT[1]].mean(axis=1)
-        sway = finite_values(sway) * (1.0 if own.side == "r" else -1.0)
+        sway = finite_values(sway) * (1.0 if foot_strides.side == "r" else -1.0)
         if len(sway):
-            towards[own.side] = sway
+            towards[foot_strides.side] = sway
     away = [side for side, sway in towards.items() if np.median(sway) <= -SWAY_M and np.mean(sway < 0) >= AGREE]
     if len(towards) < 2 or len(away) < 2:
         return []
@@ -143,7 +143,7 @@ def load_findings(kinematics: Recording, forces: Recording) -> list[Finding]:
 
     returns: one warning where both knees bend more under load than in the air, by 5 deg or more
     """
-    found: dict[str, float] = {}
+    bent_more: dict[str, float] = {}
     for channel in forces.channels:
         knee = f"knee_angle_{channel.side}"
         if channel.quantity != "vertical_force" or not channel.side or knee not in kinematics.names:
@@ -154,13 +154,13 @@ def load_findings(kinematics: Recording, forces: Recording) -> list[Finding]:
         peak = float(load[known].max()) if known.any() else 0.0
         stands, swings = known & (load > LOADED * peak), known & (load < UNLOADED * peak)
         if min(stands.mean(), swings.mean()) >= SEEN:
-            found[channel.side] = float(bent[stands].mean() - bent[swings].mean())
-    if set(found) != {"l", "r"} or min(found.values()) < BENT_MORE_DEG:
+            bent_more[channel.side] = float(bent[stands].mean() - bent[swings].mean())
+    if set(bent_more) != {"l", "r"} or min(bent_more.values()) < BENT_MORE_DEG:
         return []
-    said = " and ".join(f"knee_angle_{side} {more:+.0f} deg" for side, more in sorted(found.items()))
+    knees = " and ".join(f"knee_angle_{side} {more:+.0f} deg" for side, more in sorted(bent_more.items()))
     what = (
         "left and right are exchanged in the forces or in the angles: each knee bends more under its own force than in "
-        f"the air ({said})"
+        f"the air ({knees})"
     )
     file = f"{forces.source.file}, {kinematics.source.file}"
     return [Finding("warning", "sides", file, what, "both sides; exchange the forces or the angles")]

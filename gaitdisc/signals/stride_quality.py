@@ -46,13 +46,13 @@ def stride_distances(recording: Recording, strides: Strides) -> Values:
     """
     curves = strides.normalised(recording)
     known: NDArray[np.bool_] = np.asarray(np.isfinite(curves).all(axis=1, keepdims=True))
-    whole = np.where(known, curves, np.nan)
+    complete = np.where(known, curves, np.nan)
     middle = np.zeros((1, *curves.shape[1:]))
     for column in range(curves.shape[2]):
         rows = known[:, 0, column]
         if rows.any():
-            middle[0, :, column] = np.median(whole[rows, :, column], axis=0)
-    return np.sqrt(np.mean((whole - middle) ** 2, axis=1))
+            middle[0, :, column] = np.median(complete[rows, :, column], axis=0)
+    return np.sqrt(np.mean((complete - middle) ** 2, axis=1))
 
 
 def outlying(recording: Recording, strides: Strides) -> NDArray[np.bool_]:
@@ -155,14 +155,14 @@ def late_change(recording: Recording, strides: Strides, seed: int = 0) -> LateCh
     Source: Ebers (2023), section 4.2.4, excludes by judgement. The statistic is Hotelling's with a long-run variance;
         the simulated null replaces asymptotics that fail for 50 to 250 dependent strides.
     """
-    kept = without_outlying(recording, strides)
-    curves = kept.normalised(recording)
+    regular = without_outlying(recording, strides)
+    curves = regular.normalised(recording)
     moving = np.array([c.quantity in {"angle", "emg"} for c in recording.channels])
     moving &= np.isfinite(curves).any(axis=0).all(axis=0)  # no stride may lack the same phase
     moving[moving] &= np.nanstd(curves[:, :, moving], axis=0).max(axis=0) > 1e-9
     curves = curves[:, :, moving]
-    whole = np.isfinite(curves).all(axis=(1, 2))
-    curves, start = curves[whole], kept.start[whole]
+    complete = np.isfinite(curves).all(axis=(1, 2))
+    curves, start = curves[complete], regular.start[complete]
     if len(curves) < FEWEST_TO_CHANGE or not curves.shape[2]:
         raise StrideError(
             f"for the test for a late change, there must be at least {FEWEST_TO_CHANGE} complete strides",

@@ -151,7 +151,7 @@ def verify_walking(
     if known and kinematics.duration_s > 4 * median:
         regularity = float(np.median([stride_period(kinematics[name], kinematics.rate_hz)[1] for name in known]))
     knees = [float(np.subtract(*np.percentile(x, [95, 5]))) for name, x in known.items() if name.startswith("knee")]
-    found = Walking(
+    walking = Walking(
         len(strides),
         median,
         float(np.sum(strides.duration_s) / kinematics.duration_s),
@@ -159,14 +159,14 @@ def verify_walking(
         max(knees) if knees else float("nan"),  # of the better leg: a stiff knee walks too
     )
     fails = []
-    if found.strides < fewest:
-        fails.append(f"{counted(found.strides, 'stride')}, but {fewest} are needed")
-    if found.coverage < least_coverage:
-        fails.append(f"strides cover {100 * found.coverage:.0f} % of {kinematics.duration_s:.1f} s")
-    if found.regularity < LEAST_REGULARITY:
-        fails.append(f"hip and knee angles repeat with a correlation of {found.regularity:.2f}")
-    if found.knee_deg < LEAST_KNEE_DEG:
-        fails.append(f"the larger of the two knee ranges of motion is {found.knee_deg:.0f} deg")
+    if walking.strides < fewest:
+        fails.append(f"{counted(walking.strides, 'stride')}, but {fewest} are needed")
+    if walking.coverage < least_coverage:
+        fails.append(f"strides cover {100 * walking.coverage:.0f} % of {kinematics.duration_s:.1f} s")
+    if walking.regularity < LEAST_REGULARITY:
+        fails.append(f"hip and knee angles repeat with a correlation of {walking.regularity:.2f}")
+    if walking.knee_deg < LEAST_KNEE_DEG:
+        fails.append(f"the larger of the two knee ranges of motion is {walking.knee_deg:.0f} deg")
     if fails:
         raise StrideError(
             f"a walk must have at least {counted(fewest, 'stride')} that cover {100 * least_coverage:.0f} % of "
@@ -175,7 +175,7 @@ def verify_walking(
             f"{kinematics.source.file or 'the recording'}: {'; '.join(fails)}",
             "Remove calibration and range-of-motion trials from the study, or cut the trial to its walking part.",
         )
-    return found
+    return walking
 
 
 def stride_period(x: Values, rate_hz: float) -> tuple[float, float]:

@@ -183,9 +183,9 @@ def _test(
     over_all = np.concatenate([[np.abs(t).max()], *largest])  # the curves as they are count as one
     threshold = float(np.sort(over_all)[::-1][int(np.floor(plan.alpha * len(over_all)))])
     beyond = permutations[over_all[1:] > threshold]
-    fields = [t, *(one for part in _parts(beyond, t.size) for one in t_of(part))]
+    fields = [t, *(field for part in _parts(beyond, t.size) for field in t_of(part))]
     masses = np.zeros(len(over_all))
-    masses[: len(fields)] = [max((mass for *_, mass in _stretches(one, threshold)), default=0.0) for one in fields]
+    masses[: len(fields)] = [max((mass for *_, mass in _stretches(field, threshold)), default=0.0) for field in fields]
     t, error = t * share, error / share
     clusters = tuple(
         Cluster(channel, first, last, sign, mass, float(np.mean(masses >= mass * (1 - 1e-9))))

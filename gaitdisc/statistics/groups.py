@@ -100,10 +100,10 @@ def best_cut(features: NDArray[np.float64]) -> tuple[NDArray[np.intp], float]:
 def _stability(features: NDArray[np.float64], labels: NDArray[np.intp], rng: np.random.Generator) -> float:
     from sklearn.metrics import adjusted_rand_score
 
-    kept = max(FEWEST - 1, round(SHARE_KEPT * len(features)))
-    found = []
+    size = max(FEWEST - 1, round(SHARE_KEPT * len(features)))
+    agreements = []
     for _ in range(SUBSAMPLES):
-        chosen = rng.choice(len(features), kept, replace=False)
+        chosen = rng.choice(len(features), size, replace=False)
         again = fcluster(linkage(features[chosen], "ward"), int(labels.max()), "maxclust")
-        found.append(adjusted_rand_score(labels[chosen], again))
-    return float(np.mean(found))
+        agreements.append(adjusted_rand_score(labels[chosen], again))
+    return float(np.mean(agreements))

@@ -65,29 +65,29 @@ def holm_sidak(p: ArrayLike, alpha: float = 0.05) -> StepDown:
     (4, 0.013)
     """
     check_level(alpha, "alpha")
-    found = np.asarray(p, float).ravel()
-    if not len(found) or not np.all((found >= 0) & (found <= 1)):
-        wrong = [f"{value:g}" for value in found[~((found >= 0) & (found <= 1))]]
+    p_values = np.asarray(p, float).ravel()
+    if not len(p_values) or not np.all((p_values >= 0) & (p_values <= 1)):
+        wrong = [f"{value:g}" for value in p_values[~((p_values >= 0) & (p_values <= 1))]]
         raise ComparisonError(
             "the p-values of a family of tests must lie between 0 and 1",
             f"found {', '.join(wrong[:5])}" if wrong else "there is no test",
             "Exclude the comparisons that could not be tested, and state the reason.",
         )
-    order = np.argsort(found, kind="stable")
-    left = np.arange(len(found), 0, -1)
+    order = np.argsort(p_values, kind="stable")
+    remaining = np.arange(len(p_values), 0, -1)
     with np.errstate(divide="ignore"):  # log1p(-1) is -inf, and 1 - 0^k is 1
-        raised = -np.expm1(left * np.log1p(-found[order]))
-    levels = step_levels(len(found), alpha)
-    steps = np.flatnonzero(found[order] > levels)
-    rejections = int(steps[0]) if len(steps) else len(found)
-    back = np.empty(len(found), np.intp)
-    back[order] = np.arange(len(found))
+        raised = -np.expm1(remaining * np.log1p(-p_values[order]))
+    levels = step_levels(len(p_values), alpha)
+    steps = np.flatnonzero(p_values[order] > levels)
+    rejections = int(steps[0]) if len(steps) else len(p_values)
+    back = np.empty(len(p_values), np.intp)
+    back[order] = np.arange(len(p_values))
     return StepDown(
         adjusted=np.maximum.accumulate(raised)[back],
         level=levels[back],
         rejected=back < rejections,
         alpha=alpha,
-        critical=float(levels[min(rejections, len(found) - 1)]),
+        critical=float(levels[min(rejections, len(p_values) - 1)]),
     )
 
 

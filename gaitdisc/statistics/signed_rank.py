@@ -199,25 +199,25 @@ def sums_of_ranks(ranks: NDArray[np.intp]) -> NDArray[np.float64]:
 
 def in_one_order(first: Any, second: Any) -> tuple[Any, Any]:
     """Both, the second in the order of the first's index where both have one (DataFrame or Series); else as given."""
-    if not all(isinstance(one, pd.DataFrame | pd.Series) for one in (first, second)):
+    if not all(isinstance(table, pd.DataFrame | pd.Series) for table in (first, second)):
         return first, second
     check_same(first.index, second.index, "participants")
     return first, second.loc[first.index]
 
 
-def check_same(one: pd.Index, other: pd.Index, words: str) -> None:
+def check_same(first: pd.Index, second: pd.Index, words: str) -> None:
     """Refuse labels that stand in one of two tables alone, or twice in it."""
-    unlike = one.symmetric_difference(other)
-    if len(unlike) or one.has_duplicates or other.has_duplicates:
-        double = next((index for index in (one, other) if index.has_duplicates), one)
-        found = (
+    unlike = first.symmetric_difference(second)
+    if len(unlike) or first.has_duplicates or second.has_duplicates:
+        double = next((index for index in (first, second) if index.has_duplicates), first)
+        defect = (
             f"{unlike[0]!r} is in only one of the two"
             if len(unlike)
             else f"{double[double.duplicated()][0]!r} occurs twice"
         )
         raise ShapeError(
             f"both tables must have the same {words}, each once",
-            found,
+            defect,
             "Remove participants who are in one table only (write NaN for a missing number), and make "
             'the participant the index: table.set_index("participant").',
         )
