@@ -168,10 +168,10 @@ def verify_walking(
     if walking.knee_deg < LEAST_KNEE_DEG:
         fails.append(f"the larger of the two knee ranges of motion is {walking.knee_deg:.0f} deg")
     if fails:
+        covering = f" over at least {100 * least_coverage:.0f} % of the trial" if least_coverage else ""
         raise StrideError(
-            f"a walk must have at least {counted(fewest, 'stride')} that cover {100 * least_coverage:.0f} % of "
-            f"the trial, a stride-to-stride correlation of at least {LEAST_REGULARITY:g}, and a knee range of motion "
-            f"of at least {LEAST_KNEE_DEG:g} deg on one side",
+            f"a walk must have at least {counted(fewest, 'stride')}{covering}, a stride-to-stride correlation of at "
+            f"least {LEAST_REGULARITY:g}, and a knee range of motion of at least {LEAST_KNEE_DEG:g} deg on one side",
             f"{kinematics.source.file or 'the recording'}: {'; '.join(fails)}",
             "Remove calibration and range-of-motion trials from the study, or cut the trial to its walking part.",
         )
