@@ -128,8 +128,8 @@ if not TYPE_CHECKING:  # or a type checker takes every misspelt name for one of 
         from importlib import import_module
 
         module, inside = _HOME[name]
-        found = import_module(f"{__name__}.{module}")
-        globals()[name] = getattr(found, inside) if inside else found
+        home = import_module(f"{__name__}.{module}")
+        globals()[name] = getattr(home, inside) if inside else home
         return globals()[name]
 
 

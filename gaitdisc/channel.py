@@ -173,8 +173,8 @@ def find_side(name: str) -> str:
     >>> find_side("emg_sol_l"), find_side("hip_flexion_r_moment"), find_side("lumbar_bending")
     ('l', 'r', '')
     """
-    found = re.search(r"_(r|l)(?=$|[_./])", name.lower())
-    return found[1] if found else ""
+    match = re.search(r"_(r|l)(?=$|[_./])", name.lower())
+    return match[1] if match else ""
 
 
 def other_side(side: str) -> str:

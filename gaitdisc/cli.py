@@ -55,13 +55,13 @@ def _guard(command: Callable[..., None]) -> Callable[..., None]:
     @wraps(command)
     def writing(*, overwrite: bool, **given: Any) -> None:
         values = [value if isinstance(value, list) else [value] for name, value in given.items() if name != "out"]
-        paths = [Path(one) for value in values for one in value if isinstance(one, str | Path)]
+        paths = [Path(item) for value in values for item in value if isinstance(item, str | Path)]
         with guard(f"gaitdisc {command.__name__}", paths, overwrite):
             command(**given)
 
-    own = signature(command, eval_str=True)
+    base = signature(command, eval_str=True)
     option = Parameter("overwrite", Parameter.KEYWORD_ONLY, default=False, annotation=Overwrite)
-    writing.__signature__ = own.replace(parameters=[*own.parameters.values(), option])  # type: ignore[attr-defined]
+    writing.__signature__ = base.replace(parameters=[*base.parameters.values(), option])  # type: ignore[attr-defined]
     writing.__annotations__ = {**command.__annotations__, "overwrite": Overwrite}
     return writing
 

@@ -41,13 +41,13 @@ class _LenientCache(FunctionCache):
             return None
 
 
-def _with_called(function: Any, found: dict[Any, None]) -> dict[Any, None]:
+def _with_called(function: Any, functions: dict[Any, None]) -> dict[Any, None]:
     """A function and all compiled functions that it calls, each once."""
-    if function is not None and function not in found:
-        found[function] = None
+    if function is not None and function not in functions:
+        functions[function] = None
         for name in function.__code__.co_names:
-            _with_called(getattr(function.__globals__.get(name), "py_func", None), found)
-    return found
+            _with_called(getattr(function.__globals__.get(name), "py_func", None), functions)
+    return functions
 
 
 def compiled(function: Callable[..., Any] | None = None, **options: Any) -> Any:

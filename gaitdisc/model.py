@@ -39,12 +39,12 @@ class Augmented:
 
     def __post_init__(self) -> None:
         for what in ("inputs", "outputs"):
-            one, other = getattr(self.known, what), getattr(self.missing, what)
-            if one != other:
-                apart = sorted(set(one) ^ set(other)) or ["their order"]
+            known, missing = getattr(self.known, what), getattr(self.missing, what)
+            if known != missing:
+                apart = sorted(set(known) ^ set(missing)) or ["their order"]
                 raise ShapeError(
                     f"models that are added must have the same {what}",
-                    f"they have {len(one)} and {len(other)}, and differ in {', '.join(apart[:3])}",
+                    f"they have {len(known)} and {len(missing)}, and differ in {', '.join(apart[:3])}",
                     "Fit both models on the same channels.",
                 )
 

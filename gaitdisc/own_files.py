@@ -74,7 +74,7 @@ class Guard:
         for name in (*place.mended, *names):
             self.find_place(place.folder / name)
         self.places[self.places.index(place)] = place._replace(known=True)
-        made = [one for one in (place.folder, *place.folder.parents) if not one.exists()]
+        made = [folder for folder in (place.folder, *place.folder.parents) if not folder.exists()]
         self.held.callback(_leave_no_empty_folder, place.folder, made)
         self.held.enter_context(write_lock(place.folder, lock))
 
@@ -84,21 +84,21 @@ class Guard:
         if not inside:
             inside = [Place(path.parent, self.command, _list_paths(path.parent))]
             self.take(inside[0], [path.name], f".lock-{path.name}")
-        place = max(inside, key=lambda one: len(one.folder.parts))
+        place = max(inside, key=lambda place: len(place.folder.parts))
         other = [name for name in KINDS if name != path.name and (path.parent / name).is_file()]
         if path.name in KINDS and other:
             raise _refusal(path.parent, f"already contains another kind of result ({other[0]})")
         if not os.path.lexists(path) or (place.known and place.mends(path)):
             return place
         if os.path.exists(path):  # noqa: PTH110 never raises
-            own, same = path.stat(), os.path.samestat
+            state, same = path.stat(), os.path.samestat
             # of a file that was replaced, the number may be given to a new one
-            if any(same(own, read) and own.st_mtime_ns == read.st_mtime_ns for read in self.inputs):
+            if any(same(state, read) and state.st_mtime_ns == read.st_mtime_ns for read in self.inputs):
                 raise _refusal(path, f"is an input of {self.command}")
-        whole = path.is_dir() or place.mends(path)
-        own = place.known if whole else path.is_file() and place.wrote(path, file_sha256(path))
-        if not own and not self.overwrite:
-            edited = not whole and place.wrote(path)
+        mended = path.is_dir() or place.mends(path)
+        ours = place.known if mended else path.is_file() and place.wrote(path, file_sha256(path))
+        if not ours and not self.overwrite:
+            edited = not mended and place.wrote(path)
             what = f"was changed after {place.command} wrote it" if edited else f"was not written by {place.command}"
             way = "--overwrite" if self.command.startswith("gaitdisc") else "overwrite=True"
             raise _refusal(path, f"already exists and {what}", f", or use {way}")
@@ -115,7 +115,7 @@ def guard(command: str, inputs: Iterable[Path] = (), overwrite: bool = False) ->
         yield
         return
     with _at_work(Guard(command, overwrite)):
-        note_inputs(one for path in inputs for one in (path, *(path / name for name in KINDS)))
+        note_inputs(file for path in inputs for file in (path, *(path / name for name in KINDS)))
         yield
 
 
@@ -205,14 +205,14 @@ def _earlier_lines(folder: Path, names: Iterable[str], command: str) -> Lines:
     if not any(b'"own_sha256"' in path.read_bytes() for path in saved):
         return set()
     files = [path for path in folder.rglob("*") if path.is_file()]
-    found = {path: file_sha256(path) for path in files if PAGE.intersection(path.relative_to(folder).parts)}
-    for path in (one for one in files if one.suffix == ".json"):
+    hashes = {path: file_sha256(path) for path in files if PAGE.intersection(path.relative_to(folder).parts)}
+    for path in (file for file in files if file.suffix == ".json"):
         with suppress(OSError, ValueError, LookupError, TypeError, AttributeError, RecursionError):
             data = json.loads(path.read_text(encoding="utf-8"))
             if data.pop("own_sha256") == content_sha256(data):
-                named = {path.parent / name: own for name, own in data.get("sha256", {}).items()}
-                found |= {path: file_sha256(path), **named}
-    return {(sha256, command, path.relative_to(folder).as_posix()) for path, sha256 in found.items()}
+                named = {path.parent / name: sha256 for name, sha256 in data.get("sha256", {}).items()}
+                hashes |= {path: file_sha256(path), **named}
+    return {(sha256, command, path.relative_to(folder).as_posix()) for path, sha256 in hashes.items()}
 
 
 def _list_paths(folder: Path) -> Lines:
@@ -225,10 +225,10 @@ def _list_paths(folder: Path) -> Lines:
 
 def _leave_no_empty_folder(folder: Path, made: list[Path]) -> None:
     with suppress(OSError):
-        if [one.name for one in folder.iterdir()] == [LIST]:
+        if [entry.name for entry in folder.iterdir()] == [LIST]:
             (folder / LIST).unlink()
-        for one in made:
-            one.rmdir()
+        for parent in made:
+            parent.rmdir()
 
 
 def _refusal(path: Path, what: str, way: str = "") -> WriteError:

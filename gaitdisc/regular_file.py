@@ -34,19 +34,19 @@ def check_regular(path: Path, largest_bytes: int = LARGEST_BYTES) -> int:
     gaitdisc.errors.ReadError: the input must be a file; / is a folder. Give the path of a file.
     """
     refuse_nul(path)
-    found = path.stat()
+    status = path.stat()
     name = path.name or str(path)
-    if not stat.S_ISREG(found.st_mode):
-        kind = next((word for is_one, word in _KINDS if is_one(found.st_mode)), "not a regular file")
+    if not stat.S_ISREG(status.st_mode):
+        kind = next((word for is_one, word in _KINDS if is_one(status.st_mode)), "not a regular file")
         raise ReadError("the input must be a file", f"{name} is {kind}", "Give the path of a file.")
-    if found.st_size > largest_bytes:
+    if status.st_size > largest_bytes:
         raise ReadError(
             f"a file may have at most {size_in_words(largest_bytes)}",
-            f"{name} has {size_in_words(found.st_size)}",
+            f"{name} has {size_in_words(status.st_size)}",
             "Export the recording in parts, or export only the channels that you need.",
         )
     note_inputs([path])
-    return found.st_size
+    return status.st_size
 
 
 def refuse_nul(path: Path) -> None:
@@ -70,10 +70,10 @@ def file_sha256(path: Path) -> str:
     check_regular(path)
     with path.open("rb") as file:
         before = os.fstat(file.fileno())
-        found = hashlib.file_digest(file, "sha256").hexdigest()
+        digest = hashlib.file_digest(file, "sha256").hexdigest()
         if time.time() - before.st_mtime > SETTLED_S and _state(os.fstat(file.fileno())) == _state(before):
-            _known[_state(before)] = found
-    return found
+            _known[_state(before)] = digest
+    return digest
 
 
 def recall_sha256(path: Path) -> str:
@@ -84,5 +84,5 @@ def recall_sha256(path: Path) -> str:
         return ""
 
 
-def _state(found: os.stat_result) -> tuple[int, ...]:
-    return (found.st_dev, found.st_ino, found.st_size, found.st_mtime_ns, found.st_ctime_ns)
+def _state(status: os.stat_result) -> tuple[int, ...]:
+    return (status.st_dev, status.st_ino, status.st_size, status.st_mtime_ns, status.st_ctime_ns)

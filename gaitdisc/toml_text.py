@@ -31,7 +31,7 @@ def parse_toml(text: str) -> dict[str, Any]:
         raise tomllib.TOMLDecodeError(too_deep) from error
     level: list[Any] = [table]
     for _ in range(DEEPEST):
-        level = [inner for one in level for inner in (one.values() if isinstance(one, dict) else one)
+        level = [inner for node in level for inner in (node.values() if isinstance(node, dict) else node)
                  if isinstance(inner, dict | list)]  # fmt: skip
         if not level:
             return table

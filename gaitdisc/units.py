@@ -170,10 +170,10 @@ def unit_factor(unit: str, to: str) -> float | None:
     """
     if "degC" in (unit, to) and offset_words(unit, to):
         return math.nan
-    one, other = _measure(unit), _measure(to)
-    if one is None or other is None:
+    first, second = _measure(unit), _measure(to)
+    if first is None or second is None:
         return None
-    return one[0] / other[0] if one[1] == other[1] else math.nan
+    return first[0] / second[0] if first[1] == second[1] else math.nan
 
 
 def _measure(unit: str | Powers) -> tuple[float, Dimension] | None:
@@ -182,8 +182,8 @@ def _measure(unit: str | Powers) -> tuple[float, Dimension] | None:
     for word, power in unit_words(unit) if isinstance(unit, str) else unit.items():
         if word not in _FACTORS:
             return None
-        own, dimension = _FACTORS[word]
-        factor *= own**power
+        size, dimension = _FACTORS[word]
+        factor *= size**power
         powers = [a + power * b for a, b in zip(powers, dimension, strict=True)]
     return factor, tuple(powers)
 
@@ -196,8 +196,8 @@ def unit_words(unit: str) -> Iterator[tuple[str, int]]:
     """
     for number, group in enumerate(unit.strip()[:80].split("/")):
         for part in re.split(r"\s*[ .*·]\s*", group.strip("() ")):
-            found = _PART.fullmatch(part)
-            word, power = (found[1], int(found[2] or 1)) if found else (part, 1)
+            match = _PART.fullmatch(part)
+            word, power = (match[1], int(match[2] or 1)) if match else (part, 1)
             yield word, power if number == 0 else -power
 
 

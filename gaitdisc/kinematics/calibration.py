@@ -266,15 +266,15 @@ class _Builder:
 
     def _list_spoiled(self) -> tuple[str, ...]:
         """Segments that hold an exchanged marker, and those below them."""
-        found: list[str] = []
+        spoiled: list[str] = []
         for segment in SEGMENTS:
             part, _, side = segment.partition("_")
             marks = [marker for mark in MARKS[part] for s in side or "lr" for marker in self._labels(mark, s)]
             wands = self._labels(f"{part}_wand", side) if side else ()
-            above = "pelvis" in found or any(one.endswith(f"_{side}") for one in found if side)
+            above = "pelvis" in spoiled or any(segment.endswith(f"_{side}") for segment in spoiled if side)
             if above or set(self.exchanged) & {*self.marker_set.followers(segment), *marks, *wands}:
-                found.append(segment)
-        return tuple(found)
+                spoiled.append(segment)
+        return tuple(spoiled)
 
 
 def _axes(right: Values, up: Values, file: str, segment: str, kept: str = "z") -> Values:
@@ -301,7 +301,7 @@ def landmark_order(marker_set: MarkerSet, places: Points, up: Values) -> list[tu
     """
     labels = {(key, side): marker_set.landmark(key, side, places) for key in (*SIDED, "sacrum") for side in "lr"}
     at = {(name,): np.asarray(place) for name, place in places.items()}
-    at |= {names: np.mean([places[one] for one in names], axis=0) for names in labels.values() if names}
+    at |= {names: np.mean([places[name] for name in names], axis=0) for names in labels.values() if names}
     pairs = marker_set.list_sided_pairs(places)
     across = np.sum([places[right] - places[left] for left, right in pairs], axis=0)
     across -= (across @ up) * up
@@ -312,7 +312,7 @@ def landmark_order(marker_set: MarkerSet, places: Points, up: Values) -> list[tu
         knee, ankle, heel, toe = (labels[key, side] for key in ("knee_lateral", "ankle_lateral", "heel", "toe"))
         along = (at[toe] - at[heel]) / np.linalg.norm(at[toe] - at[heel])
         leg = [labels[key, side] for key in DOWN_THE_LEG if labels[key, side]]
-        order += [(one, "above", other, up) for one, other in itertools.pairwise(leg)]
+        order += [(upper, "above", lower, up) for upper, lower in itertools.pairwise(leg)]
         order += [(toe, "ahead of", heel, forward), (ankle, "ahead of", heel, along), (toe, "ahead of", ankle, along)]
         order += [(knee, "outside of", labels["knee_medial", side], outward)]
         order += [(ankle, "outside of", labels["ankle_medial", side], outward)]

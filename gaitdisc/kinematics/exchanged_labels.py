@@ -45,13 +45,13 @@ def find_exchanged_pairs(
 
     places each (frame, 3) [m]: as `name_places` returns them
     up (3,): in the laboratory
-    returns found: each pair with its frames
+    returns exchanges: each pair with its frames
     returns broken each (frame,): segment -> frames in which its markers lie farther from their places than skin moves
     """
     now = misfits(places, calibration, up)
-    found: list[Exchange] = []
+    exchanges: list[Exchange] = []
     unexplained = np.max([*now.values()], axis=0) > LOOKED_AT_M
-    while unexplained.any() and len(found) < MOST_PAIRS:
+    while unexplained.any() and len(exchanges) < MOST_PAIRS:
         frames: NDArray[np.intp] = np.flatnonzero(unexplained)
         some = frames[np.linspace(0, len(frames) - 1, min(FRAMES, len(frames))).astype(int)]
         pair = _best_pair({name: place[some] for name, place in places.items()}, calibration, up)
@@ -59,15 +59,15 @@ def find_exchanged_pairs(
             break
         segments = holders(pair, calibration)
         before_m, after_m = (
-            np.max([one[name] for name in segments], axis=0)
-            for one in (now, misfits(swap(places, pair), calibration, up))
+            np.max([misfit[name] for name in segments], axis=0)
+            for misfit in (now, misfits(swap(places, pair), calibration, up))
         )
         better = unexplained & (before_m > LOOKED_AT_M) & (after_m < before_m)
-        found.append(
+        exchanges.append(
             Exchange(pair, better, segments, float(np.median(before_m[better])), float(np.median(after_m[better])))
         )
         unexplained = unexplained & ~better
-    return found, {segment: unexplained & (now[segment] > BROKEN_M) for segment in SEGMENTS}
+    return exchanges, {segment: unexplained & (now[segment] > BROKEN_M) for segment in SEGMENTS}
 
 
 def misfits(places: Points, calibration: Calibration, up: Values) -> dict[str, Values]:
@@ -77,19 +77,19 @@ def misfits(places: Points, calibration: Calibration, up: Values) -> dict[str, V
     against both feet, is infinitely far: markers exchanged may keep their distances.
     """
     fits = free_fits(place_markers(places, calibration), calibration)
-    found, feet = {segment: fit.residual_m.copy() for segment, fit in fits.items()}, []
+    by_segment, feet = {segment: fit.residual_m.copy() for segment, fit in fits.items()}, []
     for side in "lr":
         names = [calibration.marker_set.landmark(end, side, places) for end in ("heel", "toe")]
-        heel, toe = (np.mean([places[name] for name in each] or [np.full(3, np.nan)], axis=0) for each in names)
+        heel, toe = (np.mean([places[name] for name in marks] or [np.full(3, np.nan)], axis=0) for marks in names)
         feet.append(np.broadcast_to(toe - heel, fits["pelvis"].pose.origin.shape))
         backward = np.einsum("fi,fi->f", fits[f"shank_{side}"].pose.rotation[:, :, 0], feet[-1]) < 0
-        found[f"foot_{side}"][backward] = np.inf
+        by_segment[f"foot_{side}"][backward] = np.inf
     pelvis = fits["pelvis"].pose.rotation
     against = np.all([np.einsum("fi,fi->f", pelvis[:, :, 0], foot) < 0 for foot in feet], axis=0)
-    found["pelvis"][against | (pelvis[:, :, 1] @ up < 0)] = np.inf
+    by_segment["pelvis"][against | (pelvis[:, :, 1] @ up < 0)] = np.inf
     return {
-        segment: np.where(segment in calibration.spoiled, 0.0, np.where(np.isnan(each), 0.0, each))
-        for segment, each in found.items()
+        segment: np.where(segment in calibration.spoiled, 0.0, np.where(np.isnan(metres), 0.0, metres))
+        for segment, metres in by_segment.items()
     }
 
 
@@ -107,9 +107,9 @@ def _best_pair(places: Points, calibration: Calibration, up: Values) -> tuple[st
         segments = holders(pair, calibration)
         if off & set(segments):
             after = misfits(swap(places, pair), calibration, up)
-            before_m, after_m = (np.max([one[segment] for segment in segments], axis=0) for one in (now, after))
+            before_m, after_m = (np.max([misfit[segment] for segment in segments], axis=0) for misfit in (now, after))
             others = [name for name in SEGMENTS if name not in segments]
-            rest_m, rest_after_m = (np.max([one[name] for name in others], axis=0) for one in (now, after))
+            rest_m, rest_after_m = (np.max([misfit[name] for name in others], axis=0) for misfit in (now, after))
             fits = (after_m < BROKEN_M) & (rest_after_m <= np.maximum(rest_m, BROKEN_M))
             explains = fits & (before_m > LOOKED_AT_M) & (after_m < EXPLAINED * before_m)
             ranked.append((int(explains.sum()), -float(after_m[explains].sum()), pair))
@@ -118,7 +118,7 @@ def _best_pair(places: Points, calibration: Calibration, up: Values) -> tuple[st
 
 
 def exchange_findings(
-    found: Sequence[Exchange],
+    exchanges: Sequence[Exchange],
     broken: Mapping[str, NDArray[np.bool_]],
     calibration: Calibration,
     markers: Recording,
@@ -127,14 +127,14 @@ def exchange_findings(
     """Say which labels are exchanged, where and in which trial, and which segments have lost their shape without."""
     file, names = markers.source.file or "the trial", calibration.marker_set.names(marker_labels(markers))
     findings = []
-    for one in found:
-        first, second = (names[name] for name in one.pair)
-        order = landmark_order(calibration.marker_set, swap(calibration.places, one.pair), up)
+    for case in exchanges:
+        first, second = (names[name] for name in case.pair)
+        order = landmark_order(calibration.marker_set, swap(calibration.places, case.pair), up)
         where = "this trial" if min(order)[0] <= 0 else "this trial or in the static trial"
-        before = f"{1000.0 * one.before_m:.0f} mm" if np.isfinite(one.before_m) else "a reversed axis"
-        what = f"{', '.join(one.segments)}: exchanging {first} and {second} in {where} corrects {one.frames.sum()} "
-        what += f"of {len(one.frames)} frames: {1000.0 * one.after_m:.0f} mm off the static trial instead of {before}"
-        spans = spans_s(markers.time, one.frames)
+        before = f"{1000.0 * case.before_m:.0f} mm" if np.isfinite(case.before_m) else "a reversed axis"
+        what = f"{', '.join(case.segments)}: exchanging {first} and {second} in {where} corrects {case.frames.sum()} "
+        what += f"of {len(case.frames)} frames: {1000.0 * case.after_m:.0f} mm off the static trial instead of {before}"
+        spans = spans_s(markers.time, case.frames)
         findings.append(Finding("warning", "exchanged markers", file, what, SPOILS, f"{first}, {second}", spans=spans))
     for segment, frames in broken.items():
         if frames.any():
@@ -145,10 +145,10 @@ def exchange_findings(
     return findings
 
 
-def without_exchanged(markers: Recording, found: Sequence[Exchange], calibration: Calibration) -> Recording:
+def without_exchanged(markers: Recording, exchanges: Sequence[Exchange], calibration: Calibration) -> Recording:
     """Same markers, missing in the frames in which they bear another's label."""
     names, values = calibration.marker_set.names(marker_labels(markers)), np.array(markers.values)
-    for one in found:
-        columns = [markers.index(f"{names[name]}.{axis}") for name in one.pair for axis in "xyz"]
-        values[np.flatnonzero(one.frames)[:, None], columns] = np.nan
-    return markers.with_values(values) if found else markers
+    for exchange in exchanges:
+        columns = [markers.index(f"{names[name]}.{axis}") for name in exchange.pair for axis in "xyz"]
+        values[np.flatnonzero(exchange.frames)[:, None], columns] = np.nan
+    return markers.with_values(values) if exchanges else markers

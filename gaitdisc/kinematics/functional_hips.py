@@ -43,39 +43,39 @@ def functional_hips(markers: Recording, calibration: Calibration) -> tuple[dict[
     hips, findings = {}, []
     for side in "lr":
         usual = calibration.points["pelvis"][f"hip_{side}"]
-        found, refused = _find_hip(pelvis, placed[f"thigh_{side}"], usual)
-        if found is None:
+        pivot, refused = _find_hip(pelvis, placed[f"thigh_{side}"], usual)
+        if pivot is None:
             what = f"hip_{side} is computed from the landmarks, not from the functional trial: {refused}"
             findings.append(Finding("warning", "functional hip", file, what, SPOILS))
             continue
-        hips[f"hip_{side}"] = found.centre
-        what = f"hip_{side} of the functional trial is {_mm(_apart(found, usual))} from that of the landmarks; "
-        what += f"the thigh moves about this centre within {_mm(found.residual_m)} (rms)"
+        hips[f"hip_{side}"] = pivot.centre
+        what = f"hip_{side} of the functional trial is {_mm(_apart(pivot, usual))} from that of the landmarks; "
+        what += f"the thigh moves about this centre within {_mm(pivot.residual_m)} (rms)"
         findings.append(Finding("note", "functional hip", file, what, ""))
     return hips, tuple(findings)
 
 
 def _find_hip(pelvis: Pose, thigh: PlacedMarkers, usual: Values) -> tuple[Pivot | None, str]:
     """Centre of one hip, or None and why."""
-    whole = pelvis.known & np.isfinite(thigh.seen).all(axis=(1, 2))
-    if whole.sum() < FEWEST_FRAMES:
-        return None, f"pelvis and thigh are complete in {int(whole.sum())} frames; {FEWEST_FRAMES} frames are needed"
-    above, markers = Pose(pelvis.origin[whole], pelvis.rotation[whole]), thigh.seen[whole]
+    complete = pelvis.known & np.isfinite(thigh.seen).all(axis=(1, 2))
+    if complete.sum() < FEWEST_FRAMES:
+        return None, f"pelvis and thigh are complete in {int(complete.sum())} frames; {FEWEST_FRAMES} frames are needed"
+    above, markers = Pose(pelvis.origin[complete], pelvis.rotation[complete]), thigh.seen[complete]
     below, places = fit_pose(thigh.body, markers).pose, above.to_segment(markers)
-    found = find_fixed_point(above, below) if below.known.all() else sphere_centre(places, usual)
+    pivot = find_fixed_point(above, below) if below.known.all() else sphere_centre(places, usual)
     # to each side, in the direction in which the thigh turns less
-    way = (places - found.centre).mean(axis=1)
+    way = (places - pivot.centre).mean(axis=1)
     way = way / np.linalg.norm(way, axis=1, keepdims=True)
     spread = np.linalg.eigvalsh(np.cov(way.T))
     swing_deg = float(np.degrees(np.sqrt(max(spread[1], 0.0))))
     if swing_deg < LEAST_SWING_DEG:
         words = f"the thigh turns by {swing_deg:.1f} deg (rms) perpendicular to its largest swing"
         return None, f"{words}; at least {LEAST_SWING_DEG:g} deg are needed"
-    if found.residual_m > LARGEST_RESIDUAL_M:
-        return None, f"the thigh deviates from the centre by {_mm(found.residual_m)} (rms)"
-    if _apart(found, usual) > FARTHEST_M:
-        return None, f"the computed centre is {_mm(_apart(found, usual))} from that of the landmarks"
-    return found, ""
+    if pivot.residual_m > LARGEST_RESIDUAL_M:
+        return None, f"the thigh deviates from the centre by {_mm(pivot.residual_m)} (rms)"
+    if _apart(pivot, usual) > FARTHEST_M:
+        return None, f"the computed centre is {_mm(_apart(pivot, usual))} from that of the landmarks"
+    return pivot, ""
 
 
 def find_fixed_point(above: Pose, below: Pose) -> Pivot:
@@ -120,8 +120,8 @@ def sphere_centre(places: Values, start: Values) -> Pivot:
     return Pivot(centre, float(np.sqrt(((distance - distance.mean(axis=0)) ** 2).mean())))
 
 
-def _apart(found: Pivot, usual: Values) -> float:
-    return float(np.linalg.norm(found.centre - usual))
+def _apart(pivot: Pivot, usual: Values) -> float:
+    return float(np.linalg.norm(pivot.centre - usual))
 
 
 def _mm(metres: float) -> str:

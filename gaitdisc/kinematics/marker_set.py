@@ -99,13 +99,13 @@ class MarkerSet:
         for key, several in self.aliases.items():
             for side in "lr":
                 others.setdefault(name_sided(key, side), []).extend(name_sided(alias, side) for alias in several)
-        found = {}
+        by_name = {}
         for name in self.markers():
-            own = (name, *others.get(name, ()))
-            label = next((by_fold[f] for f in map(fold_label, own) if f in by_fold), None)
+            spellings = (name, *others.get(name, ()))
+            label = next((by_fold[f] for f in map(fold_label, spellings) if f in by_fold), None)
             if label is not None:
-                found[name] = label
-        return found
+                by_name[name] = label
+        return by_name
 
     def markers(self) -> tuple[str, ...]:
         """Every marker that landmarks or segments name, both sides, in order."""
@@ -173,7 +173,7 @@ def name_sided(name: str, side: str) -> str:
     ('LASI', 'knee_r', 'right knee')
     """
     words = {"S": side.upper(), "s": side, "side": {"l": "left", "r": "right"}[side]}
-    return PLACEHOLDER.sub(lambda found: words[found[1]], name)
+    return PLACEHOLDER.sub(lambda match: words[match[1]], name)
 
 
 def on_sides(points: Iterable[str], sides: str) -> tuple[str, ...]:
@@ -244,7 +244,7 @@ def _check_text(table: dict[str, Any], path: Path) -> MarkerSet:
         _check_words(parts[part], tuple(keys), f"a key of [{part}]", file)
     for key, value in parts["axes"].items():
         _check_words([value], AXES[key], f"axes.{key}", file)
-    methods = {key: tuple(one.strip() for one in text.split("|")) for key, text in parts["joint_centres"].items()}
+    methods = {key: tuple(method.strip() for method in text.split("|")) for key, text in parts["joint_centres"].items()}
     _check_landmarks(parts["landmarks"], file)
     _check_methods(methods, parts["landmarks"], file)
     _check_tracked(parts["tracked"], file)
@@ -326,18 +326,18 @@ def recognise_marker_set(static: Iterable[str], trial: Iterable[str], file: str 
     """
     static, trial = list(static), list(trial)
     fitting, nearest = [], []
-    for one in read_marker_sets().values():
-        there, followed = one.names(static), one.names(trial)
-        lacking, both = one.lacking(there), set(there) & set(followed)
-        for followers in map(one.followers, SEGMENTS):
+    for candidate in read_marker_sets().values():
+        there, followed = candidate.names(static), candidate.names(trial)
+        lacking, both = candidate.lacking(there), set(there) & set(followed)
+        for followers in map(candidate.followers, SEGMENTS):
             absent = [name for name in followers if name not in both and name not in METHODS]
             lacking += absent if len(followers) - len(absent) < FEWEST_POINTS else []
         lacking = list(dict.fromkeys(lacking))
         if lacking:
-            nearest.append((len(lacking), len(one.markers()), one.name, lacking))
+            nearest.append((len(lacking), len(candidate.markers()), candidate.name, lacking))
         else:
-            found = len(set(there) | set(followed))
-            fitting.append(((found, found - len(one.markers())), one))
+            count = len(set(there) | set(followed))
+            fitting.append(((count, count - len(candidate.markers())), candidate))
     if fitting:
         return max(fitting, key=lambda pair: pair[0])[1]
     *_, name, lacking = min(nearest)

@@ -199,13 +199,13 @@ def _headings(origin: Values, seen: NDArray[np.intp], up: Values, rate_hz: float
     samples = np.arange(len(origin))
     path = _level_part(np.stack([np.interp(samples, seen, origin[seen, axis]) for axis in range(3)], axis=1), up)
     half = max(round(PATH_S * rate_hz / 2), 1)
-    whole = samples[(samples - half >= seen[0]) & (samples + half <= seen[-1])]
-    if not len(whole):
+    inner = samples[(samples - half >= seen[0]) & (samples + half <= seen[-1])]
+    if not len(inner):
         return None
-    velocity = (path[whole + half] - path[whole - half]) / (2 * half) * rate_hz
+    velocity = (path[inner + half] - path[inner - half]) / (2 * half) * rate_hz
     speed = np.linalg.norm(velocity, axis=1)
     moving = speed >= TRAVELS_M_PER_S
     if moving.mean() < 0.5:
         return None
-    nearest = np.rint(np.interp(samples, whole[moving], np.arange(moving.sum()))).astype(int)
+    nearest = np.rint(np.interp(samples, inner[moving], np.arange(moving.sum()))).astype(int)
     return (velocity[moving] / speed[moving, None])[nearest]

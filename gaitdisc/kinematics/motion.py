@@ -120,11 +120,11 @@ def motion(markers: Recording, calibration: Calibration, forward: Sequence[float
         s: np.any([broken[s], *(e.frames for e in exchanges if s in e.segments)], axis=0) | (s in calibration.spoiled)
         for s in SEGMENTS
     }
-    said = exchange_findings(exchanges, broken, calibration, markers, up)
+    exchanged = exchange_findings(exchanges, broken, calibration, markers, up)
     if unfit["pelvis"].all():
         raise ShapeError(
             "the pelvis markers must lie as in the static trial",
-            f"{file}: {next(one.what for one in (*calibration.findings, *said) if one.kind in UNFIT)}",
+            f"{file}: {next(finding.what for finding in (*calibration.findings, *exchanged) if finding.kind in UNFIT)}",
             "Correct the labels, or use the static trial of this person and session.",
         )
     for segment, frames in unfit.items():
@@ -143,15 +143,15 @@ def motion(markers: Recording, calibration: Calibration, forward: Sequence[float
         *calibration.findings,
         Finding("note", "marker set", file, _set_words(calibration), ""),
         Finding("note", "direction", file, walking.how, ""),
-        *said,
+        *exchanged,
     ]
     for segment in SEGMENTS:
         findings += _gaps_and_shape(segment, ~poses[segment].known, bridged[segment], residuals[segment], markers)
     angles = angles_of_poses(markers, poses, bridged, walking)
-    findings += [one for side in "rl" for one in _rolled_foot(side, angles, poses, file)]
+    findings += [finding for side in "rl" for finding in _rolled_foot(side, angles, poses, file)]
     if calibration.marker_set.joints == "planar":  # only what a planar body has
         flexions = {f"{names[0]}_{side}" for names, _ in JOINT_CHANNELS.values() for side in "rl"}
-        angles = angles.selected_by(lambda one: one.name in flexions | {"pelvis_tilt", "pelvis_tx", "pelvis_ty"})
+        angles = angles.selected_by(lambda c: c.name in flexions | {"pelvis_tilt", "pelvis_tx", "pelvis_ty"})
     return Motion(
         angles,
         poses=MappingProxyType(poses),
@@ -169,7 +169,7 @@ def _set_words(calibration: Calibration) -> str:
     chosen, usual = calibration.marker_set, marker_set("plug_in_gait")
     ways = [(joint, chosen.joint_centres[joint], usual.joint_centres[joint]) for joint in ("hip", "knee", "ankle")]
     ways += [(part, chosen.tracked[part], usual.tracked[part]) for part in ("thigh", "shank", "foot")]
-    other = [f"{key} by {' '.join(own)}, not {' '.join(pig)}" for key, own, pig in ways if own != pig]
+    other = [f"{key} by {' '.join(way)}, not {' '.join(pig)}" for key, way, pig in ways if way != pig]
     differs = f"; unlike in Plug-in Gait, {'; '.join(other)}, which rotates the axes" if other else ""
     return f"{chosen.name}: {chosen.title}; joints {chosen.joints}{differs}".replace("{S}", "")
 

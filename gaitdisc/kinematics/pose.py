@@ -217,9 +217,9 @@ def hip_of_spines(left: Values, right: Values, sacrum: Values, side: str) -> Val
     """
     middle, across = (left + right) / 2, right - left
     upward = np.cross(across, middle - sacrum)
-    width, depth = (float(np.nanmedian(np.linalg.norm(one, axis=1))) for one in (across, middle - sacrum))
+    width, depth = (float(np.nanmedian(np.linalg.norm(vector, axis=1))) for vector in (across, middle - sacrum))
     axes = [np.cross(upward, across), upward, across]
-    units = np.stack([one / np.linalg.norm(one, axis=1, keepdims=True) for one in axes], axis=2)
+    units = np.stack([axis / np.linalg.norm(axis, axis=1, keepdims=True) for axis in axes], axis=2)
     return np.asarray(middle + units @ harrington_hip(width, depth, side), np.float64)
 
 

@@ -76,7 +76,7 @@ def hold_together(
     moving: NDArray[np.intp] = np.arange(len(origin))
     for _ in range(ROUNDS):
         some = {segment: turn[moving] for segment, turn in turns.items()}
-        there = {segment: one.among(moving) for segment, one in placed.items()}
+        there = {segment: markers.among(moving) for segment, markers in placed.items()}
         gradient, normal = _normal_equations(some, _origins(origin[moving], some, points), there)
         # a Gauss-Newton step, the smallest where markers do not determine all, turning by half a radian at most
         may = allowed[moving]
@@ -104,7 +104,7 @@ def hold_together(
 def _chain(segment: str) -> tuple[str, ...]:
     """A segment and those that carry it, from the pelvis down."""
     part, _, side = segment.partition("_")
-    return ("pelvis", *(f"{one}_{side}" for one in PARTS[1 : PARTS.index(part) + 1]))
+    return ("pelvis", *(f"{name}_{side}" for name in PARTS[1 : PARTS.index(part) + 1]))
 
 
 def _beginning(first: Mapping[str, Pose]) -> tuple[Turns, Values]:
@@ -210,7 +210,7 @@ def hold_in_gaps(
     unknown = ~np.logical_and.reduce([free[segment].known for segment in SEGMENTS])
     rows: NDArray[np.intp] = np.flatnonzero(np.convolve(unknown, np.ones(3), "same") > 0)
     held = {}
-    some = {segment: one.among(rows) for segment, one in placed.items()}
+    some = {segment: markers.among(rows) for segment, markers in placed.items()}
     part = {segment: Pose(pose.origin[rows], pose.rotation[rows]) for segment, pose in free.items()}
     for segment, pose in hold_together(part, some, points, steady_m=CARRIED_STEADY_M).items():
         origin, rotation = np.full((len(unknown), 3), np.nan), np.full((len(unknown), 3, 3), np.nan)
@@ -273,9 +273,9 @@ def place_markers(places: Mapping[str, Values], calibration: Calibration, file: 
                 f"{file or 'the trial'} has {', '.join(points) or 'none'}; missing: {', '.join(absent)}",
                 "Choose the marker set that matches the labels of the file, or name the markers in its [aliases].",
             )
-        own = [point for point in points if point in places]
-        there = np.stack([places[point] for point in own], axis=1)
-        placed[segment] = PlacedMarkers(np.array([body[point] for point in own]), there)
+        measured = [point for point in points if point in places]
+        there = np.stack([places[point] for point in measured], axis=1)
+        placed[segment] = PlacedMarkers(np.array([body[point] for point in measured]), there)
     return placed
 
 

@@ -122,7 +122,7 @@ def leg_inertia(person: Person, side: str, lengths_m: Mapping[str, float], toe: 
 
 def segment_lengths(poses: Mapping[str, Pose], side: str) -> dict[str, float]:
     """Shank and thigh [m] between proximal joint centres of `thigh_r`, `shank_r`, `foot_r`, medians over frames."""
-    found = {}
+    lengths = {}
     for segment, beyond in (("shank", "foot"), ("thigh", "shank")):
         ends = [poses.get(f"{name}_{side}") for name in (segment, beyond)]
         if ends[0] is None or ends[1] is None:
@@ -145,8 +145,8 @@ def segment_lengths(poses: Mapping[str, Pose], side: str) -> dict[str, float]:
                 f"the length ranges from {low:.3f} to {high:.3f} m",
                 "Check the markers of this leg. Two may be exchanged.",
             )
-        found[segment] = float(middle)
-    return found
+        lengths[segment] = float(middle)
+    return lengths
 
 
 def _body(row: TableRow, mass_kg: float, length_m: float, side: str) -> RigidBody:

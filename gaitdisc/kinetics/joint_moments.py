@@ -32,7 +32,7 @@ class FootLoad:
 
 
 def foot_loads(
-    found: Sequence[Platform],
+    platforms: Sequence[Platform],
     steps: Sequence[PlateStep],
     time: Values,
     cutoff_hz: float,
@@ -49,14 +49,14 @@ def foot_loads(
     loads = {}
     for side in "rl":
         total = Wrench(np.zeros((len(time), 3)), np.zeros((len(time), 3)))
-        for platform in found:
+        for platform in platforms:
             spans = [step.span for step in steps if step.clean and (step.platform, step.side) == (platform.name, side)]
             if spans:
                 smooth = platform.smoothed(cutoff_hz, spans)
                 columns = np.hstack([smooth.force, smooth.moment]).T
                 values = np.stack([np.interp(time, platform.time, column, 0.0, 0.0) for column in columns], axis=1)
                 total += Wrench(values[:, :3], values[:, 3:])
-        named = any(platform.side == side for platform in found)
+        named = any(platform.side == side for platform in platforms)
         spans = [Span(time[0], time[-1])] if named else list((airborne or {}).get(side, ()))
         loads[side] = FootLoad(total, _mark_known(steps, side, time, spans))
     return loads
@@ -64,20 +64,20 @@ def foot_loads(
 
 def swings(trial: Trial, feet: Mapping[str, FootPath]) -> dict[str, list[Span]]:
     """Spans in which each foot is in the air: it goes forwards fast, or the file's events say so."""
-    found = {side: feet[side].swings() if side in feet else [] for side in "rl"}
-    for side, spans in found.items():
+    airborne = {side: feet[side].swings() if side in feet else [] for side in "rl"}
+    for side, spans in airborne.items():
         events = [event for event in trial.events if event.side == side]
-        for one, after in itertools.pairwise(events):
-            if (one.label, after.label) == ("foot off", "initial contact"):
-                spans.append(Span(one.time, after.time))
-    return found
+        for event, after in itertools.pairwise(events):
+            if (event.label, after.label) == ("foot off", "initial contact"):
+                spans.append(Span(event.time, after.time))
+    return airborne
 
 
 def _mark_known(steps: Sequence[PlateStep], side: str, time: Values, known_spans: Sequence[Span]) -> NDArray[np.bool_]:
-    own = [step for step in steps if step.side == side and step.clean]
-    between = [Span(one.end, after.start) for one, after in itertools.pairwise(own)]
+    clean = [step for step in steps if step.side == side and step.clean]
+    gaps = [Span(step.end, after.start) for step, after in itertools.pairwise(clean)]
     known = np.zeros(len(time), bool)
-    for span in (*known_spans, *(step.span for step in own), *(s for s in between if 0 < s.seconds < SWING_AT_MOST_S)):
+    for span in (*known_spans, *(step.span for step in clean), *(s for s in gaps if 0 < s.seconds < SWING_AT_MOST_S)):
         known |= span.holds(time)
     step = float(time[1] - time[0]) if len(time) > 1 else 0.0
     for start, end in runs(~known):
@@ -165,12 +165,12 @@ def legs(
     poses: Mapping[str, Pose], feet: Mapping[str, FootPath], person: Person, settings: KineticsSettings
 ) -> dict[str, Leg]:
     """Legs all of whose segments have a pose from the proximal joint centre, filtered and differentiated."""
-    names = {side: {"pelvis": "pelvis", **{one: f"{one}_{side}" for one in LEG}} for side in feet}
-    whole = {side: own for side, own in names.items() if set(own.values()) <= set(poses)}
-    found, moving = {}, {}
-    for side, own in whole.items():
+    names = {side: {"pelvis": "pelvis", **{segment: f"{segment}_{side}" for segment in LEG}} for side in feet}
+    complete = {side: segments for side, segments in names.items() if set(segments.values()) <= set(poses)}
+    by_side, moving = {}, {}
+    for side, segments in complete.items():
         path = feet[side]
-        wanted = {name: poses[name] for name in own.values() if name not in moving}  # the pelvis is filtered once
+        wanted = {name: poses[name] for name in segments.values() if name not in moving}  # the pelvis is filtered once
         moving |= segment_motions(wanted, path.time, settings.marker_cutoff_hz)
         lengths = segment_lengths(poses, side)
         places = [poses[f"foot_{side}"].to_segment(part) for part in (path.heel, path.toe)]
@@ -182,12 +182,12 @@ def legs(
                 "Fill the gaps in the markers of this foot, or name other markers.",
             )
         bodies = leg_inertia(person, side, lengths, np.median(places[1][seen], axis=0))
-        found[side] = Leg({short: moving[name] for short, name in own.items()}, bodies)
-    return found
+        by_side[side] = Leg({short: moving[name] for short, name in segments.items()}, bodies)
+    return by_side
 
 
 def joint_moments(
-    found: Mapping[str, Leg],
+    by_side: Mapping[str, Leg],
     loads: Mapping[str, FootLoad],
     time: Values,
     up: Values,
@@ -204,9 +204,9 @@ def joint_moments(
     """
     columns: list[Values] = []
     channels: list[Channel] = []
-    for side, leg in found.items():
+    for side, leg in by_side.items():
         needed = leg.needed(up)
-        carried = dict(zip(LEG, joint_wrenches([needed[one] for one in LEG], loads[side].wrench), strict=True))
+        carried = dict(zip(LEG, joint_wrenches([needed[segment] for segment in LEG], loads[side].wrench), strict=True))
         unknown = ~loads[side].known
         for joint, (above, segment) in SEGMENTS_OF.items():
             nearer, farther = leg.moving[above], leg.moving[segment]

@@ -56,12 +56,12 @@ def nearest_rotations(matrices: Values) -> Values:
     >>> nearest_rotations(1.01 * np.eye(3)[None]).round(9).tolist()
     [[[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]]]
     """
-    found = np.full(matrices.shape, np.nan)
+    rotations = np.full(matrices.shape, np.nan)
     known = np.isfinite(matrices).all(axis=(1, 2))
     left, _, right = np.linalg.svd(matrices[known])
     left[:, :, 2] *= np.sign(np.linalg.det(left @ right))[:, None]
-    found[known] = left @ right
-    return found
+    rotations[known] = left @ right
+    return rotations
 
 
 def segment_motion(pose: Pose, rate_hz: float) -> SegmentMotion:
@@ -76,7 +76,7 @@ def segment_motion(pose: Pose, rate_hz: float) -> SegmentMotion:
 
 def segment_motions(poses: Mapping[str, Pose], time: Values, cutoff_hz: float) -> dict[str, SegmentMotion]:
     """SegmentMotion of several segments on even times, filtered alike."""
-    found = {}
+    motions = {}
     rate_hz = mean_rate(time) if len(time) > 1 else np.nan
     for name, pose in poses.items():
         if len(pose) != len(time):
@@ -86,8 +86,8 @@ def segment_motions(poses: Mapping[str, Pose], time: Values, cutoff_hz: float) -
                 "Use the poses and times of the same recording.",
             )
         smooth = smooth_pose(pose, time, cutoff_hz) if np.isfinite(cutoff_hz) else pose
-        found[name] = segment_motion(smooth, rate_hz)
-    return found
+        motions[name] = segment_motion(smooth, rate_hz)
+    return motions
 
 
 def _axial(matrices: Values) -> Values:

@@ -118,7 +118,7 @@ class PlateStep:
         return Finding(self.doubt or "note", "plate step", file, what, "joint moments of this step", spans=(self.span,))
 
 
-def plate_steps(found: Sequence[Platform], feet: Mapping[str, FootPath]) -> list[PlateStep]:
+def plate_steps(platforms: Sequence[Platform], feet: Mapping[str, FootPath]) -> list[PlateStep]:
     """Loadings of all platforms with the foot that made them, in order of time.
 
     The foot is the one whose line from heel to toes the centre of pressure follows. A step is left out where the
@@ -128,7 +128,7 @@ def plate_steps(found: Sequence[Platform], feet: Mapping[str, FootPath]) -> list
     feet: `r`, `l`; a platform that names its foot is only held against them
     """
     steps = []
-    for platform in found:
+    for platform in platforms:
         for start, end in platform.loadings():
             cut = bool(start == 0 or end == len(platform.time))
             wrench = Wrench(platform.wrench.force[start:end], platform.wrench.moment[start:end])
@@ -161,10 +161,10 @@ class Weight:
 
 
 def weigh_steps(
-    steps: Sequence[PlateStep], found: Sequence[Platform], airborne: Mapping[str, Sequence[Span]], weight: Weight
+    steps: Sequence[PlateStep], platforms: Sequence[Platform], airborne: Mapping[str, Sequence[Span]], weight: Weight
 ) -> list[PlateStep]:
     """Steps, doubted where the other foot swings and the force is not what weight and motion of the person need."""
-    named = {platform.name: platform for platform in found}
+    named = {platform.name: platform for platform in platforms}
 
     def weighed(step: PlateStep) -> PlateStep:
         other = airborne.get(other_side(step.side), ()) if step.side else ()
@@ -172,19 +172,19 @@ def weigh_steps(
         share = weight.share(named[step.platform], alone) if alone.seconds >= ALONE_S else 1.0
         if not abs(share - 1) > MOST_APART:
             return step
-        found = f"its force is {share:.2f} of that with which one leg carries {weight.newton:.0f} N of body weight"
+        words = f"its force is {share:.2f} of that with which one leg carries {weight.newton:.0f} N of body weight"
         if step.reason and share < 1:  # a sole beyond the edge, another foot: explains what is missing, never too much
             return replace(step, doubt=step.doubt or "note")
-        return replace(step, reason=f"{found} from {alone.start:.2f} to {alone.end:.2f} s", doubt="warning")
+        return replace(step, reason=f"{words} from {alone.start:.2f} to {alone.end:.2f} s", doubt="warning")
 
     return [weighed(step) for step in steps]
 
 
-def empty_findings(found: Sequence[Platform], file: str) -> list[Finding]:
+def empty_findings(platforms: Sequence[Platform], file: str) -> list[Finding]:
     """Say on which platforms no loading is."""
-    empty = [platform for platform in found if not len(platform.loadings())]
-    said = [f"nobody stepped on {one.name}: its force never exceeds {one.load_n.max():.0f} N" for one in empty]
-    return [Finding("note", "empty plate", file, what, "nothing; no step on it is counted") for what in said]
+    empty = [platform for platform in platforms if not len(platform.loadings())]
+    words = [f"nobody stepped on {plate.name}: its force never exceeds {plate.load_n.max():.0f} N" for plate in empty]
+    return [Finding("note", "empty plate", file, what, "nothing; no step on it is counted") for what in words]
 
 
 def _foot(platform: Platform, feet: Mapping[str, FootPath]) -> tuple[str, str, str]:
@@ -203,11 +203,11 @@ def _foot(platform: Platform, feet: Mapping[str, FootPath]) -> tuple[str, str, s
             known[side] = float(np.nanmedian(metres))
     side = min(known, key=lambda key: known[key], default="")
     if platform.side:
-        own = known.get(platform.side, 0.0)
+        away_m = known.get(platform.side, 0.0)
         whose = f"the plate is assigned to the foot of side {platform.side}, but the centre of pressure"
-        if own > BESIDE_FOOT_M and side != platform.side:
-            return platform.side, f"{whose} follows the other foot ({side}), {100 * own:.0f} cm away", "warning"
-        reason = f"{whose} is {100 * own:.0f} cm from this foot" if own > BESIDE_FOOT_M else ""
+        if away_m > BESIDE_FOOT_M and side != platform.side:
+            return platform.side, f"{whose} follows the other foot ({side}), {100 * away_m:.0f} cm away", "warning"
+        reason = f"{whose} is {100 * away_m:.0f} cm from this foot" if away_m > BESIDE_FOOT_M else ""
         return platform.side, reason, "warning" if reason else ""
     standing = {side: _stands_s(foot, platform) for side, foot in feet.items()}
     if len(standing) == 2 and min(standing.values()) >= STANDS_S:

@@ -135,16 +135,16 @@ def platforms(trial: Trial) -> list[Platform]:
     """
     forces = trial.stream("forces")
     surfaces = {surface.name: surface for surface in trial.surfaces}
-    plates = dict.fromkeys(found[1] for name in forces.names if (found := _PLATE.fullmatch(name)))
-    feet = dict.fromkeys(found[1] for name in forces.names if (found := _SIDED.fullmatch(name)))
-    found = [_plate(forces, name, surfaces) for name in plates] + [_foot_force(forces, name) for name in feet]
-    if not found:
+    plates = dict.fromkeys(match[1] for name in forces.names if (match := _PLATE.fullmatch(name)))
+    feet = dict.fromkeys(match[1] for name in forces.names if (match := _SIDED.fullmatch(name)))
+    all_platforms = [_plate(forces, name, surfaces) for name in plates] + [_foot_force(forces, name) for name in feet]
+    if not all_platforms:
         raise ChannelError(
             "for joint moments, force and moment of the ground must be given in three directions",
             f"{forces.source.file or trial.name} has {', '.join(forces.names[:6])}",
             "Provide plates with FORCE_PLATFORM (C3D), or ground_force_r_vx to ground_torque_r_z (.mot).",
         )
-    for platform in found:  # one that carries a foot pushes it up
+    for platform in all_platforms:  # one that carries a foot pushes it up
         load = platform.load_n
         lowest = int(np.argmin(load))
         if load.max() < CLEAR_LOAD_N < -load[lowest]:
@@ -154,7 +154,7 @@ def platforms(trial: Trial) -> list[Platform]:
                 f"{forces.source.file or trial.name} has {found_n}",
                 "Its sign is wrong. Export the force of the ground on the foot.",
             )
-    return found
+    return all_platforms
 
 
 def _plate(forces: Recording, name: str, surfaces: dict[str, Surface]) -> Platform:

@@ -65,7 +65,7 @@ class ForceBalance:
 
 
 def force_balance(
-    found: Mapping[str, Leg], loads: Mapping[str, FootLoad], up: Values, person: Person, trunk: Values | None = None
+    by_side: Mapping[str, Leg], loads: Mapping[str, FootLoad], up: Values, person: Person, trunk: Values | None = None
 ) -> ForceBalance:
     """Whether the ground pushes as hard as the motion needs, over the frames in which the load of both feet is known.
 
@@ -77,19 +77,19 @@ def force_balance(
     up (3,): unit vector against gravity
     trunk (frame, 3) [m/s2]: acceleration of head, arms and trunk; that of the middle of the hips by default
     """
-    if set(found) != {"l", "r"}:
+    if set(by_side) != {"l", "r"}:
         raise ChannelError(
             "for the balance of forces, both legs and the pelvis must be given",
-            f"found {'only leg ' + ', '.join(found) if found else 'no leg'}",
+            f"found {'only leg ' + ', '.join(by_side) if by_side else 'no leg'}",
             "Provide the markers of both legs.",
         )
     needed = np.zeros(loads["r"].wrench.force.shape)
     rest = person.kg
-    for leg in found.values():
+    for leg in by_side.values():
         for segment, wrench in leg.needed(up).items():
             needed = needed + wrench.force
             rest -= leg.bodies[segment].mass_kg
-    hips = np.mean([leg.moving["thigh"].acceleration for leg in found.values()], axis=0)
+    hips = np.mean([leg.moving["thigh"].acceleration for leg in by_side.values()], axis=0)
     needed = needed + rest * ((hips if trunk is None else trunk) + GRAVITY * up)
     measured = loads["r"].wrench.force + loads["l"].wrench.force
     known = loads["r"].known & loads["l"].known & np.isfinite(needed).all(axis=1)
@@ -129,26 +129,26 @@ def trial_kinetics(
     settings = settings or KineticsSettings()
     markers = trial.stream("markers")
     time, file = markers.time, markers.source.file or trial.name
-    found = platforms(trial)
-    steps, airborne, up = plate_steps(found, feet), swings(trial, feet), found[0].up
+    plates = platforms(trial)
+    steps, airborne, up = plate_steps(plates, feet), swings(trial, feet), plates[0].up
     if "pelvis" in poses:
         weight = Weight(person.weighed_n or person.kg * GRAVITY, time, poses["pelvis"].origin @ up)
-        steps = weigh_steps(steps, found, airborne, weight)
+        steps = weigh_steps(steps, plates, airborne, weight)
     left_out = [finding for step in steps if (finding := step.finding(file))]
     if not any(step.clean for step in steps):
-        reasons = "; ".join(f"{one.platform} at {one.start:.2f} s: {one.reason}" for one in steps[:3])
+        reasons = "; ".join(f"{step.platform} at {step.start:.2f} s: {step.reason}" for step in steps[:3])
         raise ChannelError(
             "for joint moments, one foot must step alone on a force plate",
             f"{file}: {reasons or 'no platform is loaded'}",
             "Exclude the trial from kinetics, or use one in which each foot hit its own plate.",
         )
-    loads = foot_loads(found, steps, time, settings.force_cutoff_hz, airborne)
+    loads = foot_loads(plates, steps, time, settings.force_cutoff_hz, airborne)
     both = legs(poses, feet, person, settings)
     moments = joint_moments(both, loads, time, up, person, settings)
     balance = ForceBalance(0, np.nan, np.nan, np.nan)
     if len(both) == 2:
         cutoff_hz, acceleration = settings.marker_cutoff_hz, None
-        alike = foot_loads(found, steps, time, cutoff_hz, airborne)
+        alike = foot_loads(plates, steps, time, cutoff_hz, airborne)
         if trunk:
             mean = np.mean([marker_position(markers, name) for name in trunk], axis=0)
             channels = tuple(Channel(f"trunk.{axis}", "marker", "m") for axis in "xyz")
@@ -156,6 +156,6 @@ def trial_kinetics(
             smooth = low_pass(carried, cutoff_hz) if np.isfinite(cutoff_hz) else carried
             acceleration = derivative(smooth.values, markers.rate_hz, 2)
         balance = force_balance(both, alike, up, person, acceleration)
-    findings = (*empty_findings(found, file), *left_out, balance.finding(file))
+    findings = (*empty_findings(plates, file), *left_out, balance.finding(file))
     moments = replace(moments, subject=trial.subject, condition=trial.condition, source=markers.source)
     return TrialKinetics(moments, tuple(steps), balance, findings)

@@ -131,7 +131,7 @@ class Recording:
     def __post_init__(self) -> None:
         time, values = read_only(self.time), read_only(self.values)
         channels = tuple(self.channels)
-        strange = next((one for one in channels if not isinstance(one, Channel)), None)
+        strange = next((channel for channel in channels if not isinstance(channel, Channel)), None)
         if strange is not None:
             raise ChannelError(
                 "each channel of a recording must be a gaitdisc.Channel with name, quantity and unit",
@@ -213,7 +213,7 @@ class Recording:
                 "use recording.between(...).",
             )
         if name not in self.names:
-            axes = [own for own in self.names if own.rpartition(".")[0] == name]
+            axes = [label for label in self.names if label.rpartition(".")[0] == name]
             nearest = None if axes else nearest_word(name, self.names)
             there = f"{', '.join(self.names[:SHOWN])}{', ...' * (len(self.names) > SHOWN)}" or "none"
             hint = f"the marker is {', '.join(axes)}" if axes else f"the nearest is {nearest!r}" if nearest else there
@@ -310,9 +310,9 @@ class Recording:
         """
         import pandas as pd
 
-        names = [f"{one.name} [{one.unit}]" if units else one.name for one in self.channels]
+        names = [f"{channel.name} [{channel.unit}]" if units else channel.name for channel in self.channels]
         table = pd.DataFrame(self.values, pd.Index(self.time, name="time"), names, copy=True)  # a user edits it
-        table.attrs["units"] = {name: one.unit for name, one in zip(names, self.channels, strict=True)} | {"time": "s"}
+        table.attrs["units"] = {name: c.unit for name, c in zip(names, self.channels, strict=True)} | {"time": "s"}
         return table
 
     def to_xarray(self) -> xr.DataArray:

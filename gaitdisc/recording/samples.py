@@ -220,11 +220,11 @@ class Trajectory:
     def __post_init__(self) -> None:
         shape = (len(self.time), len(self.channels))
         for name in ("x", "xdot", "xddot", "usable"):
-            found = np.shape(getattr(self, name))
-            if found != shape:
+            actual = np.shape(getattr(self, name))
+            if actual != shape:
                 raise ShapeError(
                     f"{name} of a trajectory must have shape (time, channel) = {shape}",
-                    f"found {found}",
+                    f"found {actual}",
                     "Put time first, with one column per channel.",
                 )
         if np.shape(self.phi) != shape[:1]:

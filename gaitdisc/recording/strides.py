@@ -95,7 +95,7 @@ class Strides:
         if len(self):
             lasting = self.duration_s
             rows.append(("duration", f"{lasting.min():.2f} to {lasting.max():.2f} s, mean {lasting.mean():.2f} s"))
-        rows += [(f"dropped at {one.start:.2f} s", one.reason) for one in self.dropped[:4]]
+        rows += [(f"dropped at {stride.start:.2f} s", stride.reason) for stride in self.dropped[:4]]
         return as_html("Strides", rows)
 
     @property

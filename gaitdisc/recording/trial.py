@@ -211,18 +211,16 @@ class Trial:
         object.__setattr__(self, "streams", frozen(self.streams))
 
     def __repr__(self) -> str:
-        streams = ", ".join(f"{key} {len(one.names)} at {one.rate_hz:g} Hz" for key, one in self.streams.items())
-        return (
-            f"Trial({self.name!r}: {streams or 'no stream'}; {len(self.events)} events, {len(self.findings)} findings)"
-        )
+        words = ", ".join(f"{key} {len(stream.names)} at {stream.rate_hz:g} Hz" for key, stream in self.streams.items())
+        return f"Trial({self.name!r}: {words or 'no stream'}; {len(self.events)} events, {len(self.findings)} findings)"
 
     def _repr_html_(self) -> str:
         rows = [
-            (key, f"{len(one.names)} channels, {one.rate_hz:g} Hz, {one.duration_s:.2f} s")
-            for key, one in self.streams.items()
+            (key, f"{len(stream.names)} channels, {stream.rate_hz:g} Hz, {stream.duration_s:.2f} s")
+            for key, stream in self.streams.items()
         ]
         rows += [("events", str(len(self.events)))] if self.events else []
-        return as_html(f"Trial {self.name}", [*rows, *((one.kind, one.what) for one in self.findings[:SHOWN])])
+        return as_html(f"Trial {self.name}", [*rows, *((f.kind, f.what) for f in self.findings[:SHOWN])])
 
     def stream(self, key: str) -> Recording:
         """Return one stream.

@@ -163,7 +163,7 @@ def svg(panel: Panel, place: str = "") -> str:
         parts.append(
             f'<path class="off" stroke="{colour}" d="M{at:.1f} {BOTTOM}V{BOTTOM - 14}M{at:.1f} {TOP + 14}V{TOP}"/>'
         )
-    parts += [_path(panel, line, y) for line in sorted(panel.lines, key=lambda one: one.look != "single")]
+    parts += [_path(panel, line, y) for line in sorted(panel.lines, key=lambda line: line.look != "single")]
     parts += _raw(panel)
     parts.append(f'<path class="cursor" d="M0 {TOP}V{BOTTOM}"/></svg>')
     return "".join(parts)
@@ -181,7 +181,7 @@ def _raw(panel: Panel) -> list[str]:
         middle, half = HEIGHT + STRIP * (place + 0.5), STRIP / 2 - 1
         most = max(float(np.abs(line.values).max()), 1e-9)
         starts = np.linspace(0, len(line.values), min(BINS, len(line.values)), endpoint=False).astype(int)
-        ends = np.stack([one.reduceat(line.values, starts) for one in (np.minimum, np.maximum)], axis=1)
+        ends = np.stack([extreme.reduceat(line.values, starts) for extreme in (np.minimum, np.maximum)], axis=1)
         y = middle - half * ends.ravel() / most
         x = _x(panel, 100 * np.repeat(starts, 2) / len(line.values))
         points = " ".join(f"{across:.1f} {down:.1f}" for across, down in zip(x, y, strict=True))
@@ -256,8 +256,8 @@ def draw_rows(panels: Sequence[Panel]) -> str:
 def in_rows(panels: Sequence[Panel]) -> list[Panel]:
     """Panels in rows of three, the last of two where that fills the sheet.
 
-    >>> [one.span for one in in_rows([Panel(*"abcdef", ())] * 7)]
+    >>> [panel.span for panel in in_rows([Panel(*"abcdef", ())] * 7)]
     [2, 2, 2, 3, 3, 3, 3]
     """
     pairs = {0: 0, 1: 4, 2: 2}[len(panels) % 3]
-    return [replace(one, span=2 if k < len(panels) - pairs else 3) for k, one in enumerate(panels)]
+    return [replace(panel, span=2 if k < len(panels) - pairs else 3) for k, panel in enumerate(panels)]

@@ -64,17 +64,17 @@ def panels(rows: int, columns: int, height: float, room: Room) -> tuple[matplotl
     """Empty panels of equal size, in rows and columns, each of a height [inch]."""
     from matplotlib.figure import Figure as Drawing
 
-    whole = room.top + rows * height + (rows - 1) * room.down + room.bottom
+    figure_height = room.top + rows * height + (rows - 1) * room.down + room.bottom
     width = (WIDTH - room.left - room.right - (columns - 1) * room.across) / columns
-    drawn = Drawing(figsize=(WIDTH, whole))
+    drawn = Drawing(figsize=(WIDTH, figure_height))
     grid = [
         [
             drawn.add_axes(
                 (
                     (room.left + column * (width + room.across)) / WIDTH,
-                    1 - (room.top + row * (height + room.down) + height) / whole,
+                    1 - (room.top + row * (height + room.down) + height) / figure_height,
                     width / WIDTH,
-                    height / whole,
+                    height / figure_height,
                 )
             )
             for column in range(columns)
@@ -88,10 +88,10 @@ def panels_for(count: int, columns: int, height: float, room: Room) -> tuple[mat
     """Panels of a height [inch] for so many things, row by row, in so many columns at most."""
     columns = min(columns, count)
     drawn, grid = panels(-(-count // columns), columns, height, room)
-    found = [axes for row in grid for axes in row]
-    for axes in found[count:]:
+    cells = [axes for row in grid for axes in row]
+    for axes in cells[count:]:
         axes.set_visible(False)
-    return drawn, found[:count]
+    return drawn, cells[:count]
 
 
 def legend(drawn: matplotlib.figure.Figure, handles: Sequence[Artist], down: float = 0.0) -> None:

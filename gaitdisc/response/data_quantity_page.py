@@ -146,7 +146,7 @@ def length_sentences(run: ResponseRun) -> list[str]:
     if not len(over.lengths):
         return []
     longest = over.lengths["length_s"].max()
-    same, whole = over.enough_length("exo"), over.enough_length(WHOLE)
+    same_s, whole_s = over.enough_length("exo"), over.enough_length(WHOLE)
     apart = (over.lengths["second"] == "exo") & over.lengths["different"].astype(bool)
     exceptions = sorted(set(over.lengths.loc[apart, "length_s"]))
     return [
@@ -154,9 +154,9 @@ def length_sentences(run: ResponseRun) -> list[str]:
         f"{', '.join(f'{x:g}' for x in exceptions)} s."
         if exceptions
         else "(i) Augmented against Exo at the same length: they do not differ significantly at any length.",
-        f"From {same:g} s on they do not differ significantly." if same is not None and exceptions else "",
-        f"(ii) Exo against Exo with the entire training part: from {whole:g} s on no variable differs significantly."
-        if whole is not None
+        f"From {same_s:g} s on they do not differ significantly." if same_s is not None and exceptions else "",
+        f"(ii) Exo against Exo with the entire training part: from {whole_s:g} s on no variable differs significantly."
+        if whole_s is not None
         else f"(ii) Exo against Exo with the entire training part: even at {longest:g} s, the longest part tested, at "
         "least one variable differs.",
         f"n = {counted(int(over.lengths['n'].max()), 'participant')}: a non-significant difference does not show "

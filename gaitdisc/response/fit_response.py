@@ -176,11 +176,11 @@ def _check_pair(nominal: Trajectory, exo: Trajectory) -> None:
         )
     if nominal.channels != exo.channels:
         apart = sorted(set(nominal.names) ^ set(exo.names))
-        found = f"they differ in {', '.join(apart[:5])}" if apart else "they differ in order or unit"
+        difference = f"they differ in {', '.join(apart[:5])}" if apart else "they differ in order or unit"
         raise ChannelError(
             "both walks of a response must have the same channels",
             f"{nominal.subject}: {len(nominal.names)} channels in {nominal.condition or 'nominal'}, "
-            f"{len(exo.names)} in {exo.condition or 'exo'}, {found}",
+            f"{len(exo.names)} in {exo.condition or 'exo'}, {difference}",
             "Remove channels that one walk lacks.",
         )
 

@@ -114,8 +114,8 @@ def _caption(response: ParticipantResponse, rows: pd.DataFrame) -> str:
     held, band = response.held_out, ""
     if _BANDED in held.bands:  # what the bands hold of all held-out samples, in the mean over variables
         inside = {m: 100 * np.mean((b[0] <= held.measured) & (held.measured <= b[1])) for m, b in held.bands.items()}
-        said = ", ".join(f"{value:.0f} % for {MODEL_WORDS[model]}" for model, value in inside.items())
-        band = f"Pale green: 90 % band of Augmented, from refits on blocks; share of samples in such a band: {said}. "
+        shares = ", ".join(f"{value:.0f} % for {MODEL_WORDS[model]}" for model, value in inside.items())
+        band = f"Pale green: 90 % band of Augmented, from refits on blocks; share of samples in such a band: {shares}. "
     return (
         f"{response.participant}: the last {WINDOW_S:g} s of the held-out device walk, n = "
         f"{len(rows)} of {counted(len(held.time), 'sample')} shown; split: last {response.held_out_s:.4g} s held out, "
@@ -141,16 +141,16 @@ def residual_numbers(response: ParticipantResponse) -> pd.DataFrame:
     means = {model: mean_interval(response.residuals[model]) for model in MODELS if model in response.residuals}
     tables = []
     for column, (variable, unit) in enumerate(zip(response.outputs, response.units, strict=True)):
-        for model, found in means.items():
+        for model, interval in means.items():
             table = pd.DataFrame({"variable": variable, "unit": unit, "model": model, "percent": PERCENT}).assign(
-                n=found.strides[:, column],
-                mean=found.mean[:, column],
-                low=found.low[:, column],
-                high=found.high[:, column],
+                n=interval.strides[:, column],
+                mean=interval.mean[:, column],
+                low=interval.low[:, column],
+                high=interval.high[:, column],
             )
             strides = response.residuals[model][:, :, column]
-            each = pd.DataFrame(strides.T, columns=pd.Index([f"stride_{i + 1}" for i in range(len(strides))]))
-            tables.append(pd.concat([table, each], axis=1))
+            columns = pd.DataFrame(strides.T, columns=pd.Index([f"stride_{i + 1}" for i in range(len(strides))]))
+            tables.append(pd.concat([table, columns], axis=1))
     return pd.concat(tables, ignore_index=True)
 
 

@@ -59,14 +59,14 @@ def compare_lengths(quantities: Sequence[DataQuantity]) -> pd.DataFrame:
     """
     if len(quantities) < FEWEST:
         return join_rows("lengths")
-    table = pd.concat([one.table.assign(participant=one.participant) for one in quantities], ignore_index=True)
+    table = pd.concat([person.table.assign(participant=person.participant) for person in quantities], ignore_index=True)
     table = table[(table["kind"] == "network") & (table["walk"] == "exo")]
     longest = table.groupby("participant")["length_s"].transform("max")
-    whole = by_participant(table[(table["length_s"] == longest) & (table["model"] == "exo")])
+    full = by_participant(table[(table["length_s"] == longest) & (table["model"] == "exo")])
     parts = []
     for length, rows in table[table["length_s"] < longest].groupby("length_s"):
-        augmented, exo = (by_participant(rows[rows["model"] == model]).reindex_like(whole) for model in MODELS[1:])
-        for first, second, pair in (("augmented", "exo", (augmented, exo)), ("exo", WHOLE, (exo, whole))):
+        augmented, exo = (by_participant(rows[rows["model"] == model]).reindex_like(full) for model in MODELS[1:])
+        for first, second, pair in (("augmented", "exo", (augmented, exo)), ("exo", WHOLE, (exo, full))):
             parts.append(compare_columns(*pair).assign(length_s=length, first=first, second=second))
     return join_rows("lengths", parts)
 
@@ -127,9 +127,9 @@ def _of_one(response: ParticipantResponse) -> pd.DataFrame:
 
 def responder_table(responses: Sequence[ParticipantResponse], seed: int = 0) -> tuple[pd.DataFrame, str]:
     """Sub-groups (`RESPONDER_COLUMNS`) and the verdict, naming who was left out; empty where too few or unlike."""
-    whole = [bool(np.isfinite(person.residuals["nominal"]).any(axis=0).all()) for person in responses]
-    complete = [person for person, has_all in zip(responses, whole, strict=True) if has_all]
-    absent = [person.participant for person, has_all in zip(responses, whole, strict=True) if not has_all]
+    flags = [bool(np.isfinite(person.residuals["nominal"]).any(axis=0).all()) for person in responses]
+    complete = [person for person, has_all in zip(responses, flags, strict=True) if has_all]
+    absent = [person.participant for person, has_all in zip(responses, flags, strict=True) if not has_all]
     left_out = f"; excluded because of strides with missing points: {', '.join(absent)}" if absent else ""
     who = f"n = {len(complete)} participants{left_out}"
     if len(complete) < FEWEST_GROUPED:

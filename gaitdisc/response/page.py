@@ -48,8 +48,8 @@ def write_report(run: ResponseRun, folder: Path) -> Path:
     for person, name in names.items():
         walks = tuple(walk for walk in run.walks if walk.subject == person)
         responses = tuple(response for response in run.responses if response.participant == person)
-        own = replace(run, units={WALK.file: walks, RESPONSE.file: responses})
-        alone.append((own, person, name, folder, limit))
+        person_run = replace(run, units={WALK.file: walks, RESPONSE.file: responses})
+        alone.append((person_run, person, name, folder, limit))
     sections = draw_side_by_side(_section, alone, MOST_OPEN)  # drawing takes seconds a participant
     overview = save_figures(r2_figures(run) if run.responses else [], folder)
     compared = save_figures(comparison_figures(run), folder)
@@ -139,8 +139,8 @@ def _filter_sentence(run: ResponseRun) -> str:
     filters = settings.get("filters")
     if not isinstance(filters, Mapping) or not {"kinematics_hz", "order"} <= set(filters):
         rows = [(k, v) for k, v in flatten(settings) if any(word in k.lower() for word in _FILTER_WORDS)]
-        said = ", ".join(f"{key} = {value}" for key, value in rows)
-        return f"Filters in the settings: {said}." if said else "The settings of the run do not name a filter."
+        text = ", ".join(f"{key} = {value}" for key, value in rows)
+        return f"Filters in the settings: {text}." if text else "The settings of the run do not name a filter."
     order, cutoff = int(filters["order"]), float(filters["kinematics_hz"])
     rates = sorted({walk.rate_hz for walk in run.walks})
     together = " or ".join(f"{effective_cutoff_hz(cutoff, rate, order):.2f} Hz at {rate:g} samples/s" for rate in rates)

@@ -257,8 +257,8 @@ def _figure(run: ResponseRun, tests: PairTests, numbers: pd.DataFrame, name: str
         "models that differ: exact two-sided Wilcoxon signed-rank test, Holm-Sidak over the variables of the pair, "
         f"alpha = {tests.alpha:g}.{below if hidden else ''} After Fig. 4.2 of the dissertation."
     )
-    said = [f"{MODEL_WORDS[a]} and {MODEL_WORDS[b]} differ in {len(which)}" for (a, b), which in different.items()]
-    alt = f"Boxes of R² of three models for {counted(len(names), 'variable')}: {', '.join(said)}."
+    counts = [f"{MODEL_WORDS[a]} and {MODEL_WORDS[b]} differ in {len(which)}" for (a, b), which in different.items()]
+    alt = f"Boxes of R² of three models for {counted(len(names), 'variable')}: {', '.join(counts)}."
     return Figure(name, caption, alt, numbers, drawn)
 
 

@@ -91,11 +91,11 @@ class ParticipantResponse:
             **{f"residuals[{k}]": v.shape[2] for k, v in self.residuals.items()},
         }
         count = len(self.outputs)
-        for name, found in columns.items():
-            if found != count:
+        for name, width in columns.items():
+            if width != count:
                 raise ShapeError(
                     f"{name} of a response must have {count} columns, one per output",
-                    f"it has {found} for {self.participant}",
+                    f"it has {width} for {self.participant}",
                     "Give one column per output.",
                 )
         for name, curves in self.residuals.items():
@@ -167,8 +167,8 @@ def _predict(response: ParticipantResponse) -> dict[str, NDArray[np.float64]]:
     held = response.held_out
     every = {"predicted": held.predicted, "band": held.bands, "residual": response.residuals}
     every["weights"] = response.weights
-    own = {f"{word}_{model}": values for word, of in every.items() for model, values in of.items()}
-    return {"time": held.time, "phi": held.phi, "measured": held.measured, **own}
+    by_model = {f"{word}_{model}": values for word, of in every.items() for model, values in of.items()}
+    return {"time": held.time, "phi": held.phi, "measured": held.measured, **by_model}
 
 
 RESPONSE = Kind(
@@ -250,7 +250,7 @@ class ResponseRun(StudyRun):
     def reported(self) -> tuple[str, ...]:
         """Participants with reported models or cycles."""
         names = [response.participant for response in self.responses]
-        return tuple(dict.fromkeys([*names, *(one.subject for one in self.cycles if len(one.kept))]))
+        return tuple(dict.fromkeys([*names, *(pooled.subject for pooled in self.cycles if len(pooled.kept))]))
 
     def predict(self, walk: Trial, model: str = "augmented", participant: str = "") -> Recording:
         """Predict second derivatives along another walk, which is processed with the settings of this run.
@@ -277,11 +277,11 @@ class ResponseRun(StudyRun):
         from gaitdisc.ingest.study import Study
         from gaitdisc.processing.process import processed
 
-        own = [response for response in self.responses if participant in ("", response.participant)]
-        if len(own) != 1:
-            found = f"found {participant!r}; the run has {', '.join(self.reported) or 'none'}"
-            raise SchemaError("a prediction must name one participant of the run", found, "Name one of them.")
-        response, settings = own[0], self.provenance.settings
+        responses = [response for response in self.responses if participant in ("", response.participant)]
+        if len(responses) != 1:
+            defect = f"found {participant!r}; the run has {', '.join(self.reported) or 'none'}"
+            raise SchemaError("a prediction must name one participant of the run", defect, "Name one of them.")
+        response, settings = responses[0], self.provenance.settings
         chosen = {key: settings[key] for key in PROCESSING if key in settings}
         study = Study.model_validate_json(json.dumps({**chosen, "participants": [{"id": response.participant}]}))
         trajectory = processed(walk, study).trajectory
@@ -289,7 +289,7 @@ class ResponseRun(StudyRun):
         values = np.full((len(trajectory.time), len(response.outputs)), np.nan)
         values[np.searchsorted(trajectory.time, samples.time)] = response.model(model)(samples.x)
         measured = (trajectory.channels[column] for column in trajectory.columns(response.outputs))
-        channels = tuple(replace(one, unit=unit) for one, unit in zip(measured, response.units, strict=True))
+        channels = tuple(replace(channel, unit=unit) for channel, unit in zip(measured, response.units, strict=True))
         return Recording(trajectory.time, values, channels, walk.subject, walk.condition)
 
     def to_frame(self) -> pd.DataFrame:

@@ -89,13 +89,13 @@ class OverParticipants:
     def enough_length(self, second: str = WHOLE) -> float | None:
         """Shortest length [s] from which no variable is shown to differ (no proof of equality); None without."""
         chosen = self.lengths[self.lengths["second"] == second]
-        found = None
+        shortest = None
         for length in sorted({float(length) for length in chosen["length_s"]}, reverse=True):
             rows = chosen[chosen["length_s"] == length]
             if rows["different"].any() or not rows["p"].notna().any():
                 break
-            found = length
-        return found
+            shortest = length
+        return shortest
 
 
 def table_of_people(people: Sequence[Any], field: str, columns: Sequence[str]) -> pd.DataFrame:

@@ -134,10 +134,10 @@ def _figure(run: ResponseRun, numbers: pd.DataFrame, name: str) -> Figure:
         f"{MODEL_WORDS[str(model)]} from {number(values.min())} to {number(values.max())}"
         for model, values in numbers[numbers["kind"] == "network"].groupby("model", sort=False)["r2"]
     ]
-    said = f"R² of {counted(len(names), 'variable')} on the held-out device walk of {run.title}: {'; '.join(parts)}."
+    alt = f"R² of {counted(len(names), 'variable')} on the held-out device walk of {run.title}: {'; '.join(parts)}."
     null = bool(numbers.loc[numbers["kind"] == "null", "r2"].notna().any())
     legend(drawn, r2_key(len(run.responses), null))
-    return Figure(name, _caption(run, low, null), said, numbers, drawn)
+    return Figure(name, _caption(run, low, null), alt, numbers, drawn)
 
 
 def draw_r2(axes: Axes, numbers: pd.DataFrame) -> None:

@@ -61,9 +61,9 @@ def participant_sentences(response: ParticipantResponse) -> list[str]:
     table = r2_by_variable(response)
     middle = table.median()
     computed = int(table[_ON_EXO["nominal"]].notna().sum())
-    whole = len(table)
-    over = f"{whole} variables" if computed == whole else f"{computed} of {whole} variables, the others not computed"
-    if whole == 1:
+    count = len(table)
+    over = f"{count} variables" if computed == count else f"{computed} of {count} variables, the others not computed"
+    if count == 1:
         over = "the only variable"
     nominal, augmented, exo = (middle[column] for column in _ON_EXO.values())
     explains = f"explains {number(nominal)}"
@@ -115,8 +115,8 @@ def _ridge(middle: pd.Series) -> str:
     ridge = {model: value for model, value in ridge.items() if np.isfinite(value)}
     if not ridge:
         return ""
-    said = listing([f"{number(value)} ({MODEL_WORDS[model]})" for model, value in ridge.items()])
-    start = f"Ridge regression with phase harmonics on the same samples, without any network, reaches R² = {said}"
+    scores = listing([f"{number(value)} ({MODEL_WORDS[model]})" for model, value in ridge.items()])
+    start = f"Ridge regression with phase harmonics on the same samples, without any network, reaches R² = {scores}"
     wins = [model for model, value in ridge.items() if value - middle[_ON_EXO[model]] >= MARGIN]
     if wins:
         beaten = listing([f"{MODEL_WORDS[m]} ({number(ridge[m])} against {number(middle[_ON_EXO[m]])})" for m in wins])

@@ -33,10 +33,10 @@ class Variants:
         """Check question and columns once."""
         missing = [column for column in VARIANT_COLUMNS if column not in self.table.columns]
         if missing or self.question not in QUESTIONS:
-            found = f"lacks {', '.join(missing)}" if missing else f"belongs to the question {self.question!r}"
+            defect = f"lacks {', '.join(missing)}" if missing else f"belongs to the question {self.question!r}"
             raise SchemaError(
                 f"variants must have the columns {', '.join(VARIANT_COLUMNS)} and a question: {', '.join(QUESTIONS)}",
-                f"the table of {self.participant} {found}",
+                f"the table of {self.participant} {defect}",
                 "Compute it again: `gaitdisc modalities` or `gaitdisc sensitivity`.",
             )
 
@@ -91,7 +91,7 @@ def load_variant_run(folder: Path) -> VariantRun:
         **{name: data[name] for name in ("title", "exo", "question")},
         people=tuple(VARIANTS.load(folder / "people" / name) for name in data["people"]),
         tests=with_words(tables["tests.csv"], "left_out"),
-        refusals=tuple(Refusal(**one) for one in data["refusals"]),
+        refusals=tuple(Refusal(**refusal) for refusal in data["refusals"]),
         held_out_s=tuple(data["held_out_s"]),
     )
 

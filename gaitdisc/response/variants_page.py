@@ -73,9 +73,9 @@ def falls(run: VariantRun) -> pd.DataFrame:
     table = _group(run)
     table = table[table["kind"] == "network"]
     keys = ["variables", "model", "participant", "variable"]
-    whole = table[table["variant"] == ALL].set_index(keys)["r2"]
+    full = table[table["variant"] == ALL].set_index(keys)["r2"]
     others = table[table["variant"] != ALL]
-    fall = whole.reindex(pd.MultiIndex.from_frame(others[keys])).to_numpy() - others["r2"].to_numpy()
+    fall = full.reindex(pd.MultiIndex.from_frame(others[keys])).to_numpy() - others["r2"].to_numpy()
     grouped = others.assign(fall=fall).groupby(["variables", "variant", "model", "participant"], sort=False)["fall"]
     return grouped.median().reset_index().rename(columns={"variant": "without"})
 

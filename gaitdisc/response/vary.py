@@ -64,12 +64,12 @@ def input_families(inputs: Sequence[str]) -> dict[str, tuple[str, ...]]:
     for name, channel in channels.items():
         sideless = channel.removesuffix(f"_{find_side(channel)}") if find_side(channel) else channel
         groups.setdefault(sideless, set()).add(name)
-    found: dict[str, tuple[str, ...]] = {}
+    families: dict[str, tuple[str, ...]] = {}
     for family, members in groups.items():
         chosen = tuple(name for name in inputs if name in members)
-        if chosen and len(chosen) < len(inputs) and chosen not in found.values():
-            found[family] = chosen
-    return found
+        if chosen and len(chosen) < len(inputs) and chosen not in families.values():
+            families[family] = chosen
+    return families
 
 
 def fit_without(
@@ -100,8 +100,8 @@ def fit_without(
             missed = fewer.with_outputs(training[1].y - known[kind](training[1].x))
             predicted = {"augmented": known[kind](held.x) + fit(missed)(scored.x), "exo": fit(fewer)(scored.x)}
             for model, values in predicted.items():
-                found = zip(settings.outputs, r2(held.y, values), strict=True)
-                rows += [(family, variable, model, kind, value, len(held)) for variable, value in found]
+                scores = zip(settings.outputs, r2(held.y, values), strict=True)
+                rows += [(family, variable, model, kind, value, len(held)) for variable, value in scores]
         progress((number + 1) / len(families))
     return pd.DataFrame(rows, columns=pd.Index(VARIANT_COLUMNS))
 
@@ -116,13 +116,13 @@ def compare_variants(people: Sequence[Variants], question: str) -> pd.DataFrame:
     """
     if len(people) < FEWEST:
         return pd.DataFrame(columns=pd.Index(VARIANT_TEST_COLUMNS))
-    table = pd.concat([each.table.assign(participant=each.participant) for each in people], ignore_index=True)
+    table = pd.concat([person.table.assign(participant=person.participant) for person in people], ignore_index=True)
     table = table[table["kind"] == "network"]
-    variants = list(table["variant"].unique())
+    names = list(table["variant"].unique())
     if question == "modalities":
-        pairs = [((ALL, model), (one, model), (ALL, "without")) for model in MODELS for one in variants if one != ALL]
+        pairs = [((ALL, model), (name, model), (ALL, "without")) for model in MODELS for name in names if name != ALL]
     else:
-        pairs = [((one, "nominal"), (one, "augmented"), ("nominal", "augmented")) for one in variants]
+        pairs = [((name, "nominal"), (name, "augmented"), ("nominal", "augmented")) for name in names]
     order = {"index": table["participant"].unique(), "columns": table["variable"].unique()}
     wide = {key: by_participant(rows).reindex(**order) for key, rows in table.groupby(["variant", "model"], sort=False)}
     parts = [

@@ -83,18 +83,18 @@ class Kind(Generic[T]):
         wanted = {csv.file: csv.columns for csv in self.tables.values() if csv.columns is not None}
         data, tables, arrays = load_unit(folder, self.file, wanted, self.words)
         hints = _hints(self.noun)
-        found = {name: _type(hints[name], data[name]) for name in self.keys if name in hints and name in data}
-        found |= {name: self._table(csv, tables) for name, csv in self.tables.items()}
-        found |= {name: arrays.later(made) if self.later else made(arrays) for name, made in self.arrays.items()}
-        return Keyed(self.noun(**found), data.get("key", ""))
+        values = {name: _type(hints[name], data[name]) for name in self.keys if name in hints and name in data}
+        values |= {name: self._table(csv, tables) for name, csv in self.tables.items()}
+        values |= {name: arrays.later(made) if self.later else made(arrays) for name, made in self.arrays.items()}
+        return Keyed(self.noun(**values), data.get("key", ""))
 
     def kept(self, folder: Path, key: str) -> T | None:
         """Load a result that was computed from this very key; None where there is none that is whole."""
         try:
-            found = self.load_keyed(folder)
+            keyed = self.load_keyed(folder)
         except SchemaError:
             return None
-        return found.result if found.key == key else None
+        return keyed.result if keyed.key == key else None
 
     def draw(self, result: T, folder: Path) -> Path:
         """Write the page of a result that lies in a folder."""
@@ -185,7 +185,7 @@ def plain(value: Any, reasons: str = "") -> Any:
     if is_dataclass(value) and not isinstance(value, type):
         return asdict(value)
     if isinstance(value, tuple):
-        return [plain(one, reasons) for one in value]
+        return [plain(item, reasons) for item in value]
     if isinstance(value, Mapping):
         return [{reasons: name, "reason": why} for name, why in value.items()] if reasons else dict(value)
     return value
@@ -194,18 +194,18 @@ def plain(value: Any, reasons: str = "") -> Any:
 def _type(hint: Any, value: Any) -> Any:
     """A field as it is annotated, of what JSON held of it."""
     if get_origin(hint) is tuple:
-        return tuple(_type(get_args(hint)[0], one) for one in value)
+        return tuple(_type(get_args(hint)[0], item) for item in value)
     if hint is Finding:
         return load_finding(value)
     if is_dataclass(hint) and isinstance(hint, type):
         return hint(**value)
     if get_origin(hint) is Mapping and isinstance(value, list):
         kind = get_args(hint)[0]
-        return {kind(one): str(row["reason"]) for row in value for name, one in row.items() if name != "reason"}
+        return {kind(cell): str(row["reason"]) for row in value for name, cell in row.items() if name != "reason"}
     return value
 
 
 @cache
 def _hints(noun: type) -> dict[str, Any]:
-    own = {one.name for one in fields(noun)}
-    return {name: hint for name, hint in get_type_hints(noun).items() if name in own}
+    names = {item.name for item in fields(noun)}
+    return {name: hint for name, hint in get_type_hints(noun).items() if name in names}

@@ -45,8 +45,8 @@ def provenance_now(settings: Mapping[str, Any], seed: int, files: Mapping[str, s
 
 def list_versions() -> dict[str, str]:
     """Versions of this package, of Python and of the libraries that compute the numbers."""
-    own = f"{__version__} (code {code_sha256()[:12]})"
-    versions = {"gaitdisc": own, "python": platform.python_version()}
+    package = f"{__version__} (code {code_sha256()[:12]})"
+    versions = {"gaitdisc": package, "python": platform.python_version()}
     for name in DISTRIBUTIONS:
         try:
             versions[name] = version(name)

@@ -94,8 +94,8 @@ def save_run(run: StudyRun, folder: Path) -> None:
     """Save what a run is, beside the units that were saved as they were computed."""
     for place, kind in _kinds().items():
         if kind.unit is None:
-            for one in run.of(kind):
-                kind.save(one, folder / place)
+            for unit in run.of(kind):
+                kind.save(unit, folder / place)
     write_whole(folder / "run.json", seal_text(_describe(run)))
 
 
@@ -103,8 +103,8 @@ def save_whole_run(run: StudyRun, folder: Path) -> None:
     """Save a run with all its units, as it is in memory; `gaitdisc run` in that folder computes the units anew."""
     for place, kind in _kinds().items():
         if kind.unit is not None:
-            for one in run.of(kind):
-                kind.save(one, folder / place / kind.unit(one))
+            for unit in run.of(kind):
+                kind.save(unit, folder / place / kind.unit(unit))
     save_run(run, folder)
 
 
@@ -128,10 +128,10 @@ def _kinds() -> dict[str, Kind[Any]]:
 def _describe(run: StudyRun) -> dict[str, Any]:
     """What run.json says of a run."""
     units = {
-        place: len(run.of(kind)) > 0 if kind.unit is None else [kind.unit(one) for one in run.of(kind)]
+        place: len(run.of(kind)) > 0 if kind.unit is None else [kind.unit(unit) for unit in run.of(kind)]
         for place, kind in _kinds().items()
     }
-    said = {
+    description = {
         "format": FORMAT,
         "title": run.title,
         "conditions": {"nominal": run.nominal, "exo": run.exo},
@@ -140,7 +140,7 @@ def _describe(run: StudyRun) -> dict[str, Any]:
         **units,
         "unfitted": [asdict(refusal) for refusal in run.unfitted],
     }
-    return {key: said[key] for key in KEYS}
+    return {key: description[key] for key in KEYS}
 
 
 def load_run_as(noun: type[R], folder: Path) -> R:

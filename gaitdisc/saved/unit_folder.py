@@ -112,10 +112,10 @@ def damage(path: Path, what: str, do: str = AGAIN) -> DamagedError:
     return error
 
 
-def of_another_format(path: Path, found: object, ours: int) -> DamagedError:
+def of_another_format(path: Path, theirs: object, ours: int) -> DamagedError:
     """Return the refusal of a file that another version of gaitdisc wrote."""
     do = f"Another version wrote this file. Install that version, or compute the result again with {__version__}."
-    return damage(path, f"has format {str(found)[:20]}, not {ours}", do)
+    return damage(path, f"has format {str(theirs)[:20]}, not {ours}", do)
 
 
 class _Field:
@@ -157,17 +157,17 @@ def read_sealed(path: Path) -> dict[str, Any]:
         raise damage(path, "is missing")
     try:
         data = json.loads(path.read_text(encoding="utf-8"))
-        own = data.pop(OWN, None) if isinstance(data, dict) else None
-        found = content_sha256(data) if own is not None else None
+        seal = data.pop(OWN, None) if isinstance(data, dict) else None
+        sha256 = content_sha256(data) if seal is not None else None
     except RecursionError:
         raise damage(path, "cannot be read as JSON (nested too deeply)") from None
     except (OSError, ValueError) as error:
         raise damage(path, f"cannot be read as JSON ({error})") from error
     if not isinstance(data, dict):
         raise damage(path, "is not a JSON object")
-    if own is None:
+    if seal is None:
         raise damage(path, f"has no hash of its own: an older version of gaitdisc wrote it, or {OWN} was removed")
-    if found != own:
+    if sha256 != seal:
         raise damage(path, CHANGED)
     return data
 
@@ -190,10 +190,10 @@ def check_files(folder: Path, hashes: Mapping[str, str]) -> None:
         if not path.is_file():
             raise damage(path, "is missing")
         try:
-            found = file_sha256(path)
+            sha256 = file_sha256(path)
         except OSError as error:
             raise damage(path, f"cannot be read ({error.strerror})") from error
-        if found != wanted:
+        if sha256 != wanted:
             raise damage(path, CHANGED)
 
 
