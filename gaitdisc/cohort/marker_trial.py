@@ -25,6 +25,7 @@ from gaitdisc.cohort.habit import habitual
 from gaitdisc.cohort.leg_path import PHASES, hip_motion, map_phase, pressure_centre, pressure_point, thigh_shank_foot
 from gaitdisc.cohort.person import Person
 from gaitdisc.cohort.walk import QUICK_HZ, SLOW_HZ, TrueWalk
+from gaitdisc.kinematics.pose import make_rotation
 from gaitdisc.recording import Recording, Source, Surface, Trial
 from gaitdisc.recording.arrays import Values, runs
 
@@ -129,7 +130,7 @@ def _pressure_from_hip(walk: TrueWalk, leg: Leg, side: int) -> Values:
 
 def _segments(person: Person, leg: Leg, angles: Values, hips: Values) -> Segments:
     """Origin (time, 3) and rotation (time, 3, 3) of each segment, in forwards, up, right."""
-    pelvis = np.repeat(_rotation(np.array([[-_tilt(person), 0.0, 0.0]])), len(angles), axis=0)
+    pelvis = np.repeat(make_rotation(np.array([[-_tilt(person), 0.0, 0.0]])), len(angles), axis=0)
     found = {"pelvis": (hips - pelvis @ _hip(person, 0.0), pelvis)}
     for column, (side, sign) in enumerate(SIDES):
         own = angles[:, column]
@@ -140,7 +141,7 @@ def _segments(person: Person, leg: Leg, angles: Values, hips: Values) -> Segment
             ("shank", (-own[:, 3], flat, flat), leg.shank_m),
             ("foot", (own[:, 4], flat, flat), 0.0),
         ):
-            above = above @ _rotation(np.column_stack(turns))
+            above = above @ make_rotation(np.column_stack(turns))
             found[f"{part}_{side}"] = (place, above)
             place = place + above @ np.array([0.0, -length, 0.0])
     return found
@@ -150,17 +151,6 @@ def _hip(person: Person, sign: float) -> Values:
     """Hip from the middle of the front spines, by Harrington's regression; sign 0 is the middle of both hips [m]."""
     width, depth = ASIS_WIDTH * person.height_m, PELVIS_DEPTH * person.height_m
     return np.array([-0.24 * depth - 0.0099, -0.30 * width - 0.0109, sign * (0.33 * width + 0.0073)])
-
-
-def _rotation(angles_deg: Values) -> Values:
-    """Flexion about the proximal z, adduction about the floating axis, rotation about the distal y."""
-    (a, b, c), (ca, cb, cc) = np.sin(np.radians(angles_deg.T)), np.cos(np.radians(angles_deg.T))
-    rows = [
-        [ca * cc - a * b * c, -a * cb, ca * c + a * b * cc],
-        [a * cc + ca * b * c, ca * cb, a * c - ca * b * cc],
-        [-cb * c, b, cb * cc],
-    ]
-    return np.ascontiguousarray(np.moveaxis(np.array(rows), 2, 0))
 
 
 def _markers(

@@ -22,7 +22,6 @@ class Spring:
     """
 
     stiffness: float = STIFFNESS  # [N m/deg]; 0 is the device without its spring, the Nominal condition
-    slack_deg: float = 0.0  # shift of the angle of engagement against the person's own fit [deg]
 
     def moment(self, ankle_deg: Values, engaged_deg: float) -> Values:
         """Moment on the ankle, towards dorsiflexion [N m].
@@ -30,7 +29,7 @@ class Spring:
         ankle_deg , any shape [deg]: dorsiflexion
         engaged_deg: dorsiflexion at which the person's spring engages [deg]
         """
-        return -self.stiffness * np.maximum(0.0, ankle_deg - engaged_deg - self.slack_deg)
+        return -self.stiffness * np.maximum(0.0, ankle_deg - engaged_deg)
 
 
 JOINTS = ("hip_flexion", "hip_adduction", "hip_rotation", "knee_angle", "ankle_angle")
@@ -107,7 +106,7 @@ class Person:
 
     >>> person = draw_one("W01", seed=1, sex="f")
     >>> person.learnt is None, person.adapt_to(Spring()).learnt
-    (True, Spring(stiffness=5.0, slack_deg=0.0))
+    (True, Spring(stiffness=5.0))
     """
 
     name: str

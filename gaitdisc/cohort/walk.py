@@ -109,8 +109,8 @@ def walked(person: Person, device: Spring | None, duration_s: float, seed: int) 
     strengths = [find_strength(person.mass_kg, person.style.strength[side]) for side in (0, 1)]
     for strength in strengths:
         strength.reach[[MUSCLES.index("emg_gas"), MUSCLES.index("emg_sol")], 2] *= person.plantarflexors
-    engaged = np.radians(person.engaged_deg + device.slack_deg)
-    worn = Worn(float(np.degrees(device.stiffness)), float(engaged), person.speed_m_per_s, person.stride_s)
+    stiffness, engaged = float(np.degrees(device.stiffness)), float(np.radians(person.engaged_deg))
+    worn = Worn(stiffness, engaged, person.speed_m_per_s, person.stride_s)
     tables = np.stack(
         [np.stack([learnt_table(person, side, drifted) for side in (0, 1)]) for drifted in (0.0, CHANGE_SIZE)]
     )

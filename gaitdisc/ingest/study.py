@@ -259,9 +259,7 @@ def check_conditions(conditions: Conditions) -> None:
     words = conditions.words
     if len(set(words)) < len(words) or UNKNOWN in words:
         found = f"found {' and '.join(map(repr, words))}"
-        needed = "be two different words, neither" if len(words) == 2 else "be different words, none"
-        name = "Name the two conditions." if len(words) == 2 else "Name each condition once."
-        refuse(("conditions",), f"{needed} of them {UNKNOWN!r}", found, name)
+        refuse(("conditions",), f"be different words, none of them {UNKNOWN!r}", found, "Name each condition once.")
     if conditions.unnamed is not None and conditions.unnamed not in words:
         found = f"found {conditions.unnamed!r}"
         refuse(("conditions", "unnamed"), f"be one of {', '.join(map(repr, words))}", found, "Use one of these words.")

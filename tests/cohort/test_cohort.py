@@ -130,10 +130,6 @@ def test_the_spring_acts_on_one_side_only():
     assert moment == pytest.approx([0.0, 0.0, -5.0, -50.0])
 
 
-def test_slack_moves_the_engagement():
-    assert Spring(5.0, slack_deg=3.0).moment(np.array([1.0, 3.0]), engaged_deg=-1.0) == pytest.approx([0.0, -5.0])
-
-
 def test_a_seed_is_a_person():
     one, same, other = draw_one("A", 5, "f"), draw_one("B", 5, "f"), draw_one("A", 6, "f")
     assert (one.height_m, one.mass_kg, one.stride_s) == (same.height_m, same.mass_kg, same.stride_s)

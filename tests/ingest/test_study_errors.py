@@ -118,8 +118,8 @@ def test_unknown_conditions_may_be_listed():
 @pytest.mark.parametrize(
     ("conditions", "message"),
     [
-        ({"nominal": "a", "device": "a"}, "two different words.*found 'a' and 'a'"),
-        ({"nominal": "a", "device": "unknown"}, "neither of them 'unknown'"),
+        ({"nominal": "a", "device": "a"}, "different words.*found 'a' and 'a'"),
+        ({"nominal": "a", "device": "unknown"}, "none of them 'unknown'"),
         ({"nominal": "a", "others": ("b", "b")}, "different words.*found 'a' and 'b' and 'b'"),
         ({"nominal": "a", "unnamed": "c"}, "one of 'a'; found 'c'"),
     ],
