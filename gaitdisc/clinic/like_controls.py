@@ -128,10 +128,10 @@ def described(legs: Legs) -> str:
     """How many controls, of which ages and speeds."""
     ages = [leg.age_years for leg in legs if leg.age_years is not None]
     speeds = [speed for leg in legs if (speed := dimensionless_speed(leg)) is not None]
-    parts = [counted(len({leg.person for leg in legs}), "control")]
-    parts += [f"aged {min(ages)} to {max(ages)} years"] if ages else []
-    parts += [f"dimensionless speed {min(speeds):.2f} to {max(speeds):.2f}"] if speeds else []
-    return ", ".join(parts)
+    words = [counted(len({leg.person for leg in legs}), "control")]
+    words += [f"aged {min(ages)} to {max(ages)} years"] if ages else []
+    words += [f"dimensionless speed {min(speeds):.2f} to {max(speeds):.2f}"] if speeds else []
+    return ", ".join(words)
 
 
 def mean_speed(legs: Sequence[LegCurves]) -> float | None:

@@ -44,15 +44,15 @@ def _write_note(notes: Sequence[Noted], say: Callable[[str], str]) -> str:
     unit, (low, high) = unit_text(first.unit), (limits.low, limits.high) if first.tier == 2 else limits.band
     low, high, mean = (number(value, first.digits) for value in (low, high, limits.mean))
     sd, word = number(limits.sd, max(first.digits, 1)), say("limits") if first.tier == 2 else "2 sd:"
-    parts, last = [], ""
+    texts, last = [], ""
     for (words, _), rule_notes in by_rule.items():
-        parts.append(("" if words == last else f"{say(words)}: ") + _each(rule_notes, first.tier, say))
+        texts.append(("" if words == last else f"{say(words)}: ") + _each(rule_notes, first.tier, say))
         last = words
     text = (
-        f"{parts[0]}; {word} {low} {say('to')} {high} {unit}, "
+        f"{texts[0]}; {word} {low} {say('to')} {high} {unit}, "
         f"{say('reference')} {mean} ± {sd} {unit}, {limits.people} {say('people')}"
     )
-    more = "".join(f"; {part}" for part in parts[1:])
+    more = "".join(f"; {text}" for text in texts[1:])
     return f"{text[0].upper()}{text[1:]}{more}."
 
 
@@ -118,13 +118,13 @@ def score_words(score: Score) -> str:
     >>> score_words(Score(7.2, 6.5, 8.1, 4, 5.1, 1.0, 20))
     '7.2 deg (4 cycles 6.5 to 8.1; reference 5.1 ± 1.0, 20 people)'
     """
-    parts = []
+    details = []
     if score.cycles > 1 and np.isfinite(score.low):
-        parts.append(f"{score.cycles} cycles {number(score.low, 1)} to {number(score.high, 1)}")
+        details.append(f"{score.cycles} cycles {number(score.low, 1)} to {number(score.high, 1)}")
     if np.isfinite(score.reference_mean):
         reference = f"{number(score.reference_mean, 1)} ± {number(score.reference_sd, 1)}"
-        parts.append(f"reference {reference}, {score.people} people")
-    return f"{number(score.value, 1)} deg" + (f" ({'; '.join(parts)})" if parts else "")
+        details.append(f"reference {reference}, {score.people} people")
+    return f"{number(score.value, 1)} deg" + (f" ({'; '.join(details)})" if details else "")
 
 
 def score_sentences(reading: ClinicalReading) -> list[str]:

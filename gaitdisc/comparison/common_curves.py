@@ -64,15 +64,15 @@ def common_curves(walks: Sequence[WalkSummary], wanted: Sequence[str] = ()) -> C
         )
     curves = []
     for number, walk in enumerate(walks):
-        parts = [by_channel[c.name][number] for c in shared]
-        fewest, most = min(map(len, parts)), max(map(len, parts))
+        strides = [by_channel[c.name][number] for c in shared]
+        fewest, most = min(map(len, strides)), max(map(len, strides))
         if fewest < most:
             what = (
                 f"{fewest} of {most} strides are used: the others lack at least one of the {len(shared)} compared "
                 "channels"
             )
             findings.append(Finding("note", "strides", walk_name(walk), what, "the number of strides only"))
-        curves.append(np.stack([part[:fewest] for part in parts], axis=2))
+        curves.append(np.stack([rows[:fewest] for rows in strides], axis=2))
     return CommonCurves(tuple(shared), tuple(curves), tuple(findings))
 
 
@@ -95,7 +95,7 @@ def _list_shared(walks: Sequence[WalkSummary], wanted: Sequence[str], findings: 
         if absent:
             what = f"the walk lacks {list_names(absent)}, which another walk has"
             findings.append(Finding("note", "not compared", walk_name(walk), what, "the comparison of these channels"))
-    kept = []
+    shared = []
     for channel in walks[0].channels:
         if channel.name not in everywhere or (wanted and channel.name not in wanted):
             continue
@@ -104,32 +104,32 @@ def _list_shared(walks: Sequence[WalkSummary], wanted: Sequence[str], findings: 
             what = f"given in {' and in '.join(map(repr, stated_units))}"
             findings.append(Finding("warning", "unit", _both(walks), what, "comparison of this channel", channel.name))
         else:
-            kept.append(channel)
-    return kept
+            shared.append(channel)
+    return shared
 
 
 def _whole_strides(walks: Sequence[WalkSummary], channel: Channel) -> list[Values]:
     """Strides of one channel without a gap, (stride, phase) a walk; headings by whole turns near the first walk's."""
-    parts = []
+    strides = []
     for walk in walks:
         curves = walk.curves[:, :, [c.name for c in walk.channels].index(channel.name)]
-        parts.append(finite_rows(curves))
+        strides.append(finite_rows(curves))
     turn = find_turn(channel)
-    if turn is None or not len(parts[0]):
-        return parts
-    middle = parts[0].mean()
-    return [part - turn * np.round((part.mean() - middle) / turn) if len(part) else part for part in parts]
+    if turn is None or not len(strides[0]):
+        return strides
+    middle = strides[0].mean()
+    return [curves - turn * np.round((curves.mean() - middle) / turn) if len(curves) else curves for curves in strides]
 
 
-def _usable(channel: Channel, parts: list[Values], walks: Sequence[WalkSummary], findings: list[Finding]) -> bool:
-    for part, walk in zip(parts, walks, strict=True):
-        if len(part) <= LEAST_KEPT * len(walk.curves) and len(part) < len(walk.curves):
-            what = f"excluded because of gaps in {len(walk.curves) - len(part)} of {len(walk.curves)} strides"
+def _usable(channel: Channel, strides: list[Values], walks: Sequence[WalkSummary], findings: list[Finding]) -> bool:
+    for curves, walk in zip(strides, walks, strict=True):
+        if len(curves) <= LEAST_KEPT * len(walk.curves) and len(curves) < len(walk.curves):
+            what = f"excluded because of gaps in {len(walk.curves) - len(curves)} of {len(walk.curves)} strides"
             findings.append(
                 Finding("warning", "gaps", walk_name(walk), what, "the comparison of this channel", channel.name)
             )
             return False
-    return all(len(part) for part in parts)
+    return all(len(curves) for curves in strides)
 
 
 def _moving(
@@ -138,27 +138,27 @@ def _moving(
     walks: Sequence[WalkSummary],
     findings: list[Finding],
 ) -> list[Channel]:
-    still, twins, kept = [], [], []
+    still, twins, moving = [], [], []
     for channel in shared:
-        parts = by_channel[channel.name]
-        size = max(float(np.abs(part).max()) for part in parts)
-        if max(float(np.ptp(part)) for part in parts) <= STILL * max(size, 1.0):
+        strides = by_channel[channel.name]
+        size = max(float(np.abs(curves).max()) for curves in strides)
+        if max(float(np.ptp(curves)) for curves in strides) <= STILL * max(size, 1.0):
             still.append(channel.name)
         elif any(
             all(
                 a.shape == b.shape and np.allclose(a, b, rtol=0, atol=1e-6)
-                for a, b in zip(parts, by_channel[other.name], strict=True)
+                for a, b in zip(strides, by_channel[other.name], strict=True)
             )
-            for other in kept
+            for other in moving
         ):
             twins.append(channel.name)
         else:
-            kept.append(channel)
+            moving.append(channel)
     for names, why in ((still, "constant in every walk"), (twins, "identical to another channel")):
         if names:
             text = f"excluded ({why}): {', '.join(names)}"
             findings.append(Finding("note", "not compared", _both(walks), text, "nothing"))
-    return kept
+    return moving
 
 
 def walk_name(walk: WalkSummary) -> str:
@@ -194,13 +194,13 @@ def common_shift(first: Values, second: Values) -> Alignment:
     before, peak, after = gains[at - 1 : at + 2]  # a parabola through them
     percent = round(float(shifts[at] + 0.5 * (before - after) / min(before - 2 * peak + after, -1e-12)), 1)
     moved = shift_curves(first, percent)
-    left = (moved - second)[:-1].std(axis=0) / np.maximum((first - second)[:-1].std(axis=0), 1e-12)
+    gap_ratio = (moved - second)[:-1].std(axis=0) / np.maximum((first - second)[:-1].std(axis=0), 1e-12)
     gain = float(_correlation(moved, second).mean()) - gains[MOST_SHIFT]
-    agreeing = int(np.sum(left < 1.0))
+    agreeing = int(np.sum(gap_ratio < 1.0))
     applied = bool(
         abs(percent) >= LEAST_SHIFT
         and agreeing >= LEAST_AGREEING * count
-        and (gain >= LEAST_GAIN or float(np.median(left)) <= MOST_LEFT)
+        and (gain >= LEAST_GAIN or float(np.median(gap_ratio)) <= MOST_LEFT)
     )
     largest = np.abs((first if applied else moved) - second).max(axis=0)
     return Alignment(percent, applied, agreeing, count, largest.tolist())

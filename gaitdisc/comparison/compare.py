@@ -188,7 +188,7 @@ def _mismatch(
     """Mismatch with the findings about what was compared, each once, the severest first."""
     about = {channel.name for channel in common.channels} | {""}
     findings = (*(finding for walk in walks for finding in walk.findings), *common.findings)
-    kept = dict.fromkeys(finding for finding in findings if finding.channel in about or finding.kind == "unit")
+    reported = dict.fromkeys(finding for finding in findings if finding.channel in about or finding.kind == "unit")
     limits = {f"smallest_{key}": value for key, value in asdict(smallest).items() if value is not None}
     files = {name: sha256 for walk in walks for name, sha256 in walk.files.items()}
     first, second, test = compared.first, compared.second, compared.test
@@ -231,7 +231,7 @@ def _mismatch(
         regions=pd.DataFrame(regions, columns=pd.Index(REGION_COLUMNS)),
         summary=_summary(common.channels, compared),
         exchange=exchange,
-        findings=tuple(sorted(kept, key=lambda finding: finding.rank)),
+        findings=tuple(sorted(reported, key=lambda finding: finding.rank)),
         provenance=provenance_now(asdict(plan) | limits, plan.seed, files, SECTION),
         alignment=compared.alignment,
     )

@@ -96,11 +96,11 @@ def _pick_walks(study: Study, participant: str) -> tuple[WalkSummary, WalkSummar
     if not refusals:
         return walks[nominal].summary(), walks[device].summary()
     pooled, _ = pool_public(study, person)  # walks of a few strides each
-    kept = {(cycles.session, cycles.condition): cycles for cycles in pooled if len(cycles.kept)}
-    session = next((word for word, _ in kept if (word, nominal) in kept and (word, device) in kept), None)
+    sets = {(cycles.session, cycles.condition): cycles for cycles in pooled if len(cycles.kept)}
+    session = next((word for word, _ in sets if (word, nominal) in sets and (word, device) in sets), None)
     if session is None:
         return "; ".join(f"{refusal.condition}: {refusal.reason}".removeprefix(": ") for refusal in refusals)
-    before, after = (pooled_walk(kept[session, word], study.strides.side) for word in (nominal, device))
+    before, after = (pooled_walk(sets[session, word], study.strides.side) for word in (nominal, device))
     return before, after
 
 

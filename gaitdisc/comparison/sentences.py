@@ -191,12 +191,12 @@ def _timing(mismatch: Mismatch, name: str) -> str:
 def _by_unit(mismatch: Mismatch, names: list[str], column: str, smallest: bool = False) -> str:
     """Largest value for each unit, with the range where wanted."""
     rows = [mismatch.summary_of(name) for name in names]
-    parts = []
+    texts = []
     for unit in dict.fromkeys(str(row["unit"]) for row in rows):
         of_unit = sorted((row for row in rows if row["unit"] == unit), key=lambda row: row[column])
         ends = [(amount(float(row[column])), spoken(str(row["channel"]))) for row in (of_unit[0], of_unit[-1])]
         text = with_unit(ends[1][0], unit)
         if smallest and len(of_unit) > 1:
             text = f"{ends[0][0]} ({ends[0][1]}) to {text} ({ends[1][1]})"
-        parts.append(text)
-    return listing(parts)
+        texts.append(text)
+    return listing(texts)

@@ -67,8 +67,8 @@ def calibrate_body(
     names = marker_set.names(marker_labels(static))
     _check_complete(marker_set, names, file)
     needed = [(key, side) for key in marker_set.list_needed_landmarks(names) for side in "lr"]
-    seen = dict.fromkeys(marker for key, side in needed for marker in marker_set.landmark(key, side, names))
-    places, moved, start = still_places(static, names, [*seen])
+    markers = dict.fromkeys(marker for key, side in needed for marker in marker_set.landmark(key, side, names))
+    places, moved, start = still_places(static, names, [*markers])
     _check_complete(marker_set, places, file)
     if moved > STANDS_M:
         raise SamplingError(

@@ -86,8 +86,8 @@ def find_fixed_point(above: Pose, below: Pose) -> Pivot:
     both = np.concatenate([above.rotation, -below.rotation], axis=2)
     apart = below.origin - above.origin
     point = np.asarray(np.linalg.lstsq(both.reshape(-1, 6), apart.ravel(), rcond=1e-6)[0], np.float64)
-    left = both @ point - apart
-    return Pivot(point[:3], float(np.sqrt((left**2).sum(axis=1).mean())))
+    residual = both @ point - apart
+    return Pivot(point[:3], float(np.sqrt((residual**2).sum(axis=1).mean())))
 
 
 def sphere_centre(places: Values, start: Values) -> Pivot:

@@ -224,24 +224,24 @@ def _check_text(table: dict[str, Any], path: Path) -> MarkerSet:
     _check_words(table, known, "a key of a marker set", file)
     words = {key: _of_kind("text", table.get(key, text), key, file) for key, text in usual.items()}
     _check_words([words["joints"]], JOINTS, "joints", file)
-    parts: dict[str, dict[str, Any]] = {}
+    tables: dict[str, dict[str, Any]] = {}
     for part, kind in TABLES.items():
         rows = _of_kind("table", table.get(part, {}), part, file)
-        parts[part] = {key: _of_kind(kind, value, f"{part}.{key}", file) for key, value in rows.items()}
+        tables[part] = {key: _of_kind(kind, value, f"{part}.{key}", file) for key, value in rows.items()}
     for part, keys in (("landmarks", LANDMARKS), ("joint_centres", METHODS), ("axes", AXES), ("tracked", PARTS)):
-        _check_words(parts[part], tuple(keys), f"a key of [{part}]", file)
-    for key, value in parts["axes"].items():
+        _check_words(tables[part], tuple(keys), f"a key of [{part}]", file)
+    for key, value in tables["axes"].items():
         _check_words([value], AXES[key], f"axes.{key}", file)
-    methods = {key: tuple(method.strip() for method in text.split("|")) for key, text in parts["joint_centres"].items()}
-    _check_landmarks(parts["landmarks"], file)
-    _check_methods(methods, parts["landmarks"], file)
-    _check_tracked(parts["tracked"], file)
-    axes = {"shank": "ankle", "foot": "flat", **parts["axes"]}
-    aliases, tracked = ({key: tuple(names) for key, names in parts[part].items()} for part in ("aliases", "tracked"))
+    methods = {key: tuple(name.strip() for name in text.split("|")) for key, text in tables["joint_centres"].items()}
+    _check_landmarks(tables["landmarks"], file)
+    _check_methods(methods, tables["landmarks"], file)
+    _check_tracked(tables["tracked"], file)
+    axes = {"shank": "ankle", "foot": "flat", **tables["axes"]}
+    aliases, tracked = ({key: tuple(names) for key, names in tables[part].items()} for part in ("aliases", "tracked"))
     return MarkerSet(
         path.stem,
         aliases=aliases,
-        landmarks=parts["landmarks"],
+        landmarks=tables["landmarks"],
         joint_centres=methods,
         axes=axes,
         tracked=tracked,

@@ -191,8 +191,8 @@ def levers_m(normal: Values, allowed: Values) -> Turns:
     levers = {}
     for segment in SEGMENTS:
         of_chain = np.concatenate([_columns(above) for above in _chain(segment)])
-        parts = spread[:, of_chain[:, None], of_chain].reshape(len(spread), -1, 3, len(of_chain) // 3, 3)
-        levers[segment] = 1 / np.sqrt(np.linalg.eigvalsh(parts.sum(axis=(1, 3)))[:, -1])
+        blocks = spread[:, of_chain[:, None], of_chain].reshape(len(spread), -1, 3, len(of_chain) // 3, 3)
+        levers[segment] = 1 / np.sqrt(np.linalg.eigvalsh(blocks.sum(axis=(1, 3)))[:, -1])
     return levers
 
 

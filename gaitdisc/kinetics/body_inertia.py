@@ -113,10 +113,10 @@ def leg_inertia(person: Person, side: str, lengths_m: Mapping[str, float], toe: 
     means = {}
     for segment in LEG:
         rows = [inertia_table(sex)[segment] for sex in person.sex or "fm"]
-        each = [_body(row, person.kg, lengths[segment], side) for row in rows]
-        mass = float(np.mean([body.mass_kg for body in each]))
-        centre = np.mean([body.centre for body in each], axis=0)
-        means[segment] = RigidBody(mass, centre, np.mean([body.tensor for body in each], axis=0))
+        bodies = [_body(row, person.kg, lengths[segment], side) for row in rows]
+        mass = float(np.mean([body.mass_kg for body in bodies]))
+        centre = np.mean([body.centre for body in bodies], axis=0)
+        means[segment] = RigidBody(mass, centre, np.mean([body.tensor for body in bodies], axis=0))
     return means
 
 

@@ -116,8 +116,8 @@ def joint_axes(nearer: Pose, farther: Pose) -> Values:
 
 def along(vector: Values, axes: Values, joint: str, side: str) -> Values:
     """Parts (frame, 3) of a vector (frame, 3) towards a joint's positive angles about axes of `joint_axes`."""
-    parts = [np.einsum("fx,fx->f", vector, axes[:, axis]) for axis in range(3)]
-    return np.stack(parts, axis=1) * angle_signs(joint, side)
+    components = [np.einsum("fx,fx->f", vector, axes[:, axis]) for axis in range(3)]
+    return np.stack(components, axis=1) * angle_signs(joint, side)
 
 
 @dataclass(frozen=True)

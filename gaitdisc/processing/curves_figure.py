@@ -42,9 +42,9 @@ def curves_figures(run: StudyRun, participant: str, name: str) -> list[Figure]:
     numbers = curve_numbers(run, participant)
     if not len(numbers):
         return []
-    parts = sheets(sides_together(list(dict.fromkeys(numbers["channel"]))), 16, f"curves-{name}")
+    pages = sheets(sides_together(list(dict.fromkeys(numbers["channel"]))), 16, f"curves-{name}")
     by_channel = numbers.set_index("channel")
-    return [_figure(run, participant, by_channel.loc[part].reset_index(), sheet) for sheet, part in parts.items()]
+    return [_figure(run, participant, by_channel.loc[part].reset_index(), sheet) for sheet, part in pages.items()]
 
 
 def curve_numbers(run: StudyRun, participant: str) -> pd.DataFrame:

@@ -147,12 +147,12 @@ def _pool(study: Study, participant: Participant, reader: C3DReader, instead: bo
         return trial
 
     sets = trial_sets(study, participant)
-    every = pool_cycles(study, participant, read)
-    if instead and not can_pool(every):
+    all_pooled = pool_cycles(study, participant, read)
+    if instead and not can_pool(all_pooled):
         return {}
     places = {id(planned): place for place, planned in enumerate(participant.trials)}
     inspections: dict[int, Inspection] = {}
-    for trial_set, pooled in zip(sets, every, strict=True):
+    for trial_set, pooled in zip(sets, all_pooled, strict=True):
         reasons = {refusal.condition: refusal.reason for refusal in pooled.refusals}
         for number, planned in enumerate(trial_set.trials, 1):
             name = participant.trial_name(planned)

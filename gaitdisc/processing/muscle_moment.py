@@ -188,12 +188,12 @@ class Sums(NamedTuple):
 def sum_pieces(columns: Values, moment: Values, pieces: NDArray[np.intp], count: int) -> Sums:
     """Return the normal equations of each piece 0 to count - 1; samples without a number or outside are left out."""
     known = np.isfinite(moment) & np.isfinite(columns).all(axis=1)
-    parts = []
+    sums = []
     for piece in range(count):
         rows = known & (pieces == piece)
         a, b = columns[rows], moment[rows]
-        parts.append((a.T @ a, a.T @ b, b @ b))
-    return Sums(*(np.array(term, np.float64) for term in zip(*parts, strict=True)))
+        sums.append((a.T @ a, a.T @ b, b @ b))
+    return Sums(*(np.array(term, np.float64) for term in zip(*sums, strict=True)))
 
 
 def solved(total: Sums, muscles: int, respect: float = GAIN_RIDGE) -> Values:

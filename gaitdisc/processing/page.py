@@ -135,13 +135,13 @@ def person_block(sets: Sequence[PooledCycles], name: str, drawn: bool = True) ->
     shown = {f"{name}-{places[pooled.where]}": pooled for pooled in kept if drawn}
     figures = [figure for sheet, pooled in shown.items() for figure in cycles_figures(pooled, sheet)]
     tables = [*([spatiotemporal_table(kept, name)] if kept else []), *([left_out] if left_out is not None else [])]
-    parts = []
+    texts = []
     for pooled in sets:
         counts = " and ".join(f"{pooled.counted(side)} {SIDE_WORDS[side]}" for side in FEET)
         ground = "over ground" if pooled.over_ground else "on a treadmill"
         words = f"{counts} cycles of {counted(pooled.trials, 'trial')} {ground}"
-        parts.append(f"{pooled.where}: {words if len(pooled.kept) else 'no cycle, see “Left out”'}")
-    return Block(f"cycles-{name}", sets[0].subject, (f"{'; '.join(parts)}.",), tuple(figures), tuple(tables))
+        texts.append(f"{pooled.where}: {words if len(pooled.kept) else 'no cycle, see “Left out”'}")
+    return Block(f"cycles-{name}", sets[0].subject, (f"{'; '.join(texts)}.",), tuple(figures), tuple(tables))
 
 
 def _save(sets: Sequence[PooledCycles], name: str, folder: Path, most: int) -> Block[SavedFigure]:
@@ -168,8 +168,8 @@ def cycles_figures(pooled: PooledCycles, name: str) -> list[Figure]:
     order = {kind: place for place, kind in enumerate(("angle", "translation", "moment", "power"))}
     kinds = {sideless(channel.name): order.get(channel.quantity, len(order)) for channel in pooled.channels}
     joints.sort(key=lambda joint: kinds[joint])
-    parts = sheets(joints, MOST_PANELS, f"cycles-{name}")
-    return [_figure(pooled, numbers, part, sheet) for sheet, part in parts.items()]
+    pages = sheets(joints, MOST_PANELS, f"cycles-{name}")
+    return [_figure(pooled, numbers, part, sheet) for sheet, part in pages.items()]
 
 
 def _figure(pooled: PooledCycles, numbers: pd.DataFrame, joints: list[str], name: str) -> Figure:

@@ -123,7 +123,7 @@ def pool_cycles(study: Study, participant: Participant, read: Read) -> tuple[Poo
             for trial in (trial for _, seen, _ in ready for trial in seen):
                 for kind, detector in (("contacts", trial.steps.detector), ("foot_offs", trial.steps.off_detector)):
                     times.setdefault((kind, detector), []).append(trial.steps.later_s(kind))
-            later = {of: np.concatenate(parts) for of, parts in times.items()}
+            later = {key: np.concatenate(delays) for key, delays in times.items()}
             pooled += [_pool(standing, trials, seen, lost, later) for trials, seen, lost in ready]
     return tuple(pooled)
 

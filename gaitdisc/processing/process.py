@@ -269,9 +269,9 @@ def make_filter_null(walk: Walk, filters: Filters) -> dict[str, float]:
 
 
 def _differentiate(values: Values, rate_hz: float) -> tuple[Values, Values, Values]:
-    parts = (values, derivative(values, rate_hz, 1), derivative(values, rate_hz, 2))
-    known = np.isfinite(np.hstack(parts)).all(axis=1)
-    x, xdot, xddot = (part[known] for part in parts)
+    derivatives = (values, derivative(values, rate_hz, 1), derivative(values, rate_hz, 2))
+    known = np.isfinite(np.hstack(derivatives)).all(axis=1)
+    x, xdot, xddot = (order[known] for order in derivatives)
     return x, xdot, xddot
 
 

@@ -31,8 +31,8 @@ def unit_keys(study: Study, participant: Participant) -> dict[str, str]:
     for word in study.conditions.both:
         trial = participant.trials_of(word)[0]
         beside = (calibration_trial(study, participant, trial.session or "", kind) for kind in (STATIC, FUNCTIONAL))
-        parts = [person_key(study, participant), *(unit_key(study, planned) for planned in (trial, *beside) if planned)]
-        keys[word] = hashlib.sha256("\n".join(parts).encode()).hexdigest()
+        texts = [person_key(study, participant), *(unit_key(study, planned) for planned in (trial, *beside) if planned)]
+        keys[word] = hashlib.sha256("\n".join(texts).encode()).hexdigest()
     return keys
 
 
@@ -52,13 +52,13 @@ def response_key(keys: Mapping[str, str]) -> str:
 def unit_key(study: Study, trial: PlannedTrial) -> str:
     """Hash of all that decides a walk's numbers: bytes of its files, settings, and the package's own code."""
     settings = study.model_dump(mode="json", exclude={"participants", "title"})
-    parts = [code_sha256(), json.dumps(settings, sort_keys=True), trial.model_dump_json(exclude={"files"})]
+    texts = [code_sha256(), json.dumps(settings, sort_keys=True), trial.model_dump_json(exclude={"files"})]
     for file in trial.files:
         try:
-            parts.append(file_sha256(study.path_of(file)))
+            texts.append(file_sha256(study.path_of(file)))
         except OSError as error:
-            parts.append(f"{file}: {error.strerror}")
-    return hashlib.sha256("\n".join(parts).encode()).hexdigest()
+            texts.append(f"{file}: {error.strerror}")
+    return hashlib.sha256("\n".join(texts).encode()).hexdigest()
 
 
 def process_walks(study: Study, participant: Participant) -> tuple[dict[str, Walk], tuple[Refusal, ...]]:
@@ -143,9 +143,9 @@ def pool_public(study: Study, participant: Participant) -> tuple[list[PooledCycl
 
 def cycles_key(study: Study, participant: Participant) -> str:
     """Hash of all that decides a participant's pooled cycles: files, settings, and the package's own code."""
-    parts = [participant.id, participant.group, person_key(study, participant)]
+    texts = [participant.id, participant.group, person_key(study, participant)]
     for trial_set in trial_sets(study, participant):
         beside = (calibration_trial(study, participant, trial_set.session, kind) for kind in (STATIC, FUNCTIONAL))
         trials = (*trial_set.trials, *(trial for trial in beside if trial))
-        parts += [trial_set.session, trial_set.condition, *(unit_key(study, trial) for trial in trials)]
-    return hashlib.sha256("\n".join(parts).encode()).hexdigest()
+        texts += [trial_set.session, trial_set.condition, *(unit_key(study, trial) for trial in trials)]
+    return hashlib.sha256("\n".join(texts).encode()).hexdigest()

@@ -78,9 +78,9 @@ def cut_cycles(contacts: Timed, offs: Timed) -> list[Cycle]:
             landed = inside[0] if len(inside) == 1 else NAN
             until = landed if inside else start + 0.5 * length
             lift, _ = _first(offs.get(other, ()), start - EDGE_S, until)
-            seen = bool(across) and across[0] < start and across[-1] > end
+            surrounded = bool(across) and across[0] < start and across[-1] > end
             reason = ""
-            if len(inside) > 1 or (seen and not inside):
+            if len(inside) > 1 or (surrounded and not inside):
                 count = f"{len(inside)} contacts" if inside else "no contact"
                 reason = f"{count} of the other foot within the cycle: a contact was missed or is false"
             cycles.append(Cycle(side, start, end, (by, next_by), off, max(lift, start), landed, off_by, False, reason))
@@ -167,8 +167,8 @@ def without_stated(cycles: list[Cycle], entries: Sequence[str], file: str) -> tu
     """
     new_cycles, findings = list(cycles), []
     for words in entries:
-        parts = LEFT_OUT_CYCLE.fullmatch(words)
-        side, start, reason = (parts[1], float(parts[2]), parts[3]) if parts else ("", 0.0, "")
+        match = LEFT_OUT_CYCLE.fullmatch(words)
+        side, start, reason = (match[1], float(match[2]), match[3]) if match else ("", 0.0, "")
         near = {abs(cycle.start - start): i for i, cycle in enumerate(new_cycles) if cycle.side == side}
         if near and min(near) <= SAME_START_S:
             at = near[min(near)]

@@ -253,8 +253,8 @@ class Trajectory:
 
     def rows(self, chosen: slice | NDArray[np.bool_] | NDArray[np.intp]) -> Trajectory:
         """Trajectory of the chosen samples; usually a contiguous part."""
-        parts = {name: getattr(self, name)[chosen] for name in ("time", "x", "xdot", "xddot")}
-        return replace(self, phi=self.phi[chosen], usable=self.usable[chosen], **parts)
+        arrays = {name: getattr(self, name)[chosen] for name in ("time", "x", "xdot", "xddot")}
+        return replace(self, phi=self.phi[chosen], usable=self.usable[chosen], **arrays)
 
     def split(self, held_out_s: float, seam_s: float = 0.3) -> tuple[Trajectory, Trajectory]:
         """Split into a training part and the last part, held out.

@@ -41,11 +41,11 @@ def quantity_figure(run: ResponseRun) -> Figure | None:
     row[0].set_ylabel("R² on the held-out device walk [1]")
     legend(drawn, models_key(ms=3.5))
     alt = f"R² of three models against the training length, for {counted(len(run.quantities), 'participant')}."
-    parts = sorted({quantity.part for quantity in run.quantities})
+    ends = sorted({quantity.part for quantity in run.quantities})
     edge = f" Values below {number(low)} are cut off." if low == LOWEST else ""
     caption = (
         f"R² [1] of the second derivative on the held-out device walk ({run.exo}) by training length; median over "
-        f"variables, n = {counted(len(run.quantities), 'participant')}. Only the {' or '.join(parts)} seconds of the "
+        f"variables, n = {counted(len(run.quantities), 'participant')}. Only the {' or '.join(ends)} seconds of the "
         f"training part are used; the last {tail_words(run)} s of each walk are held out at all lengths. Thick lines: "
         f"median over participants. Thin lines: each participant. Networks only.{edge} After Fig. 4.4 of the "
         "dissertation."
@@ -125,8 +125,8 @@ def length_table(run: ResponseRun) -> Table | None:
     tests = run.over.lengths
     rows = []
     for length, of_length in tests.groupby("length_s", sort=True):
-        parts = [_cells(of_length[of_length["second"] == second]) for second in ("exo", WHOLE)]
-        rows.append((f"{length:g}", str(int(of_length["n"].max())), *parts[0], *parts[1]))
+        cells = [_cells(of_length[of_length["second"] == second]) for second in ("exo", WHOLE)]
+        rows.append((f"{length:g}", str(int(of_length["n"].max())), *cells[0], *cells[1]))
     caption = (
         "Tests of R² [1] on the same held-out device walk by training length, paired over n = "
         f"{counted(len(run.quantities), 'participant')}. Exact two-sided signed-rank test, Holm-Sidak correction over "

@@ -65,15 +65,15 @@ def fit_response(
     _check_pair(nominal, exo)
     held_nominal, held_exo = (split_held_out(walk, settings)[1] for walk in (nominal, exo))
     on_nominal, on_exo = (pick_held_out(held, settings) for held in (held_nominal, held_exo))
-    parts = training_samples(nominal, exo, settings)
-    fitted = fit_kinds(*parts, settings, progress or _log_tenths())
+    training = training_samples(nominal, exo, settings)
+    fitted = fit_kinds(*training, settings, progress or _log_tenths())
     null = [
         (variable, "nominal", "null", "exo", float(null_r2[variable]), len(on_exo))
         for variable in settings.outputs
         if null_r2 and variable in null_r2
     ]
     predicted = {name: model(on_exo.x) for name, model in fitted["network"].on_exo().items()}
-    bands = response_bands(fitted["network"], refit_network, *parts, on_exo) if banded else {}
+    bands = response_bands(fitted["network"], refit_network, *training, on_exo) if banded else {}
     return ParticipantResponse(
         participant=exo.subject or nominal.subject,
         inputs=on_exo.inputs,
@@ -203,16 +203,16 @@ def response_bands(
         and Ramdas 2023, Distribution-free prediction sets for two-layer hierarchical models (pooled within groups, the
         groups counted); by part of the stride is our addition.
     """
-    if min(each.time[-1] - each.time[0] for each in (nominal, exo)) < SHORTEST_S:
+    if min(samples.time[-1] - samples.time[0] for samples in (nominal, exo)) < SHORTEST_S:
         return {}
     members: dict[str, list[Member]] = {name: [] for name in MODELS}
     for number in range(BLOCKS):
-        (rest_nominal, left_nominal), (rest, left) = (part(each, number) for each in (nominal, exo))
+        (rest_nominal, out_nominal), (rest, out) = (part(samples, number) for samples in (nominal, exo))
         f, y = refit(models.nominal.model, rest_nominal), refit(models.exo.model, rest)
         g = refit(models.discrepancy.model, rest.with_outputs(rest.y - f(rest.x)))
-        for name, model, block in (("nominal", f, left_nominal), ("augmented", augment(f, g), left), ("exo", y, left)):
+        for name, model, block in (("nominal", f, out_nominal), ("augmented", augment(f, g), out), ("exo", y, out)):
             members[name].append((model(held.x), np.abs(block.y - model(block.x)), _part(block.phi)))
-    return {name: _bounds(each, _part(held.phi)) for name, each in members.items()}
+    return {name: _bounds(group, _part(held.phi)) for name, group in members.items()}
 
 
 def part(samples: Samples, number: int) -> tuple[Samples, Samples]:
@@ -297,7 +297,7 @@ def fit_models(
 
     The Discrepancy model learns xddot_exo - f(x_exo, xdot_exo, phi_exo), what Nominal misses (Eq. 4.4).
     """
-    parts = [partial(report_share, progress or (lambda _: None), done, 3) for done in range(3)]
+    reports = [partial(report_share, progress or (lambda _: None), done, 3) for done in range(3)]
 
     def fit_named(model: str, samples: Samples, report: Callable[[float], None]) -> Fit:
         try:
@@ -305,9 +305,9 @@ def fit_models(
         except TrainingError as error:
             raise TrainingError(f"the {model} model: {error.needed}", error.found, error.remedy) from error
 
-    f = fit_named("Nominal", nominal, parts[0])
-    y = fit_named("Exo", exo, parts[1])
-    g = fit_named("Discrepancy", exo.with_outputs(exo.y - f.model(exo.x)), parts[2])
+    f = fit_named("Nominal", nominal, reports[0])
+    y = fit_named("Exo", exo, reports[1])
+    g = fit_named("Discrepancy", exo.with_outputs(exo.y - f.model(exo.x)), reports[2])
     return ResponseModels(nominal=f, exo=y, discrepancy=g)
 
 

@@ -34,8 +34,8 @@ def draw_held_out(response: ParticipantResponse, name: str) -> list[Figure]:
     numbers = tabulate_held_out(response)
     if not len(numbers):
         return []
-    parts = sheets(response.outputs, 12, f"held-out-{name}")
-    return [_figure(response, numbers[numbers["variable"].isin(part)], sheet) for sheet, part in parts.items()]
+    pages = sheets(response.outputs, 12, f"held-out-{name}")
+    return [_figure(response, numbers[numbers["variable"].isin(part)], sheet) for sheet, part in pages.items()]
 
 
 def tabulate_held_out(response: ParticipantResponse) -> pd.DataFrame:
@@ -132,8 +132,8 @@ def residual_figures(response: ParticipantResponse, name: str) -> list[Figure]:
     if not models or not len(response.residuals[models[0]]):
         return []
     numbers = residual_numbers(response)
-    parts = sheets(response.outputs, 6, f"residual-{name}")
-    return [_residual_figure(response, numbers[numbers["variable"].isin(part)], sheet) for sheet, part in parts.items()]
+    pages = sheets(response.outputs, 6, f"residual-{name}")
+    return [_residual_figure(response, numbers[numbers["variable"].isin(part)], sheet) for sheet, part in pages.items()]
 
 
 def residual_numbers(response: ParticipantResponse) -> pd.DataFrame:
@@ -174,10 +174,10 @@ def _residual_figure(response: ParticipantResponse, numbers: pd.DataFrame, name:
     names = list(dict.fromkeys(numbers["variable"]))
     models = list(dict.fromkeys(numbers["model"]))
     drawn, grid = panels(len(names), len(models), 0.95, Room(across=0.25, down=0.33, top=0.5))
-    each = [column for column in numbers.columns if column.startswith("stride_")]
-    as_pixels = len(numbers) * len(each) > MOST_VECTOR_POINTS
+    columns = [column for column in numbers.columns if column.startswith("stride_")]
+    as_pixels = len(numbers) * len(columns) > MOST_VECTOR_POINTS
     for row, (variable, of_variable) in zip(grid, numbers.groupby("variable", sort=False), strict=True):
-        _draw_residuals(row, str(variable), of_variable, each, as_pixels)
+        _draw_residuals(row, str(variable), of_variable, columns, as_pixels)
         for axes in row:
             if row is grid[-1]:
                 axes.set_xlabel("stride [%]")
@@ -191,20 +191,20 @@ def _residual_figure(response: ParticipantResponse, numbers: pd.DataFrame, name:
     interval = (
         f"shaded: {100 * CONFIDENCE:.0f} % confidence interval of the mean at each point (Student's t over strides, "
         "corrected for the correlation of neighbouring strides)"
-        if len(each) >= LEAST_STRIDES
+        if len(columns) >= LEAST_STRIDES
         else f"no interval, because it requires {LEAST_STRIDES} complete strides"
     )
     caption = (
         f"{response.participant}: residual of the second derivative, measured minus predicted, over the stride of the "
-        f"held-out device walk, n = {counted(len(each), 'stride')}; split: last {response.held_out_s:.4g} s held out. "
-        f"Black: mean; {interval}. Faint: every stride. A perfect model has a mean of zero. Each row has one scale "
-        "and one unit. Red titles: left side; blue: right."
+        f"held-out device walk, n = {counted(len(columns), 'stride')}; split: last {response.held_out_s:.4g} s held "
+        f"out. Black: mean; {interval}. Faint: every stride. A perfect model has a mean of zero. Each row has one "
+        "scale and one unit. Red titles: left side; blue: right."
     )
-    parts = [
+    percents = [
         f"{MODEL_WORDS[str(model)]} {100 * ((curves['low'] > 0) | (curves['high'] < 0)).mean():.0f} %"
         for model, curves in numbers.groupby("model", sort=False)
     ]
-    shares = f"Share of the stride in which the confidence interval of the mean excludes zero: {', '.join(parts)}."
+    shares = f"Share of the stride in which the confidence interval of the mean excludes zero: {', '.join(percents)}."
     few = "There are too few strides for a confidence interval of the mean."
     alt = (
         f"Residuals over the stride of {response.participant}, {counted(len(names), 'variable')}. "
@@ -214,14 +214,14 @@ def _residual_figure(response: ParticipantResponse, numbers: pd.DataFrame, name:
 
 
 def _draw_residuals(
-    row: list[Axes], variable: str, of_variable: pd.DataFrame, each: list[str], as_pixels: bool
+    row: list[Axes], variable: str, of_variable: pd.DataFrame, columns: list[str], as_pixels: bool
 ) -> None:
     """Draw what every model leaves of one variable, a panel a model, on one scale."""
-    values = of_variable[["mean", *each]].to_numpy()
+    values = of_variable[["mean", *columns]].to_numpy()
     values = values[np.isfinite(values)]
     reach = (1.05 * float(np.max(np.abs(values))) if len(values) else 1.0) or 1.0
     for axes, (model, curves) in zip(row, of_variable.groupby("model", sort=False), strict=True):
-        _draw_residual(axes, curves, each, str(model), as_pixels)
+        _draw_residual(axes, curves, columns, str(model), as_pixels)
         axes.set_ylim(-reach, reach)
         axes.set_xlim(0, 100)
         axes.set_xticks([0, 25, 50, 75, 100])
@@ -231,10 +231,10 @@ def _draw_residuals(
     row[0].set_title(f"{label(variable)}{up}", loc="left", color=SIDES[find_side(variable)].colour)
 
 
-def _draw_residual(axes: Axes, curves: pd.DataFrame, each: list[str], model: str, as_pixels: bool) -> None:
+def _draw_residual(axes: Axes, curves: pd.DataFrame, columns: list[str], model: str, as_pixels: bool) -> None:
     look = MODELS[model]
     percent = curves["percent"].to_numpy()
-    faint = axes.plot(percent, curves[each].to_numpy(), color=look.colour, alpha=0.28, linewidth=0.5, zorder=1)
+    faint = axes.plot(percent, curves[columns].to_numpy(), color=look.colour, alpha=0.28, linewidth=0.5, zorder=1)
     for line in faint:
         line.set_rasterized(as_pixels)
     axes.axhline(0.0, color="#888888", linewidth=0.6, zorder=0)

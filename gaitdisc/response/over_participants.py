@@ -41,13 +41,13 @@ def compare_baselines(responses: Sequence[ParticipantResponse]) -> pd.DataFrame:
     if len(responses) < FEWEST:
         return join_rows("baselines")
     null = r2_by_participant(responses, "nominal", "null")
-    parts = []
+    tables = []
     for model in MODELS:
         network = r2_by_participant(responses, model)
         for kind in BASELINES:
             baseline = null if kind == "null" else r2_by_participant(responses, model, kind)
-            parts.append(compare_columns(baseline, network).assign(model=model, first=kind, second="network"))
-    return join_rows("baselines", parts)
+            tables.append(compare_columns(baseline, network).assign(model=model, first=kind, second="network"))
+    return join_rows("baselines", tables)
 
 
 def compare_lengths(quantities: Sequence[DataQuantity]) -> pd.DataFrame:
@@ -63,12 +63,12 @@ def compare_lengths(quantities: Sequence[DataQuantity]) -> pd.DataFrame:
     table = table[(table["kind"] == "network") & (table["walk"] == "exo")]
     longest = table.groupby("participant")["length_s"].transform("max")
     full = by_participant(table[(table["length_s"] == longest) & (table["model"] == "exo")])
-    parts = []
+    tables = []
     for length, rows in table[table["length_s"] < longest].groupby("length_s"):
         augmented, exo = (by_participant(rows[rows["model"] == model]).reindex_like(full) for model in MODELS[1:])
         for first, second, pair in (("augmented", "exo", (augmented, exo)), ("exo", WHOLE, (exo, full))):
-            parts.append(compare_columns(*pair).assign(length_s=length, first=first, second=second))
-    return join_rows("lengths", parts)
+            tables.append(compare_columns(*pair).assign(length_s=length, first=first, second=second))
+    return join_rows("lengths", tables)
 
 
 def by_participant(table: pd.DataFrame, values: str = "r2") -> pd.DataFrame:
@@ -96,11 +96,11 @@ def compare_reductions(reductions: pd.DataFrame) -> pd.DataFrame:
     """Test reductions against zero, a family a measure and model; Hodges-Lehmann shift and 95 % interval."""
     if reductions["participant"].nunique() < FEWEST:
         return join_rows("reduction_tests")
-    parts = []
+    tables = []
     for measure, model in product(MEASURES, MODELS[1:]):
         reduced = by_participant(reductions[reductions["model"] == model], f"{measure}_reduction")
-        parts.append(compare_columns(reduced * 0.0, reduced).assign(measure=measure, first="nominal", second=model))
-    return join_rows("reduction_tests", parts)
+        tables.append(compare_columns(reduced * 0.0, reduced).assign(measure=measure, first="nominal", second=model))
+    return join_rows("reduction_tests", tables)
 
 
 def _of_one(response: ParticipantResponse) -> pd.DataFrame:
@@ -220,11 +220,11 @@ def by_family(tests: pd.DataFrame) -> pd.DataFrame:
     """Tests (first, second, variable, p) of three pairs corrected under every family meant: `FAMILY_COLUMNS`."""
     chosen = tests[tests["p"].notna() & (tests["second"] != "perfect")]
     families = {"pair": ["first", "second"], "all": np.zeros(len(chosen)), "variable": "variable"}
-    parts = []
+    tables = []
     for name in FAMILIES:
         for _, rows in chosen.groupby(families[name], sort=False):
             corrected = holm_sidak(rows["p"], ALPHA)
-            parts.append(
+            tables.append(
                 rows[["first", "second", "variable"]].assign(
                     family=name,
                     tests=len(rows),
@@ -234,7 +234,7 @@ def by_family(tests: pd.DataFrame) -> pd.DataFrame:
                     different=corrected.rejected,
                 )
             )
-    return join_rows("families", parts)
+    return join_rows("families", tables)
 
 
 def r2_by_participant(responses: Sequence[ParticipantResponse], model: str, kind: str = "network") -> pd.DataFrame:

@@ -36,7 +36,7 @@ BASELINE_WORDS = {
 
 def over_blocks(run: ResponseRun) -> list[Block]:
     """Parts of the page that have something to say, in their order."""
-    parts = (
+    blocks = (
         ("reduced", "Residuals of the models over the stride", reduction_sentences(run), reduction_figure(run),
          reduction_table(run)),
         ("baselines", "Networks compared with simpler baselines", baseline_sentences(run), None, baseline_table(run)),
@@ -46,7 +46,7 @@ def over_blocks(run: ResponseRun) -> list[Block]:
     )  # fmt: skip
     return [
         Block(anchor, heading, tuple(sentences), (figure,) if figure else (), (table,) if table else ())
-        for anchor, heading, sentences, figure, table in parts
+        for anchor, heading, sentences, figure, table in blocks
         if sentences
     ]
 
@@ -214,18 +214,18 @@ def baseline_sentences(run: ResponseRun) -> list[str]:
     tests = run.over.baselines
     sentences = []
     for model in dict.fromkeys(tests["model"]):
-        parts = []
+        baselines = []
         for kind, words in BASELINE_WORDS.items():
             rows = tests[(tests["model"] == model) & (tests["first"] == kind) & tests["p"].notna()]
             beaten = rows["different"].astype(bool) & (rows["rank_biserial"] > 0)
             names = [label(str(variable)) for variable in rows.loc[~beaten, "variable"]]
             if names:
                 which = f"any of {counted(len(rows), 'variable')}" if len(names) == len(rows) else "; ".join(names)
-                parts.append(f"{words} (in {which})")
+                baselines.append(f"{words} (in {which})")
         network = f"The {MODEL_WORDS[str(model)]} network"
         sentences.append(
-            f"{network} does not significantly exceed {listing(parts)}."
-            if parts
+            f"{network} does not significantly exceed {listing(baselines)}."
+            if baselines
             else f"{network} exceeds every baseline in all variables."
         )
     return sentences

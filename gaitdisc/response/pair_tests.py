@@ -155,20 +155,20 @@ def _families_table(tests: PairTests) -> Table:
 def _verdict(tests: PairTests, first: str, second: str) -> str:
     rows = tests.of_pair(first, second)
     tested = rows[rows["p"].notna()]
-    parts = []
+    counts = []
     for word, sign in (("more", 1), ("less", -1)):
         chosen = tested[tested["different"] & (np.sign(tested["rank_biserial"]) == sign)]
         if len(chosen):
             named = [label(str(variable)) for variable in chosen["variable"]]
             which = f" ({'; '.join(named)})" if len(named) <= MOST_NAMED and len(named) < len(tested) else ""
-            parts.append(f"{word} in {len(named)} of {counted(len(tested), 'variable')}{which}")
+            counts.append(f"{word} in {len(named)} of {counted(len(tested), 'variable')}{which}")
     start = f"{_WORDS[second]} against {_WORDS[first]}"
     if not len(tested):
         return f"{start}: no variable has enough participants for a test."
-    if not parts:
+    if not counts:
         return f"{start}: there is no significant difference in any of {counted(len(tested), 'variable')}."
     largest = tested["shift"].abs().max()
-    return f"{start}: {_WORDS[second]} explains {listing(parts)}; largest shift of R²: {number(float(largest), 3)}."
+    return f"{start}: {_WORDS[second]} explains {listing(counts)}; largest shift of R²: {number(float(largest), 3)}."
 
 
 def _floor(tests: PairTests) -> str:
@@ -186,13 +186,13 @@ def _floor(tests: PairTests) -> str:
 
 def _say_unexplained(tests: PairTests) -> str:
     rows = tests.of_pair("exo", "perfect")
-    left = 1 - rows["median_first"].dropna()
-    if not len(left):
+    unexplained = 1 - rows["median_first"].dropna()
+    if not len(unexplained):
         return "The unexplained variance of the Exo model was not computed."
     return (
-        f"The Exo model, the upper limit for these inputs, leaves {number(float(left.min()))} to "
-        f"{number(float(left.max()))} of the variance unexplained (medians of the variables). Every model has R² "
-        "below 1, so the p-value of this comparison carries no information."
+        f"The Exo model, the upper limit for these inputs, leaves {number(float(unexplained.min()))} to "
+        f"{number(float(unexplained.max()))} of the variance unexplained (medians of the variables). Every model has "
+        "R² below 1, so the p-value of this comparison carries no information."
     )
 
 
@@ -214,8 +214,8 @@ def comparison_figures(run: ResponseRun) -> list[Figure]:
         return []
     numbers = r2_numbers(run)
     numbers = numbers[numbers["kind"] == "network"].drop(columns="kind").reset_index(drop=True)
-    parts = sheets(variables(run), MOST, "comparison")
-    return [_figure(run, run.tests, numbers[numbers["variable"].isin(part)], name) for name, part in parts.items()]
+    pages = sheets(variables(run), MOST, "comparison")
+    return [_figure(run, run.tests, numbers[numbers["variable"].isin(part)], name) for name, part in pages.items()]
 
 
 def _figure(run: ResponseRun, tests: PairTests, numbers: pd.DataFrame, name: str) -> Figure:

@@ -101,14 +101,14 @@ class OverParticipants:
 def table_of_people(people: Sequence[Any], field: str, columns: Sequence[str]) -> pd.DataFrame:
     """A table that each of some participants has, one below the other, with who it is of; without rows for nobody."""
     every = ["participant", *columns]
-    tables = [getattr(each, field).assign(participant=each.participant) for each in people]
+    tables = [getattr(person, field).assign(participant=person.participant) for person in people]
     return pd.concat(tables, ignore_index=True)[every] if tables else pd.DataFrame(columns=pd.Index(every))
 
 
-def join_rows(name: str, parts: Sequence[pd.DataFrame] = ()) -> pd.DataFrame:
+def join_rows(name: str, tables: Sequence[pd.DataFrame] = ()) -> pd.DataFrame:
     """Table of that name, its parts one below the other."""
     columns = {**TABLES, "tests": TEST_COLUMNS, "families": FAMILY_COLUMNS}[name]
-    return pd.concat(parts, ignore_index=True)[list(columns)] if parts else pd.DataFrame(columns=pd.Index(columns))
+    return pd.concat(tables, ignore_index=True)[list(columns)] if tables else pd.DataFrame(columns=pd.Index(columns))
 
 
 TESTS = Kind(

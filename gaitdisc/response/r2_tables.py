@@ -107,8 +107,8 @@ def tail_words(run: ResponseRun) -> str:
 def r2_figures(run: ResponseRun) -> list[Figure]:
     """R2 on the held-out device walk, one row a variable; points for one participant, boxes for several."""
     numbers = r2_numbers(run)
-    parts = sheets(variables(run), 12, "r2")
-    return [_figure(run, numbers[numbers["variable"].isin(part)], name) for name, part in parts.items()]
+    pages = sheets(variables(run), 12, "r2")
+    return [_figure(run, numbers[numbers["variable"].isin(part)], name) for name, part in pages.items()]
 
 
 def r2_numbers(run: ResponseRun) -> pd.DataFrame:
@@ -130,11 +130,11 @@ def _figure(run: ResponseRun, numbers: pd.DataFrame, name: str) -> Figure:
     row_in = LABELLED_ROW_IN if numbers["r2"].min() < low else ROW_IN
     drawn, [[axes]] = panels(1, 1, row_in * len(names) + 0.1, Room(left=1.75, right=0.25, top=0.45))
     draw_r2(axes, numbers)
-    parts = [
+    ranges = [
         f"{MODEL_WORDS[str(model)]} from {number(values.min())} to {number(values.max())}"
         for model, values in numbers[numbers["kind"] == "network"].groupby("model", sort=False)["r2"]
     ]
-    alt = f"R² of {counted(len(names), 'variable')} on the held-out device walk of {run.title}: {'; '.join(parts)}."
+    alt = f"R² of {counted(len(names), 'variable')} on the held-out device walk of {run.title}: {'; '.join(ranges)}."
     null = bool(numbers.loc[numbers["kind"] == "null", "r2"].notna().any())
     legend(drawn, r2_key(len(run.responses), null))
     return Figure(name, _caption(run, low, null), alt, numbers, drawn)
@@ -172,10 +172,10 @@ def _draw_variable(axes: Axes, rows: pd.DataFrame, row: int, low: float) -> None
         small = 2.2 if len(network) >= FEWEST_FOR_BOXES else 4.6
         shown = np.maximum(network, low)
         axes.plot(shown, np.full(len(shown), y), look.mark, color=look.colour, ms=small, mew=0, clip_on=False, zorder=3)
-        left = np.sort(network[network < low])
-        if len(left):  # one label for all of them
-            several = f"{len(left)} values, {number(left[0])} to {number(left[-1])}"
-            below = several if len(left) > MOST_VALUES else ", ".join(map(number, left))
+        hidden = np.sort(network[network < low])
+        if len(hidden):  # one label for all of them
+            several = f"{len(hidden)} values, {number(hidden[0])} to {number(hidden[-1])}"
+            below = several if len(hidden) > MOST_VALUES else ", ".join(map(number, hidden))
             axes.annotate(f"◂ {below}", (low, y), (5, 0), textcoords="offset points", va="center", fontsize=6)
 
 
@@ -251,10 +251,10 @@ def study_r2_table(run: ResponseRun) -> Table:
     for variable in variables(run):
         of_variable = long[long["variable"] == variable]
         quartiles = of_variable[["median", "q1", "q3"]].to_numpy()
-        rows.append((label(variable), str(int(of_variable["n"].max())), *(_quartiles(*each) for each in quartiles)))
+        rows.append((label(variable), str(int(of_variable["n"].max())), *(_quartiles(*row) for row in quartiles)))
     people = participant_medians(run)
     over = people.quantile([0.5, 0.25, 0.75]).T.to_numpy()
-    rows.append(("median over variables", str(len(people)), *(_quartiles(*each) for each in over)))
+    rows.append(("median over variables", str(len(people)), *(_quartiles(*row) for row in over)))
     caption = (
         f"R² [1] of the second derivative of each variable on held-out walking, median [quartiles] over participants, "
         f"n = {counted(len(people), 'participant')} (column n: those who have the variable); split: last "
@@ -298,9 +298,9 @@ def not_computed(run: ResponseRun, response: ParticipantResponse) -> list[str]:
     findings = [f for walk in run.walks if walk.subject == response.participant for f in walk.findings]
     for variable in table.index[table.isna().any(axis=1)]:
         rows = response.r2[response.r2["variable"] == variable]
-        seen = [finding.line() for finding in findings if finding.channel == variable]
-        if seen:
-            reasons.append(f"{label(variable)}: {'; '.join(seen)}")
+        notes = [finding.line() for finding in findings if finding.channel == variable]
+        if notes:
+            reasons.append(f"{label(variable)}: {'; '.join(notes)}")
         elif len(rows) and (rows["n"] == 0).all():
             reasons.append(f"{label(variable)}: no usable sample in the held-out part (n = 0)")
         else:

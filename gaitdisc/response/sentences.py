@@ -36,10 +36,10 @@ def study_sentences(run: ResponseRun) -> list[str]:
     if analysed == 1:
         return [f"{who} One participant is not enough for a test: the results describe this participant only."]
     table = participant_medians(run)
-    parts = [f"{MODEL_WORDS[model]} {_median_iqr(table[column])}" for model, column in _ON_EXO.items()]
+    shares = [f"{MODEL_WORDS[model]} {_median_iqr(table[column])}" for model, column in _ON_EXO.items()]
     sentences = [
         who,
-        f"On held-out device walking ({run.exo}), the models explain these shares of the variance: {', '.join(parts)} "
+        f"On held-out device walking ({run.exo}), the models explain these shares of the variance: {', '.join(shares)} "
         "(medians [quartiles] over participants of each participant's median over variables).",
         _verdict(table, "median over participants; better in", MARGIN, "participant", ""),
     ]

@@ -73,14 +73,14 @@ VARIANTS = Kind(
 def save_variant_run(run: VariantRun, folder: Path) -> None:
     """Save what was found over the participants, beside theirs, which were saved as they were computed."""
     data = {name: plain(getattr(run, name)) for name in ("title", "exo", "question", "refusals", "held_out_s")}
-    data["people"] = [each.participant for each in run.people]
+    data["people"] = [person.participant for person in run.people]
     save_unit(folder, "variant_run.json", data, {"tests.csv": run.tests}, {})
 
 
 def save_whole_variant_run(run: VariantRun, folder: Path) -> None:
     """Save what was found over the participants, and the variants of each, as they are in memory."""
-    for each in run.people:
-        VARIANTS.save(each, folder / "people" / each.participant)
+    for person in run.people:
+        VARIANTS.save(person, folder / "people" / person.participant)
     save_variant_run(run, folder)
 
 

@@ -125,16 +125,16 @@ def compare_variants(people: Sequence[Variants], question: str) -> pd.DataFrame:
         pairs = [((name, "nominal"), (name, "augmented"), ("nominal", "augmented")) for name in names]
     order = {"index": table["participant"].unique(), "columns": table["variable"].unique()}
     wide = {key: by_participant(rows).reindex(**order) for key, rows in table.groupby(["variant", "model"], sort=False)}
-    parts = [
+    tests = [
         compare_columns(wide[before], wide[after]).assign(variant=after[0], model=after[1], first=first, second=second)
         for before, after, (first, second) in pairs
     ]
-    return pd.concat(parts, ignore_index=True)[list(VARIANT_TEST_COLUMNS)]
+    return pd.concat(tests, ignore_index=True)[list(VARIANT_TEST_COLUMNS)]
 
 
 def _without(samples: Samples, left_away: Sequence[str]) -> Samples:
-    kept = [column for column, name in enumerate(samples.inputs) if name not in left_away]
-    return replace(samples, x=samples.x[:, kept], inputs=tuple(samples.inputs[column] for column in kept))
+    columns = [column for column, name in enumerate(samples.inputs) if name not in left_away]
+    return replace(samples, x=samples.x[:, columns], inputs=tuple(samples.inputs[column] for column in columns))
 
 
 @dataclass(frozen=True)

@@ -78,12 +78,12 @@ def strides_figure(run: ResponseRun, participant: str, name: str) -> Figure | No
     }
     bars = {"kept": KEPT, "dropped, with the letter of its reason": DROPPED}
     legend(drawn, [*(Patch(facecolor=look.colour, label=words) for words, look in bars.items()), *legend_lines(marks)])
-    parts = [
+    counts = [
         f"{condition}: {int(rows['kept'].sum())} of {len(rows)} strides kept, median duration "
         f"{rows['duration_s'].median():.2f} s"
         for condition, rows in groups
     ]
-    alt = f"Strides of {participant}. {listing(parts)}."
+    alt = f"Strides of {participant}. {listing(counts)}."
     return Figure(f"strides-{name}", _caption(participant, numbers), alt, numbers, drawn)
 
 
@@ -118,14 +118,14 @@ def _draw_durations(axes: Axes, strides: pd.DataFrame) -> None:
 
 
 def _caption(participant: str, numbers: pd.DataFrame) -> str:
-    parts = [
+    counts = [
         f"{counted(len(rows), 'stride')} ({condition}: {int(rows['kept'].sum())} kept, {int((~rows['kept']).sum())} "
         "dropped)"
         for condition, rows in numbers.groupby("condition", sort=False)
     ]
     return (
         f"{participant}: every stride of each walk, from initial contact to the next of the same foot, n = "
-        f"{' and '.join(parts)}; entire walks, not split. Light bars: kept; black, taller bars: dropped, with the "
+        f"{' and '.join(counts)}; entire walks, not split. Light bars: kept; black, taller bars: dropped, with the "
         "letter of its reason in the table below. Under each strip: duration of every stride [s] over time. Red "
         "triangles: left; blue discs: right; crosses: dropped."
     )

@@ -68,7 +68,7 @@ class StudyRun(Saved, file="run.json"):
         """Every finding of every walk and of pooled trials, one row each, the severest first."""
         import pandas as pd
 
-        units = [unit for each in self.units.values() for unit in each if hasattr(unit, "findings")]
+        units = [unit for group in self.units.values() for unit in group if hasattr(unit, "findings")]
         rows = [
             {
                 "participant": unit.subject,

@@ -197,10 +197,10 @@ def event_contacts(trial: Trial) -> dict[str, Contacts]:
     """
     contacts = [event for event in trial.events if event.label == CONTACT]
     if not any(event.side in ("r", "l") for event in contacts):
-        seen = f"{counted(len(contacts), 'contact')} of no side" if contacts else f"none in {len(trial.events)} events"
+        fault = f"{counted(len(contacts), 'contact')} of no side" if contacts else f"none in {len(trial.events)} events"
         raise StrideError(
             "events must name the foot of each initial contact",
-            f"{trial.name} has {seen}",
+            f"{trial.name} has {fault}",
             "Label the contacts in the motion capture software, or choose another detector in [strides].",
         )
     by_side = {}

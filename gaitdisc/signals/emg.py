@@ -289,7 +289,7 @@ def order_of_muscles(envelope: Recording, strides: Mapping[str, Strides]) -> lis
     A muscle alone is not tested: a foot that drops or a calf that is spastic has its own course. Two that each do what
     the other should are. Each is held against the steps of both feet, of which one swings while the other stands.
     """
-    seen: dict[tuple[str, str], _Muscle] = {}
+    muscles: dict[tuple[str, str], _Muscle] = {}
     for name in envelope.names:
         for kind, pattern in (("calf", _CALF), ("shin", _SHIN)):
             match = pattern.fullmatch(name)
@@ -297,14 +297,14 @@ def order_of_muscles(envelope: Recording, strides: Mapping[str, Strides]) -> lis
                 by_foot = {side: stance_over_swing(envelope, cut, name) for side, cut in strides.items()}
                 own_ratio, other_ratio = by_foot[match[2]], by_foot.get(other_side(match[2]), np.nan)
                 value = (own_ratio - other_ratio) / 2 if np.isfinite(other_ratio) else own_ratio
-                worst = seen.get((kind, match[2]))
+                worst = muscles.get((kind, match[2]))
                 if np.isfinite(value) and (worst is None or value > worst.by_both):
-                    seen[kind, match[2]] = _Muscle(name, value, own_ratio)
-    calf_swings = {side for (kind, side), muscle in seen.items() if kind == "calf" and muscle.by_both < -CLEAR}
-    shin_stands = {side for (kind, side), muscle in seen.items() if kind == "shin" and muscle.by_both > CLEAR}
-    pairs = [(seen["calf", side], seen["shin", side]) for side in sorted(calf_swings & shin_stands)]
+                    muscles[kind, match[2]] = _Muscle(name, value, own_ratio)
+    calf_swings = {side for (kind, side), muscle in muscles.items() if kind == "calf" and muscle.by_both < -CLEAR}
+    shin_stands = {side for (kind, side), muscle in muscles.items() if kind == "shin" and muscle.by_both > CLEAR}
+    pairs = [(muscles["calf", side], muscles["shin", side]) for side in sorted(calf_swings & shin_stands)]
     if calf_swings == {"l", "r"} and not shin_stands:
-        pairs.append((seen["calf", "l"], seen["calf", "r"]))
+        pairs.append((muscles["calf", "l"], muscles["calf", "r"]))
     findings = []
     for first, second in pairs:
         what = f"{first.name} and {second.name} seem to be exchanged, or the muscles of both legs"

@@ -44,7 +44,7 @@ def r2(measured: ArrayLike, predicted: ArrayLike) -> NDArray[np.float64]:
     """
     measured, predicted = (
         values[:, None] if values.ndim == 1 else values
-        for values in (np.asarray(each, float) for each in (measured, predicted))
+        for values in (np.asarray(array, float) for array in (measured, predicted))
     )
     meaningless = np.array([bool(reason) for reason in why_no_r2(measured, predicted)])
     y, f = (np.where(meaningless, 0.0, values) for values in (measured, predicted))
