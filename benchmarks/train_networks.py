@@ -109,7 +109,7 @@ def _counted(work: list[float]) -> Callable:
 
     def descend(network, part, check, *rest):
         done = plain(network, part, check, *rest)
-        work.append(len(done.losses) * (len(part[0]) * FORWARD_BACKWARD + len(check[0]) * FORWARD))
+        work.append(len(done) * (len(part[0]) * FORWARD_BACKWARD + len(check[0]) * FORWARD))
         return done
 
     return descend

@@ -243,8 +243,6 @@ class FusedSteps:
     is dispatched between two matrix products, and what lies between them is one pass over memory.
     """
 
-    arithmetic = "fused"
-
     def __init__(self, network: FeedForward, part: ScaledSamples, check: ScaledSamples, schedule: Schedule) -> None:
         self._network, self._schedule = network, schedule
         self._part, self._check = (tuple(t.contiguous().numpy() for t in pair) for pair in (part, check))

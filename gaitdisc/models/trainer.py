@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import copy
 import math
-import time
 from collections.abc import Callable
 from dataclasses import dataclass, replace
 from functools import partial
@@ -32,16 +31,9 @@ class Training:
 
     network: TrainedNetwork
     decay: float  # weight decay that did best on the inner block
-    penalty: float  # readout penalty that did best there; 0 where nothing is solved
-    epochs: int  # of the descent with that decay
-    best_epoch: int  # the one whose weights were kept
-    # mean squared error of the scaled outputs on the inner block after every one of these epochs
-    losses: tuple[float, ...]
+    losses: tuple[float, ...]  # of the descent with that decay, as `descend` gives them for the inner block
     n_training: int  # samples of the whole training part
     n_inner: int  # samples of its inner block
-    seconds: float  # Wall-clock time of everything, all candidates included [s]
-    # what computed the descent: `fused`, the compiled code for the dissertation's network on the CPU, or `torch`
-    arithmetic: str
 
 
 def train(
@@ -68,7 +60,6 @@ def train(
     build: makes a torch module with `features` and a linear `readout`, of the numbers of inputs and outputs
     check: what stops and chooses in place of the last `inner_share`: another stretch of time, or another person
     """
-    begun = time.perf_counter()
     settings, progress = settings or TrainingSettings(), progress or (lambda _: None)
     samples.trainable(LEAST_SAMPLES, settings.missing_inputs)
     before, inner = samples.last_block(settings.inner_share, SEAM_S) if check is None else (samples, check)
@@ -81,18 +72,8 @@ def train(
         if settings.solved:
             solve_readout(best.network, whole, best.penalty)
     progress(1.0)
-    return Training(
-        network=TrainedNetwork(samples.inputs, samples.outputs, x_scale, y_scale, best.network.cpu()),
-        decay=best.decay,
-        penalty=best.penalty,
-        epochs=len(best.descent.losses),
-        best_epoch=best.descent.best_epoch,
-        losses=best.descent.losses,
-        n_training=len(samples),
-        n_inner=len(inner),
-        seconds=time.perf_counter() - begun,
-        arithmetic=best.descent.arithmetic,
-    )
+    network = TrainedNetwork(samples.inputs, samples.outputs, x_scale, y_scale, best.network.cpu())
+    return Training(network, best.decay, best.losses, len(samples), len(inner))
 
 
 def resolve(model: TrainedNetwork, samples: Samples) -> TrainedNetwork:
@@ -109,7 +90,7 @@ def resolve(model: TrainedNetwork, samples: Samples) -> TrainedNetwork:
 @dataclass(frozen=True, eq=False)
 class _Candidate:
     network: nn.Module
-    descent: Descent
+    losses: tuple[float, ...]
     decay: float
     penalty: float
     loss: float
@@ -131,9 +112,9 @@ def _best_candidate(
     for number, decay in enumerate(settings.decays):
         shared = partial(lambda number, fraction: progress((number + fraction) / count), number)
         steps = schedule if number == 0 else schedule.continue_at(decay)
-        descent = descend(network, part, check, steps, settings, shared)
-        scored = choose_penalty(network, part, check) if settings.solved else (0.0, min(descent.losses))
-        candidate = _Candidate(network, descent, decay, *scored)
+        losses = descend(network, part, check, steps, settings, shared)
+        scored = choose_penalty(network, part, check) if settings.solved else (0.0, min(losses))
+        candidate = _Candidate(network, losses, decay, *scored)
         if best is not None and candidate.loss >= best.loss:
             break
         best, network = candidate, copy.deepcopy(network)
@@ -223,8 +204,6 @@ class TorchSteps:
         trained.
     """
 
-    arithmetic = "torch"
-
     def __init__(
         self,
         network: nn.Module,
@@ -270,15 +249,6 @@ class TorchSteps:
         self._network.load_state_dict(weights)
 
 
-@dataclass(frozen=True)
-class Descent:
-    """How the loss on the check part went, epoch by epoch."""
-
-    losses: tuple[float, ...]  # mean squared error of the scaled outputs on the check part, after every epoch
-    best_epoch: int  # epoch, from 1, whose weights the network has now
-    arithmetic: str
-
-
 def descend(
     network: nn.Module,
     part: ScaledSamples,
@@ -286,8 +256,11 @@ def descend(
     schedule: Schedule,
     settings: TrainingSettings,
     progress: Callable[[float], None] = lambda _: None,
-) -> Descent:
-    """Train a network on a part and give it back the weights that did best on the check part."""
+) -> tuple[float, ...]:
+    """Train a network on a part and give it back the weights that did best on the check part.
+
+    returns: mean squared error of the scaled outputs on the check part, after every epoch
+    """
     steps: TorchSteps | FusedSteps | None = None
     if settings.arithmetic == "auto" and settings.precision == "float32":
         from gaitdisc.models.fused_steps import FusedSteps, can_be_fused
@@ -315,4 +288,4 @@ def descend(
             break
     steps.restore(best)
     network.eval()
-    return Descent(tuple(losses), losses.index(min(losses)) + 1, steps.arithmetic)
+    return tuple(losses)

@@ -56,7 +56,6 @@ def test_the_scale_never_sees_the_inner_block(swing, quick):
 
 def test_the_last_layer_stays_as_it_was_descended_where_that_is_wanted(swing, quick):
     done = train(swing, FeedForward, replace(quick, solved=False))
-    assert done.penalty == 0.0
     assert not same_weights(done, train(swing, FeedForward, quick))
 
 
@@ -65,11 +64,9 @@ def test_numbers_of_the_training_are_told(swing, quick):
     done = train(swing, FeedForward, replace(quick, decays=(0.1, 30.0)), told.append)
     assert (done.n_training, done.n_inner) == (2000, 300)
     assert len(done.losses) == 250  # 4 batches of 500: 1,000 steps
-    assert done.losses[done.best_epoch - 1] == min(done.losses)
     assert told == sorted(told)
     assert told[-1] == 1.0
     assert done.decay == 0.1
-    assert done.seconds > 0
 
 
 def test_decays_are_tried_each_from_the_one_before_until_the_inner_block_does_worse(swing, quick, monkeypatch):
@@ -78,7 +75,7 @@ def test_decays_are_tried_each_from_the_one_before_until_the_inner_block_does_wo
     def descend_and_tell(network, part, check, schedule, *rest):
         tried.append(schedule.decay)
         done = descend(network, part, check, schedule, *rest)
-        first_losses.append(done.losses[0])
+        first_losses.append(done[0])
         return done
 
     monkeypatch.setattr(trainer, "descend", descend_and_tell)
@@ -98,7 +95,7 @@ def test_compiled_code_and_torch_give_one_r2(swing):
     noisy = swing.with_outputs(swing.y + 0.3 * swing.y.std(axis=0) * rng.normal(size=swing.y.shape))
     part, later = noisy.rows(slice(0, 1500)), swing.rows(slice(1500, None))
     done = {name: train(part, FeedForward, TrainingSettings(arithmetic=name)) for name in ("auto", "torch")}
-    assert (done["auto"].arithmetic, done["torch"].arithmetic) == ("fused", "torch")
+    assert done["auto"].losses != done["torch"].losses  # rounding shows that two codes were at work
     found, wanted = (r2(later.y, done[name].network(later.x)) for name in ("auto", "torch"))
     assert np.all(wanted > 0.9)
     np.testing.assert_allclose(found, wanted, atol=0.005)
@@ -157,11 +154,11 @@ def test_the_weights_that_did_best_are_restored_when_the_descent_goes_astray(swi
     torch.manual_seed(0)
     network = ShallowDecoder(3, 2)
     settings = TrainingSettings(epochs=60, batch=20, decays=(0.0,))
-    done = descend(network, tensors[0], tensors[1], make_schedule(100, 0.0, settings), settings)
+    losses = descend(network, tensors[0], tensors[1], make_schedule(100, 0.0, settings), settings)
     with torch.no_grad():
         restored = float(torch.nn.functional.mse_loss(network(tensors[1].x), tensors[1].y))
-    assert done.losses[-1] > 1.2 * min(done.losses)  # noise is learnt by heart after the best epoch
-    assert restored == pytest.approx(min(done.losses), rel=1e-6)
+    assert losses[-1] > 1.2 * min(losses)  # noise is learnt by heart after the best epoch
+    assert restored == pytest.approx(min(losses), rel=1e-6)
 
 
 def features_and_noise(count=300, noise=0.0, seed=0):
