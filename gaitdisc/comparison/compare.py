@@ -22,7 +22,6 @@ from gaitdisc.statistics.cluster_test import (
     USUAL,
     Cluster,
     ClusterTest,
-    PermutationPlan,
     one_sample_test,
     two_sample_test,
 )
@@ -71,7 +70,6 @@ def compare_walks(
     first: WalkSummary,
     second: WalkSummary,
     wanted: Sequence[str] = (),
-    plan: PermutationPlan = USUAL,
     smallest: Smallest = CLINICAL,
 ) -> Mismatch:
     """Mismatch of two walks, second minus first; strides, or blocks of them, are the units of exchange.
@@ -108,24 +106,23 @@ def compare_walks(
     worth, blocks = block_worth(correlation, length), block_means(reference, length)
     if as_curve:
         mean, count = tested.mean(axis=0), 1
-        test = one_sample_test(blocks - mean, plan, worth)
+        test = one_sample_test(blocks - mean, worth=worth)
     else:
         tested_blocks = block_means(tested, length)
         mean, count = tested_blocks.mean(axis=0), len(tested_blocks)
-        test = two_sample_test(tested_blocks, blocks, plan, worth)
+        test = two_sample_test(tested_blocks, blocks, worth=worth)
     unit = "stride" if length == 1 else f"block of {length} strides"
     before = _Side(names[0], mean, _sd(tested), count, len(tested))
     after = _Side(names[1], blocks.mean(axis=0), _sd(reference), len(blocks), len(reference))
     limits = _limits(common.channels, reference.mean(axis=0), smallest)
     compared = _Compared(before, after, unit, test, after.mean - before.mean, alignment=alignment, limits=limits)
-    return _mismatch(common, compared, (first, second), plan, smallest)
+    return _mismatch(common, compared, (first, second), smallest)
 
 
 def compare_people(
     first: Sequence[WalkSummary],
     second: Sequence[WalkSummary],
     wanted: Sequence[str] = (),
-    plan: PermutationPlan = USUAL,
     smallest: Smallest = CLINICAL,
 ) -> Mismatch:
     """Mismatch of two conditions over people, paired: each person's mean difference is one unit.
@@ -148,7 +145,7 @@ def compare_people(
     if alignment.applied:
         curves[0] = align(curves[0], alignment.percent)
     means = [np.array([strides.mean(axis=0) for strides in part]) for part in curves]
-    test = one_sample_test(means[1] - means[0], plan)
+    test = one_sample_test(means[1] - means[0])
     before, after = (
         _Side(
             name=walk.condition,
@@ -161,7 +158,7 @@ def compare_people(
     )
     gap, limits = (means[1] - means[0]).mean(axis=0), _limits(common.channels, after.mean, smallest)
     compared = _Compared(before, after, "participant", test, gap, alignment=alignment, limits=limits)
-    return _mismatch(common, compared, walks, plan, smallest)
+    return _mismatch(common, compared, walks, smallest)
 
 
 def best_shift(first: Values, second: Values) -> tuple[float, float]:
@@ -182,9 +179,7 @@ def _limits(channels: Sequence[Channel], curves: Values, smallest: Smallest) -> 
     return np.array([smallest.of(c.unit, float(reach)) for c, reach in zip(channels, reaches, strict=True)])
 
 
-def _mismatch(
-    common: CommonCurves, compared: _Compared, walks: Sequence[WalkSummary], plan: PermutationPlan, smallest: Smallest
-) -> Mismatch:
+def _mismatch(common: CommonCurves, compared: _Compared, walks: Sequence[WalkSummary], smallest: Smallest) -> Mismatch:
     """Mismatch with the findings about what was compared, each once, the severest first."""
     about = {channel.name for channel in common.channels} | {""}
     findings = (*(finding for walk in walks for finding in walk.findings), *common.findings)
@@ -232,7 +227,7 @@ def _mismatch(
         summary=_summary(common.channels, compared),
         exchange=exchange,
         findings=tuple(sorted(reported, key=lambda finding: finding.rank)),
-        provenance=provenance_now(asdict(plan) | limits, plan.seed, files, SECTION),
+        provenance=provenance_now(asdict(USUAL) | limits, USUAL.seed, files, SECTION),
         alignment=compared.alignment,
     )
 

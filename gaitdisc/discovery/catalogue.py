@@ -12,10 +12,11 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from gaitdisc.discovery.result import ALPHA
-from gaitdisc.errors import SchemaError, SimulationError
+from gaitdisc.errors import ReadError, SchemaError, SimulationError
+from gaitdisc.regular_file import check_regular
 from gaitdisc.simulation.expression import names as names_in
 from gaitdisc.simulation.expression import parse
-from gaitdisc.toml_text import parse_toml, read_toml
+from gaitdisc.toml_text import parse_toml
 
 if TYPE_CHECKING:
     from gaitdisc.discovery.candidate import Candidate
@@ -27,6 +28,7 @@ ROLES = ("x", "v", "y", "a", "b", "u")
 SIGNALS = ("t", "phase")
 GRIDS = ("quantiles of x", "half widths of x", "delays", "frequencies", "phases", "phase widths")
 NEEDS = ("", "angle")
+LARGEST_CATALOGUE_BYTES = 2**20
 _NAME = re.compile(r"[a-z_][a-z0-9_]*")
 _WITHOUT_SIGN = re.compile(r"[a-z0-9_.]+(e[+-]\d+)?")  # a name or a number, which needs no brackets
 _ENTRIES = ("name", "pieces", "states", "constants", "needs", "names", "means")
@@ -150,7 +152,15 @@ def read_catalogue(path: Path | str) -> tuple[Shape, ...]:
     ('x',)
     """
     path = Path(path)
-    _, content = read_toml(path, "a catalogue must be a TOML file of [[shape]] entries", "Correct the file.")
+    try:
+        check_regular(path, LARGEST_CATALOGUE_BYTES)
+        content = parse_toml(path.read_text(encoding="utf-8"))
+    except ReadError:
+        raise
+    except (OSError, ValueError) as error:
+        raise SchemaError(
+            "a catalogue must be a TOML file of [[shape]] entries", f"{path.name}: {error}", "Correct the file."
+        ) from error
     return _shapes(content, path.name)
 
 

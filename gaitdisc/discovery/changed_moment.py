@@ -142,7 +142,6 @@ def shifts_of_usual() -> list[Values]:
 class _Both:
     """Both walks as normal equations of strides."""
 
-    form: Form
     nominal: Sums
     device: Walk
     learned: Values  # (device stride,) 1 where learned from
@@ -154,7 +153,7 @@ class _Both:
         """Sum up the strides of the Nominal walk."""
         own = sum_pieces(form.columns(nominal.driven), nominal.moment, nominal.stride, int(nominal.stride.max()) + 1)
         count = int(device.stride.max()) + 1
-        return cls(form, own, device, (np.arange(count) < LEARNED * count).astype(float), form)
+        return cls(own, device, (np.arange(count) < LEARNED * count).astype(float), form)
 
     def sums(self, change: Change, value: float) -> tuple[Sums, Sums]:
         """Of both walks with a change, which the Nominal walk has not."""

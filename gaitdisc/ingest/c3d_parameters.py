@@ -307,7 +307,7 @@ def find_body_measures(parameters: C3DParameters) -> BodyMeasures:
     for name, keys in OF_A_SIDE.items():
         lengths = {side: _length(parameters, name, [f"{side.upper()}{key}" for key in keys]) for side in "lr"}
         sided[name] = {side: length for side, length in lengths.items() if length is not None}
-    return BodyMeasures(body_mass(parameters), **whole, **sided, source=parameters.file)
+    return BodyMeasures(body_mass(parameters), **whole, **sided)
 
 
 def _length(parameters: C3DParameters, name: str, keys: Sequence[str]) -> float | None:

@@ -6,6 +6,7 @@ Those that come along and a laboratory's own are TOML files; a trial's set is gi
 from __future__ import annotations
 
 import re
+import tomllib
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cache
@@ -13,9 +14,10 @@ from pathlib import Path
 from typing import Any
 
 from gaitdisc.channel import fold_label, hint_nearest, list_names, schema_folder
-from gaitdisc.errors import ChannelError, SchemaError
+from gaitdisc.errors import ChannelError, ReadError, SchemaError
 from gaitdisc.kinematics.pose import FEWEST_POINTS, PARTS, SEGMENTS
-from gaitdisc.toml_text import read_toml
+from gaitdisc.regular_file import check_regular
+from gaitdisc.toml_text import parse_toml
 
 SIDED = (
     "asis",
@@ -34,6 +36,7 @@ METHODS = {"hip": ("harrington", "davis"), "knee": ("midpoint", "chord"), "ankle
 AXES = {"shank": ("ankle", "knee"), "foot": ("flat", "as placed")}
 JOINTS = ("free", "held", "planar")
 PLACEHOLDER = re.compile(r"\{(S|s|side)\}")
+LARGEST_BYTES = 2**20
 TABLES = {  # of the file: what each of its keys holds
     "aliases": "list of names",
     "landmarks": "text",
@@ -214,7 +217,16 @@ def read_marker_sets() -> dict[str, MarkerSet]:
 
 def read_marker_set(path: Path) -> MarkerSet:
     """Marker set of a TOML file: `[landmarks]`, `[joint_centres]`, `[tracked]`; `[aliases]`, `[axes]`, `joints`."""
-    _, table = read_toml(path, "a marker set must be a TOML file", EXAMPLE)
+    try:
+        check_regular(path, LARGEST_BYTES)
+        text = path.read_text(encoding="utf-8")
+    except (OSError, UnicodeDecodeError) as error:
+        reason = "it is not UTF-8 text" if isinstance(error, UnicodeDecodeError) else error.strerror
+        raise ReadError("a marker set must be a file", f"{path.name}: {reason}", "Check the path.") from error
+    try:
+        table = parse_toml(text)
+    except tomllib.TOMLDecodeError as error:
+        raise SchemaError("a marker set must be a TOML file", f"{path.name}: {error}", EXAMPLE) from error
     return _check_text(table, path)
 
 

@@ -66,7 +66,6 @@ class BodyMeasures:
     leg_length_m: Mapping[str, float] = field(default_factory=dict)
     knee_width_m: Mapping[str, float] = field(default_factory=dict)
     ankle_width_m: Mapping[str, float] = field(default_factory=dict)
-    source: str = "given"  # where they are from: a file's name, or `given`
 
     @property
     def leg_m(self) -> float | None:

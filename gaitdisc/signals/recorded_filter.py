@@ -47,7 +47,6 @@ class RecordedFilter:
     """A filter that was found in a record: a Butterworth low-pass of order 2, forwards and back."""
 
     cutoff_hz: float
-    gained: float  # log likelihood with it less that without it
     likelihood: float  # log likelihood with it, of the same lines whatever the signal is taken to be like
     # power of the signal over that of the noise at the cut-off: where it is far above 1, the number is rough
     signal: float
@@ -95,7 +94,7 @@ def find_filter(
     falls_far = bool(near.size) and np.median(near) > FALLEN * np.median(above.power[-12:])
     if gained < enough or cutoff > HIGHEST or not falls_far or steeper:
         return None
-    return RecordedFilter(cutoff * rate_hz, gained, likelihood, best[2])
+    return RecordedFilter(cutoff * rate_hz, likelihood, best[2])
 
 
 def mean_spectrum(trials: Sequence[Values]) -> Spectrum | None:

@@ -9,13 +9,14 @@ from pathlib import Path
 from typing import Any
 
 from gaitdisc.channel import nearest_word
-from gaitdisc.errors import ReadError, SchemaError, SimulationError
+from gaitdisc.errors import MissingFileError, ReadError, SchemaError, SimulationError
+from gaitdisc.regular_file import check_regular
 from gaitdisc.simulation.evaluating import refuse_delays
 from gaitdisc.simulation.parts import Input, Parameter, Port, Sensor, State, Term
 from gaitdisc.simulation.python_simulation import any_equations
 from gaitdisc.simulation.simulation import Simulation
 from gaitdisc.simulation.unit_check import refuse_units
-from gaitdisc.toml_text import parse_toml, read_text
+from gaitdisc.toml_text import parse_toml
 
 LARGEST = 256 * 1024  # bytes
 MODELS = (".xml", ".mjcf", ".osim")  # endings of what an engine reads
@@ -64,13 +65,25 @@ def read_simulation(path: Path | str) -> Simulation:
     (('x', '-x'),)
     """
     path = Path(path)
-    text = read_text(path, "a simulation must be a TOML file")
-    if len(text) > LARGEST:
+    try:
+        size = check_regular(path)
+        if size > LARGEST:
+            raise ReadError(
+                f"a simulation file may have at most {LARGEST // 1024} KiB",
+                f"{path.name} has {size / 1024:.0f} KiB",
+                "Write a model of this size as a PythonSimulation.",
+            )
+        text = path.read_bytes().decode("utf-8-sig")
+    except OSError as error:
+        kind = MissingFileError if isinstance(error, FileNotFoundError) else ReadError
+        found = f"{path.name}: {error.strerror or error}"
+        raise kind("a simulation must be a TOML file", found, "Check the path.") from error
+    except UnicodeDecodeError as error:
         raise ReadError(
-            f"a simulation file may have at most {LARGEST // 1024} KiB",
-            f"{path.name} has {len(text) / 1024:.0f} KiB",
-            "Write a model of this size as a PythonSimulation.",
-        )
+            "a simulation file must be UTF-8 text",
+            f"{path.name} has an invalid byte at offset {error.start}",
+            "Save it as UTF-8.",
+        ) from error
     return parse_simulation(text, path.name, path)
 
 

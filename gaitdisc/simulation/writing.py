@@ -11,13 +11,13 @@ from typing import Any
 import tomlkit
 from tomlkit.exceptions import TOMLKitError
 
-from gaitdisc.errors import GaitdiscError, SchemaError, SimulationError
+from gaitdisc.errors import GaitdiscError, ReadError, SchemaError, SimulationError
 from gaitdisc.own_files import guard
 from gaitdisc.simulation.parts import Sensor
 from gaitdisc.simulation.python_simulation import PythonSimulation
 from gaitdisc.simulation.simulation import Simulation
 from gaitdisc.simulation.simulation_file import SENSOR, TABLES, parse_simulation
-from gaitdisc.toml_text import quote, read_toml
+from gaitdisc.toml_text import parse_toml, quote
 from gaitdisc.whole_file import write_whole
 
 _REPLACED = "replaced_"  # begins the name of the definition that an input of a Python object is replaced by
@@ -90,7 +90,11 @@ def simulation_text(simulation: Simulation) -> str:
 def read_into(model: PythonSimulation, path: Path | str) -> PythonSimulation:
     """Give a Python object what was written of it: effects, numbers, starts, observations, inputs."""
     path = Path(path)
-    text, table = read_toml(path, "a model must be a TOML file", "Read the file that was written from this model.")
+    try:
+        text = path.read_text(encoding="utf-8")
+        table = parse_toml(text)
+    except (OSError, ValueError) as error:
+        raise ReadError("a model must be a TOML file", f"{path.name}: {error}", "Check the path.") from error
     for section in ("states", "inputs", "ports"):
         own, its = [part.name for part in getattr(model, section)], list(table.get(section, {}))
         if own != its:

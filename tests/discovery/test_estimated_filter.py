@@ -98,7 +98,7 @@ def test_a_filtered_record_of_a_stop_gives_the_strength_of_the_raw_one():
 
 def test_a_cut_off_that_the_signal_hides_is_that_of_the_surer_channels_of_the_same_unit():
     found = {
-        number: RecordedFilter(cutoff, 200.0, 0.0, signal)
+        number: RecordedFilter(cutoff, 0.0, signal)
         for number, (cutoff, signal) in enumerate([(5.0, 0.1), (7.2, 0.9), (3.9, 6.0), (20.0, 6.0)])
     }
     cutoffs = _as_the_surer(found, ["deg", "deg", "deg", "N"])
@@ -111,7 +111,7 @@ def test_what_a_spectrum_does_not_show_alone_is_sought_at_the_cut_off_of_channel
 ):
     def find_filter(trials, rate_hz, like=None, at_hz=None):
         first = np.array_equal(trials[0], filtered.observed[0, :, 0])
-        return RecordedFilter(3.1, 200.0, 0.0, 0.0) if first or at_hz else None
+        return RecordedFilter(3.1, 0.0, 0.0) if first or at_hz else None
 
     monkeypatch.setattr(estimated_filter, "find_filter", find_filter)
     observations = (("x", "x"), ("again", "2*x"))

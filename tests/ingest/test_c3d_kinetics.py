@@ -159,4 +159,3 @@ def test_a_real_file(gait_data):
     assert dict(found.ankle_width_m) == {"l": 0.064, "r": 0.065}
     assert dict(found.leg_length_m) == {"l": 0.805, "r": 0.8}
     assert found.mass_kg == pytest.approx(60.3)
-    assert found.source == "HC032A01.c3d"
