@@ -150,7 +150,7 @@ def outside_text(effect: FoundEffect, found: Estimate) -> str:
     if not effect.bounds or effect.bounds[0] <= found.value <= effect.bounds[1]:
         return ""
     unit, factor = display_unit(found.unit)
-    low, high = (f"{factor * one:.6g}" for one in effect.bounds)
+    low, high = (f"{factor * bound:.6g}" for bound in effect.bounds)
     if not (math.isfinite(effect.bounds[0]) and math.isfinite(effect.bounds[1])):
         above = found.value > effect.bounds[1]
         return f"{'above' if above else 'below'} its bound, {with_unit(high if above else low, unit)}"

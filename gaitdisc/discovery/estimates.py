@@ -68,7 +68,7 @@ def wrong_starts(simulation: Simulation, as_read: ScoredModel) -> dict[str, Esti
     fit, segments = as_read.fit, as_read.shooting.segments
     first = np.flatnonzero(segments.begin == 0)
     slopes = fit.slopes[first][..., : fit.starts.shape[1]]
-    variance = np.stack([np.diag(np.linalg.pinv(one.T @ one)) for one in slopes])
+    variance = np.stack([np.diag(np.linalg.pinv(slope.T @ slope)) for slope in slopes])
     weight = 1 / np.maximum(variance, 1e-300)
     mean = (weight * fit.starts[first]).sum(axis=0) / weight.sum(axis=0)
     unlike = (weight * (fit.starts[first] - mean) ** 2).sum(axis=0) / max(len(first) - 1, 1)

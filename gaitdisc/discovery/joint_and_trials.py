@@ -230,7 +230,7 @@ def nominal_and_trials(
     if refusals:
         raise SchemaError(
             f"both walks of {participant} are required",
-            "; ".join(f"{one.condition}: {one.reason}" for one in refusals),
+            "; ".join(f"{refusal.condition}: {refusal.reason}" for refusal in refusals),
             "Correct the walk, or choose another participant.",
         )
     nominal, device = (walks[word] for word in study.conditions.both)

@@ -99,7 +99,7 @@ def is_speed(simulation: Simulation, kind: str, name: str, state: str) -> bool:
     inertias = [parameter.name for parameter in simulation.parameters if INERTIAS.fullmatch(parameter.unit or "")]
     equation = dict(simulation.equations).get(state, "")
     forces = [port.name for port in simulation.ports if FORCES.fullmatch(port.unit or "")]
-    return kind == "port" and name in forces and any(re.search(rf"/ *\(?{one}\b", equation) for one in inertias)
+    return kind == "port" and name in forces and any(re.search(rf"/ *\(?{inertia}\b", equation) for inertia in inertias)
 
 
 def _place(simulation: Simulation, kind: str, name: str, driven: str, rate_of: dict[str, str]) -> Place:

@@ -169,13 +169,13 @@ class JointFinding:
         starts = cells(dict(candidate.constants or {}), joint.along, rhythm)
         if late:
             starts = [{"value": float(one)} for one in np.linspace(-LATEST_S, LATEST_S, DELAYS)]
-        scores = [fit(one)[0] for one in starts]
+        scores = [fit(start)[0] for start in starts]
         best = starts[int(np.argmin(scores))]
         if not np.isfinite(min(scores)):
             return None
         if best and refined:
             names = list(best)
-            grids = [np.unique([one[name] for one in starts]) for name in names]
+            grids = [np.unique([start[name] for start in starts]) for name in names]
             steps = [np.median(np.diff(each)) if len(each) > 1 else 0.1 * abs(each[0]) for each in grids]
             width = np.maximum(steps, FLAT)
             at = np.array([best[name] for name in names])

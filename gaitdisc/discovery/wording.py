@@ -71,7 +71,7 @@ def _say(discovery: Discovery, base: Simulation, parts: tuple[Part, ...]) -> str
         other = "one trial cannot show whether a" if discovery.held_out.of.endswith("quarter") else "no"
         return f"Process noise of {push} (standard deviation) acts {where}; {other} deterministic effect is missing."
     if discovery.verdict == "wrong_initial_condition":
-        starts = " and ".join(f"{one.place} at {estimate_text(one.estimates['initial'])}" for one in effects)
+        starts = " and ".join(f"{effect.place} at {estimate_text(effect.estimates['initial'])}" for effect in effects)
         return f"Only the initial condition is wrong: trials begin with {starts}; the dynamics agree within the noise."
     if discovery.verdict == "unnamed":
         return f"{_say_unnamed(effects[0], base, discovery.where)}."
@@ -218,7 +218,7 @@ def _stride(effect: FoundEffect, where: tuple[Whereabouts, ...]) -> str:
 
 
 def _say_unnamed(effect: FoundEffect, base: Simulation, where: tuple[Whereabouts, ...]) -> str:
-    seen = [one for one in base.signals if re.search(rf"\b{re.escape(one)}\b", effect.term)]
+    seen = [signal for signal in base.signals if re.search(rf"\b{re.escape(signal)}\b", effect.term)]
     over = f", a function of {' and '.join(seen)}," if seen else ""
     stride = _stride(effect, where)
     acts = f" ({stride})" if stride else ""
@@ -267,11 +267,11 @@ def _say_gap(discovery: Discovery) -> str:
 def _say_moved(discovery: Discovery) -> str:
     """Name the numbers that clearly moved within their bounds."""
     said = []
-    for one in discovery.corrections:
-        if not one.found.low <= one.given <= one.found.high:
-            unit, factor = display_unit(one.found.unit)
-            given = with_unit(f"{factor * one.given:.6g}", unit)
-            said.append(f"{one.parameter} from {given} to {brief_text(one.found)}")
+    for correction in discovery.corrections:
+        if not correction.found.low <= correction.given <= correction.found.high:
+            unit, factor = display_unit(correction.found.unit)
+            given = with_unit(f"{factor * correction.given:.6g}", unit)
+            said.append(f"{correction.parameter} from {given} to {brief_text(correction.found)}")
     return f"Parameters that changed within their bounds: {', '.join(said)}." if said else ""
 
 
