@@ -123,7 +123,7 @@ def _doubt_number(form: Form, nominal: Walk, device: Walk, change: Change, about
         [_Both.of(replace(form, fastest=pace * form.fastest), nominal, device) for pace in SPEEDS],
         [_Both.of(replace(form, lag_s=more * form.lag_s), nominal, device) for more in LAGS],
         [replace(both, respect=more * both.respect) for more in RESPECTS],
-        [replace(both, own=replace(form, usual=form.usual + shift)) for shift in shifts_of_usual()],
+        [replace(both, device_form=replace(form, usual=form.usual + shift)) for shift in shifts_of_usual()],
     ]
     moved = [[_draw_anew(variant, change, about, 0)[1] - number for variant in kind] for kind in alternatives]
     return float(np.linalg.norm([np.sqrt(np.mean(np.square(shifts))) for shifts in moved]))
@@ -146,7 +146,7 @@ class _Both:
     nominal: Sums
     device: Walk
     learned: Values  # (device stride,) 1 where learned from
-    own: Form  # of the device walk, whose usual stride may be another one
+    device_form: Form  # of the device walk, whose usual stride may be another one
     respect: float = GAIN_RIDGE
 
     @classmethod
@@ -160,13 +160,13 @@ class _Both:
         """Of both walks with a change, which the Nominal walk has not."""
         driven = self.device.driven
         more = change.columns(driven, value)
-        columns = np.hstack([self.own.columns(change.driven(driven, value)), more])
+        columns = np.hstack([self.device_form.columns(change.driven(driven, value)), more])
         mine = sum_pieces(columns, self.device.moment, self.device.stride, len(self.learned))
         wide = more.shape[1]
         squares = np.pad(self.nominal.squares, ((0, 0), (0, wide), (0, wide)))
         return Sums(squares, np.pad(self.nominal.match, ((0, 0), (0, wide))), self.nominal.power), mine
 
-    def found(self, sums: Sequence[Sums], weights: Sequence[Values]) -> tuple[Values, float]:
+    def solve(self, sums: Sequence[Sums], weights: Sequence[Values]) -> tuple[Values, float]:
         """Coefficients and what they leave, strides so many times."""
         coefficients = solved(together(sums, weights), len(self.device.driven.signs), self.respect)
         misfit = sum(float(weight @ walk.left(coefficients)) for walk, weight in zip(sums, weights, strict=True))
@@ -179,12 +179,12 @@ class _Both:
 
     def misfit(self, change: Change, value: float) -> float:
         """What is left of the strides that are learned from [(N m)2]."""
-        return self.found(self.sums(change, value), self.once)[1]
+        return self.solve(self.sums(change, value), self.once)[1]
 
     def held_out(self, change: Change, value: float) -> float:
         """What is left of the device strides that are not [(N m)2]."""
         sums = self.sums(change, value)
-        return float((1 - self.learned) @ sums[1].left(self.found(sums, self.once)[0]))
+        return float((1 - self.learned) @ sums[1].left(self.solve(sums, self.once)[0]))
 
 
 def _draw_anew(both: _Both, change: Change, about: float, draws: int) -> tuple[Values, float, list[float]]:
@@ -195,7 +195,7 @@ def _draw_anew(both: _Both, change: Change, about: float, draws: int) -> tuple[V
     linear = change.columns(both.device.driven, about).shape[1] > 0
 
     def best(weights: Sequence[Values]) -> tuple[Values, float]:
-        tried = [both.found(value_sums, weights) for value_sums in sums]
+        tried = [both.solve(value_sums, weights) for value_sums in sums]
         at = int(np.argmin([misfit for _, misfit in tried]))
         return tried[at][0], float(tried[at][0][-1]) if linear else float(values[at])
 
