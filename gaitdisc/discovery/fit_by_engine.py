@@ -221,7 +221,7 @@ def at_other_cutoffs(
         return None
     seen = data.observed[at.trial[:, None], at.first[:, None] + np.arange(at.length)]
     model, near = Driven(engine, fit.mapping, data.drive.inputs, progress=fit.progress), dict(enumerate(runs.starts))
-    simulated = seen - residual_by(model, data, replace(at, margin=0), fit.states, near)
+    simulated = seen - (residual_by(model, data, replace(at, margin=0), fit.states, near) if at.margin else runs.before)
     again, noted = find_record_filter(fit.mapping, clean, period, like=simulated)
     if again.margin and not fit.low_pass.margin:  # none was seen before, so that runs left no room at their ends
         fit = replace(fit, low_pass=again)
