@@ -45,9 +45,9 @@ class Beam:
     as_read: CrossValidated  # the simulation as read, on these runs
     known: dict[Explanations, CrossValidated] = field(default_factory=dict)  # every set that was fitted so far
 
-    def cost(self, now: CrossValidated) -> float:
+    def cost(self, model: CrossValidated) -> float:
         """Return what is left of the gap plus the penalty of what closes the rest, in shares of the gap as read."""
-        return now.gap / self.as_read.gap + now.penalty
+        return model.gap / self.as_read.gap + model.penalty
 
     @property
     def best(self) -> CrossValidated:
@@ -64,11 +64,11 @@ class Beam:
     def select_forward(self, begin: CrossValidated) -> CrossValidated:
         """Return the best set found by adding explanations to one, or to a far-off number, and exchanging them."""
         self.known.setdefault(self.as_read.explanations, self.as_read)
-        far = self.fit(one.parts for one in self.search.far_off(self.as_read))
+        far = self.fit(model.parts for model in self.search.far_off(self.as_read))
         self.known[begin.explanations] = begin
         if begin is not self.as_read:
-            for one in far:
-                self._extend([one])
+            for model in far:
+                self._extend([model])
         most = min(MOST, max(1, len(begin.errors) // 3))
         beam = [begin]
         for _ in range(len(begin.explanations), most):
@@ -92,80 +92,80 @@ class Beam:
     def _extend(self, beam: list[CrossValidated]) -> list[CrossValidated]:
         """Fit the most promising sets of one explanation more; those that are known already stand beside them."""
         size = len(beam[0].explanations) + 1
-        found = {key: one for key, one in self.known.items() if len(key) == size and np.isfinite(one.gap)}
-        for now in beam:
-            for score in self._promising(now, FIRST if len(beam) == 1 else NEXT):
-                longer = self._with(now, score)
+        extended = {key: model for key, model in self.known.items() if len(key) == size and np.isfinite(model.gap)}
+        for shorter in beam:
+            for score in self._promising(shorter, FIRST if len(beam) == 1 else NEXT):
+                longer = self._with(shorter, score)
                 if longer:
-                    found[longer.explanations] = longer
-        return list(found.values())
+                    extended[longer.explanations] = longer
+        return list(extended.values())
 
-    def _promising(self, now: CrossValidated, most: int) -> list[Score]:
+    def _promising(self, model: CrossValidated, most: int) -> list[Score]:
         """Explanations that could, to first order, make a set cheaper than the cheapest known."""
-        if not np.isfinite(now.gap):
+        if not np.isfinite(model.gap):
             return []
-        scores = self.search.scorer(now).scores(self.search.open_beside(now))
-        whole = float((now.fit.projected[0] ** 2).sum())
-        wanted = self.cost(self.best) + CRITERIA.plain
+        scores = self.search.scorer(model).scores(self.search.open_beside(model))
+        squares = float((model.fit.projected[0] ** 2).sum())
+        limit = self.cost(self.best) + CRITERIA.plain
         promising = []
         for score in scores:
-            left = math.sqrt(max(1 - score.gain / whole, 0.0))
-            promised = now.gap / self.as_read.gap * left + now.penalty + score.candidate.penalty(score.values)
-            if promised < wanted:
+            remaining = math.sqrt(max(1 - score.gain / squares, 0.0))
+            promised = model.gap / self.as_read.gap * remaining + model.penalty + score.candidate.penalty(score.values)
+            if promised < limit:
                 promising.append(score)
         return promising[:most]
 
-    def _with(self, now: CrossValidated, score: Score) -> CrossValidated | None:
+    def _with(self, model: CrossValidated, score: Score) -> CrossValidated | None:
         """Fit a set with one explanation more; None where its numbers would not mean what its name says."""
-        wanted = now.explanations | {score.candidate.identity}
-        if wanted not in self.known:
-            longer = cross_validated(self.scale, now, (*now.parts, score))
+        explanations = model.explanations | {score.candidate.identity}
+        if explanations not in self.known:
+            longer = cross_validated(self.scale, model, (*model.parts, score))
             if not self.search.sensible(longer):
                 return None
-            self.known[wanted] = longer
-        return self.known[wanted]
+            self.known[explanations] = longer
+        return self.known[explanations]
 
-    def without(self, now: CrossValidated, gone: Identity) -> CrossValidated:
+    def without(self, model: CrossValidated, gone: Identity) -> CrossValidated:
         """Fit a set less one of its explanations."""
-        wanted = now.explanations - {gone}
-        if wanted not in self.known:
-            parts = tuple(part for part in now.parts if part.candidate.identity != gone)
-            self.known[wanted] = cross_validated(self.scale, now, parts)
-        return self.known[wanted]
+        explanations = model.explanations - {gone}
+        if explanations not in self.known:
+            parts = tuple(part for part in model.parts if part.candidate.identity != gone)
+            self.known[explanations] = cross_validated(self.scale, model, parts)
+        return self.known[explanations]
 
-    def material(self, now: CrossValidated) -> tuple[CrossValidated, list[Part]]:
+    def material(self, model: CrossValidated) -> tuple[CrossValidated, list[Part]]:
         """Return a set less what closes too little of the gap, or not beyond chance; and what went, the last first."""
         small: list[Part] = []
-        while now.explanations:
+        while model.explanations:
             losses = []
-            for part in now.parts:
-                fewer = self.without(now, part.candidate.identity)
-                share = (fewer.gap - now.gap) / self.as_read.gap
+            for part in model.parts:
+                fewer = self.without(model, part.candidate.identity)
+                share = (fewer.gap - model.gap) / self.as_read.gap
                 worth = max(CRITERIA.matters, part.candidate.penalty(part.values))
-                if share < worth or errs_more(fewer, now) >= ALPHA:
+                if share < worth or errs_more(fewer, model) >= ALPHA:
                     losses.append((share, part, fewer))
             if not losses:
                 break
-            _, part, now = min(losses, key=lambda one: one[0])
+            _, part, model = min(losses, key=lambda loss: loss[0])
             small.insert(0, part)
-        return now, small
+        return model, small
 
-    def plainest(self, now: CrossValidated) -> CrossValidated:
+    def plainest(self, model: CrossValidated) -> CrossValidated:
         """Return the cheapest set that left-out pieces do not distinguish from a set."""
         equal = [
-            one
-            for one in self.known.values()
-            if 0 < len(one.explanations) <= len(now.explanations)
-            and one.penalty < now.penalty - 1e-9
-            and one.gap < self.as_read.gap
-            and errs_more(one, now) >= ALPHA
+            fit
+            for fit in self.known.values()
+            if 0 < len(fit.explanations) <= len(model.explanations)
+            and fit.penalty < model.penalty - 1e-9
+            and fit.gap < self.as_read.gap
+            and errs_more(fit, model) >= ALPHA
         ]
-        return min(equal, key=lambda model: (round(model.penalty, 3), model.gap)) if equal else now
+        return min(equal, key=lambda fit: (round(fit.penalty, 3), fit.gap)) if equal else model
 
-    def near(self, now: CrossValidated, within: float) -> list[CrossValidated]:
+    def near(self, model: CrossValidated, within: float) -> list[CrossValidated]:
         """Return other sets that cost at most so much more, in shares of the gap as read, the cheapest first."""
-        others = [one for one in self.known.values() if one.explanations and one.explanations != now.explanations]
-        return sorted((model for model in others if self.cost(model) <= self.cost(now) + within), key=self.cost)
+        others = [fit for fit in self.known.values() if fit.explanations and fit.explanations != model.explanations]
+        return sorted((fit for fit in others if self.cost(fit) <= self.cost(model) + within), key=self.cost)
 
 
 @dataclass(frozen=True, eq=False)
@@ -205,15 +205,15 @@ def closing_most(case: Case, also: tuple[tuple[Part, ...], ...]) -> Outcome | No
             return None
         beam.fit((plainest.parts,), longer)
         best = beam.select_forward(longer)
-    now, small = beam.material(best)
-    now = beam.plainest(now)
-    if not now.explanations:
+    model, small = beam.material(best)
+    model = beam.plainest(model)
+    if not model.explanations:
         return None
-    near, others = (tuple(beam.near(now, within)) for within in (TIED, np.inf))
-    closed = 1 - (now.gap / beam.as_read.gap) ** 2
-    p = min(len(search.candidates) * errs_more(beam.as_read, now), 1.0)
-    test = PairedTest(p, len(now.errors), float((beam.as_read.errors - now.errors).sum()), case.alpha)
-    return Outcome(beam.as_read, now, closed, test, small=tuple(small), near=near, others=others[:LISTED])
+    near, others = (tuple(beam.near(model, within)) for within in (TIED, np.inf))
+    closed = 1 - (model.gap / beam.as_read.gap) ** 2
+    p = min(len(search.candidates) * errs_more(beam.as_read, model), 1.0)
+    test = PairedTest(p, len(model.errors), float((beam.as_read.errors - model.errors).sum()), case.alpha)
+    return Outcome(beam.as_read, model, closed, test, small=tuple(small), near=near, others=others[:LISTED])
 
 
 def near_runs(case: Case) -> CrossValidated:
@@ -228,21 +228,21 @@ def near_runs(case: Case) -> CrossValidated:
         plain = shooting.with_noise(white_noise(scale.spread))  # as if it erred by the whole spread of the channels
         enough, starts = CONVERGED * shooting.seen.size, shooting.segments.starts(case.guess)
         begun = fit_model(plain, case.search.base, (), starts, TURNS, enough)
-        now = cross_validated(scale, replace(begun, shooting=shooting), ())
-        tried.append((scale.relative(now.fit), now))
+        model = cross_validated(scale, replace(begun, shooting=shooting), ())
+        tried.append((scale.relative(model.fit), model))
         if tried[-1][0] < CRITERIA.near or samples / 2 < max(FEWEST, HALF_PERIOD * period):
             break
         samples //= 2
     least = min(error for error, _ in tried)
-    return next(now for error, now in tried if error * WORTH_HALVING <= least)
+    return next(model for error, model in tried if error * WORTH_HALVING <= least)
 
 
-def on_longer_runs(case: Case, now: CrossValidated) -> CrossValidated | None:
+def on_longer_runs(case: Case, model: CrossValidated) -> CrossValidated | None:
     """Fit what was found to runs ever twice as long, while it stays near the data; None if none is longer."""
-    longest, guess, scale, found = case.longest, case.guess, case.scale, None
-    samples = now.shooting.segments.span
+    longest, guess, scale, extended = case.longest, case.guess, case.scale, None
+    samples = model.shooting.segments.span
     while samples < longest:
-        before, samples = found or now, min(2 * samples, longest)
+        before, samples = extended or model, min(2 * samples, longest)
         guess = before.shooting.segments.put(guess, before.fit.states)
         shooting = replace(case.cut_learned_runs(samples), past=guess)
         shooting = shooting.with_noise(scale.white_error(before.fit))
@@ -251,8 +251,8 @@ def on_longer_runs(case: Case, now: CrossValidated) -> CrossValidated | None:
         longer = cross_validated(scale, begun, begun.parts)
         if not scale.relative(longer.fit) < CRITERIA.near:
             break
-        found = longer
-    return found
+        extended = longer
+    return extended
 
 
 def as_read_on(scale: GapScale, as_read: CrossValidated, longer: CrossValidated) -> CrossValidated:

@@ -38,7 +38,6 @@ SHORT = 6  # margins in a trial, at least
 FIRST_SHARE = 0.3  # of that length, is fitted first, so that the fit of the whole begins near its end
 LENGTHENED = 3  # times as long, again and again, while a run stays with the data
 WHOLE_PERIOD = 0.8
-CUTOFF_ERRORS = (0.95, 1.05, 0.9, 1.1, 0.86, 1.16)  # within two of its standard deviations, 3 to 7 % (41 records)
 TRIED_SUBSTEPS = (2, 4, 8)  # integration steps a sample
 MOST_SEARCHED = 10_000  # samples, all runs together: what is found on them is fitted to all data
 
@@ -69,10 +68,7 @@ class Case:
     def at_other_cutoffs(self) -> list[Case]:
         """The case with estimated cut-offs lower and higher by their error; none where the file states them."""
         stated = [self.search.base.sensor(name).lowpass for name in self.measured.channels]
-        both = [*zip(self.record_filter.cutoffs_hz, stated, strict=True)]
-        scaled = [tuple(hz and (hz if hz == own else hz * by) for hz, own in both) for by in CUTOFF_ERRORS]
-        filters = [replace(self.record_filter, cutoffs_hz=cutoffs) for cutoffs in scaled]
-        return [replace(self, record_filter=one) for one in filters if one != self.record_filter]
+        return [replace(self, record_filter=one) for one in self.record_filter.within_error(stated)]
 
     @cached_property
     def sensor_noise(self) -> Values:
@@ -192,10 +188,7 @@ class Case:
 
 
 def set_up_case(simulation: Simulation, measured: Measured, request: Request = ALL) -> Case:
-    """Prepare a case: split the trials, list places and explanations, guess the states.
-
-    measured: its trials; of four, one is held out, of one, the last quarter of its time
-    """
+    """Prepare a case; of four trials, one is held out, of one, the last quarter of its time."""
     simulation = with_constant_errors(match_channels(simulation, measured, request.shapes))
     if len(measured.trials) == 1:
         measured = split_in_time(measured)

@@ -224,8 +224,8 @@ def _check_piece(piece: str, known: tuple[str, ...], where: str) -> None:
     try:
         written = set(names_in(parse(piece)))
     except SimulationError as error:
-        found = f"{where}, piece {piece[:60]!r}: {error.found}"
-        raise SchemaError("pieces must be expressions, written as in a simulation file", found, error.remedy) from error
+        fault = f"{where}, piece {piece[:60]!r}: {error.found}"
+        raise SchemaError("pieces must be expressions, written as in a simulation file", fault, error.remedy) from error
     for name in sorted(written - set(known)):
         raise SchemaError(
             f"the expressions of a shape may use only {', '.join(known)}",

@@ -97,36 +97,36 @@ def find_change(model: MuscleMoment, nominal: Walk, device: Walk, changes: Seque
     """
     both = _Both.of(model.form, nominal, device)
     tried = [(both.misfit(change, value), change, float(value)) for change in changes for value in change.values]
-    left, best, value = min(tried, key=lambda one: one[0])
-    others = [one for one in tried if (one[1].name, one[1].place) != (best.name, best.place)]
-    rival_left, rival, _ = min(others, key=lambda one: one[0], default=(np.nan, None, 0.0))
+    misfit, best, value = min(tried, key=lambda attempt: attempt[0])
+    others = [attempt for attempt in tried if (attempt[1].name, attempt[1].place) != (best.name, best.place)]
+    rival_misfit, rival, _ = min(others, key=lambda attempt: attempt[0], default=(np.nan, None, 0.0))
     nothing = Change("", "", "", np.zeros(1))
-    held = 1 - both.held_out(best, value) / both.held_out(nothing, 0.0)
-    if held < CLOSES:
+    closed = 1 - both.held_out(best, value) / both.held_out(nothing, 0.0)
+    if closed < CLOSES:
         return None
-    found, number, draws = _draw_anew(both, best, value, DRAWS)
+    coefficients, number, draws = _draw_anew(both, best, value, DRAWS)
     errors = [float(np.std(draws)), _doubt_number(model.form, nominal, device, best, value)]
     if len(best.values) > 1 and not best.columns(device.driven, value).shape[1]:  # known to a step of the finer grid
         errors.append((FINER[1] - FINER[0]) * abs(best.values[1] - best.values[0]) / np.sqrt(12))
     spread = float(np.linalg.norm(errors))
     if abs(number - best.neutral) < NORMAL_95 * spread:
         return None
-    changed = make_model(model.form, found, model.gains.shape[0], model.left_nm, model.before_nm)
-    return Changed(best, changed, number, spread, held, rival=rival, rival_leaves=rival_left / left)
+    changed = make_model(model.form, coefficients, model.gains.shape[0], model.left_nm, model.before_nm)
+    return Changed(best, changed, number, spread, closed, rival=rival, rival_leaves=rival_misfit / misfit)
 
 
 def _doubt_number(form: Form, nominal: Walk, device: Walk, change: Change, about: float) -> float:
     """Standard deviation of a number by what nobody measured: the muscles' form, and the device walk's usual stride."""
     both = _Both.of(form, nominal, device)
     number = _draw_anew(both, change, about, 0)[1]
-    others = [
+    alternatives = [
         [_Both.of(replace(form, fastest=pace * form.fastest), nominal, device) for pace in SPEEDS],
         [_Both.of(replace(form, lag_s=more * form.lag_s), nominal, device) for more in LAGS],
         [replace(both, respect=more * both.respect) for more in RESPECTS],
-        [replace(both, own=replace(form, usual=form.usual + shift)) for shift in shifts_of_usual()],
+        [replace(both, device_form=replace(form, usual=form.usual + shift)) for shift in shifts_of_usual()],
     ]
-    moved = [[_draw_anew(one, change, about, 0)[1] - number for one in kind] for kind in others]
-    return float(np.linalg.norm([np.sqrt(np.mean(np.square(one))) for one in moved]))
+    moved = [[_draw_anew(variant, change, about, 0)[1] - number for variant in kind] for kind in alternatives]
+    return float(np.linalg.norm([np.sqrt(np.mean(np.square(shifts))) for shifts in moved]))
 
 
 def shifts_of_usual() -> list[Values]:
@@ -135,7 +135,7 @@ def shifts_of_usual() -> list[Values]:
     size = SHIFT_RAD / np.sqrt(np.sum(order**-2.0))
     shifts = np.zeros((SHIFTS, 2, USUAL_HARMONICS))
     shifts[:, :, :SHIFT_HARMONICS] = np.random.default_rng(0).normal(size=(SHIFTS, 2, SHIFT_HARMONICS)) * size / order
-    return [np.concatenate([[0.0], *one]) for one in shifts]
+    return [np.concatenate([[0.0], *shift]) for shift in shifts]
 
 
 @dataclass(frozen=True, eq=False)
@@ -145,31 +145,31 @@ class _Both:
     nominal: Sums
     device: Walk
     learned: Values  # (device stride,) 1 where learned from
-    own: Form  # of the device walk, whose usual stride may be another one
+    device_form: Form  # of the device walk, whose usual stride may be another one
     respect: float = GAIN_RIDGE
 
     @classmethod
     def of(cls, form: Form, nominal: Walk, device: Walk) -> _Both:
         """Sum up the strides of the Nominal walk."""
-        own = sum_pieces(form.columns(nominal.driven), nominal.moment, nominal.stride, int(nominal.stride.max()) + 1)
+        sums = sum_pieces(form.columns(nominal.driven), nominal.moment, nominal.stride, int(nominal.stride.max()) + 1)
         count = int(device.stride.max()) + 1
-        return cls(own, device, (np.arange(count) < LEARNED * count).astype(float), form)
+        return cls(sums, device, (np.arange(count) < LEARNED * count).astype(float), form)
 
     def sums(self, change: Change, value: float) -> tuple[Sums, Sums]:
         """Of both walks with a change, which the Nominal walk has not."""
         driven = self.device.driven
         more = change.columns(driven, value)
-        columns = np.hstack([self.own.columns(change.driven(driven, value)), more])
+        columns = np.hstack([self.device_form.columns(change.driven(driven, value)), more])
         mine = sum_pieces(columns, self.device.moment, self.device.stride, len(self.learned))
         wide = more.shape[1]
         squares = np.pad(self.nominal.squares, ((0, 0), (0, wide), (0, wide)))
         return Sums(squares, np.pad(self.nominal.match, ((0, 0), (0, wide))), self.nominal.power), mine
 
-    def found(self, sums: Sequence[Sums], weights: Sequence[Values]) -> tuple[Values, float]:
+    def solve(self, sums: Sequence[Sums], weights: Sequence[Values]) -> tuple[Values, float]:
         """Coefficients and what they leave, strides so many times."""
-        found = solved(together(sums, weights), len(self.device.driven.signs), self.respect)
-        left = sum(float(weight @ one.left(found)) for one, weight in zip(sums, weights, strict=True))
-        return found, left
+        coefficients = solved(together(sums, weights), len(self.device.driven.signs), self.respect)
+        misfit = sum(float(weight @ walk.left(coefficients)) for walk, weight in zip(sums, weights, strict=True))
+        return coefficients, misfit
 
     @property
     def once(self) -> tuple[Values, Values]:
@@ -178,12 +178,12 @@ class _Both:
 
     def misfit(self, change: Change, value: float) -> float:
         """What is left of the strides that are learned from [(N m)2]."""
-        return self.found(self.sums(change, value), self.once)[1]
+        return self.solve(self.sums(change, value), self.once)[1]
 
     def held_out(self, change: Change, value: float) -> float:
         """What is left of the device strides that are not [(N m)2]."""
         sums = self.sums(change, value)
-        return float((1 - self.learned) @ sums[1].left(self.found(sums, self.once)[0]))
+        return float((1 - self.learned) @ sums[1].left(self.solve(sums, self.once)[0]))
 
 
 def _draw_anew(both: _Both, change: Change, about: float, draws: int) -> tuple[Values, float, list[float]]:
@@ -194,12 +194,12 @@ def _draw_anew(both: _Both, change: Change, about: float, draws: int) -> tuple[V
     linear = change.columns(both.device.driven, about).shape[1] > 0
 
     def best(weights: Sequence[Values]) -> tuple[Values, float]:
-        tried = [both.found(one, weights) for one in sums]
-        at = int(np.argmin([left for _, left in tried]))
+        tried = [both.solve(value_sums, weights) for value_sums in sums]
+        at = int(np.argmin([misfit for _, misfit in tried]))
         return tried[at][0], float(tried[at][0][-1]) if linear else float(values[at])
 
-    found, number = best(both.once)
-    return found, number, [best(weights)[1] for weights in draw_blocks(both.once)[:draws]]
+    coefficients, number = best(both.once)
+    return coefficients, number, [best(weights)[1] for weights in draw_blocks(both.once)[:draws]]
 
 
 def together(walks: Iterable[Sums], weights: Iterable[Values]) -> Sums:
@@ -210,10 +210,10 @@ def together(walks: Iterable[Sums], weights: Iterable[Values]) -> Sums:
 
 def draw_blocks(once: Sequence[Values]) -> list[list[Values]]:
     """How often each stride of each walk is drawn, blocks of neighbours together; `DRAWS` times (Efron 1979)."""
-    rng, blocks = np.random.default_rng(0), [np.arange(len(one)) // BLOCK for one in once]
+    rng, blocks = np.random.default_rng(0), [np.arange(len(ones)) // BLOCK for ones in once]
     counts = [block[-1] + 1 for block in blocks]
     drawn = ([np.bincount(rng.integers(0, n, n), minlength=n) for n in counts] for _ in range(DRAWS))
-    return [[one * each[block] for one, block, each in zip(once, blocks, times, strict=True)] for times in drawn]
+    return [[ones * draws[block] for ones, block, draws in zip(once, blocks, times, strict=True)] for times in drawn]
 
 
 def foot_mass(model: MuscleMoment, nominal: Walk, device: Walk, per_kg: Values) -> tuple[float, float]:
@@ -238,7 +238,7 @@ def foot_mass(model: MuscleMoment, nominal: Walk, device: Walk, per_kg: Values) 
 def _weigh_mass(form: Form, nominal: Walk, device: Walk, per_kg: Values, parts: int) -> tuple[float, float]:
     """Mass and its standard deviation with stiffness in some parts of the stride."""
     muscles = len(nominal.driven.signs)
-    own = replace(form, usual=usual_angle(device.driven, device.stride >= 0))
+    own_form = replace(form, usual=usual_angle(device.driven, device.stride >= 0))
     signed = np.zeros(2 * muscles + FIRMNESS + parts + 1 + 1 + 2 * UNSEEN_HARMONICS + 1, bool)
     signed[: 2 * muscles + FIRMNESS + parts + 1] = True
     once = [np.ones(int(walk.stride.max()) + 1) for walk in (nominal, device)]
@@ -247,23 +247,23 @@ def _weigh_mass(form: Form, nominal: Walk, device: Walk, per_kg: Values, parts: 
         columns = _columns(usual, walk.driven, expected, parts)
         return sum_pieces(np.column_stack([columns, -carried]), walk.moment, walk.stride, int(walk.stride.max()) + 1)
 
-    def mass(each: Iterable[Sums], weights: Iterable[Values]) -> float:
-        total = together(each, weights)
+    def mass(walks: Iterable[Sums], weights: Iterable[Values]) -> float:
+        total = together(walks, weights)
         return float(solve_signed(tied(total.squares, muscles), total.match, signed)[-1])
 
     first = sums(nominal, form, np.zeros(len(nominal.moment)), form.usual)
-    both = first, sums(device, own, per_kg, form.usual)
+    both = first, sums(device, own_form, per_kg, form.usual)
     value = mass(both, once)
     drawn = [mass(both, weights) for weights in draw_blocks(once)]
-    shifted = [mass((first, sums(device, own, per_kg, form.usual + shift)), once) for shift in shifts_of_usual()]
+    shifted = [mass((first, sums(device, own_form, per_kg, form.usual + shift)), once) for shift in shifts_of_usual()]
     return value, float(np.hypot(np.std(drawn), np.std(shifted)))
 
 
-def _columns(own: Form, driven: Driven, expected: Values, parts: int) -> Values:
+def _columns(form: Form, driven: Driven, expected: Values, parts: int) -> Values:
     """Gains, firmness about the own mean stride, stiffness and damping against its departure, unseen waves."""
-    behind = cycle(driven.phase, USUAL_HARMONICS) @ (expected - own.usual)
+    behind = cycle(driven.phase, USUAL_HARMONICS) @ (expected - form.usual)
     slow_by = np.gradient(behind) * driven.rate_hz
     stiff = parts_of_stride(driven.phase, parts) * behind[:, None]
     return np.hstack(
-        [own.muscles(driven), own.firm(driven), stiff, slow_by[:, None], cycle(driven.phase, UNSEEN_HARMONICS)]
+        [form.muscles(driven), form.firm(driven), stiff, slow_by[:, None], cycle(driven.phase, UNSEEN_HARMONICS)]
     )

@@ -53,9 +53,9 @@ class DeviceWalks:
     def agrees(self) -> bool:
         """Whether the device walk bears out no change and is followed as Nominal strides left out of the fit are."""
         walk = as_walk(self.device)
-        left = walk.moment - self.model.net(walk.driven)
-        kept = np.isfinite(left) & (walk.stride >= 0)
-        return self.changed is None and float(np.sqrt(np.mean(left[kept] ** 2))) < AGREES * self.model.left_nm
+        residual = walk.moment - self.model.net(walk.driven)
+        usable = np.isfinite(residual) & (walk.stride >= 0)
+        return self.changed is None and float(np.sqrt(np.mean(residual[usable] ** 2))) < AGREES * self.model.left_nm
 
     def weighed(self, candidate: Candidate) -> bool:
         """Whether an explanation is possible: the change that both walks bear out, or all where there is none."""
@@ -132,11 +132,11 @@ def weigh_foot(walks: Mapping[str, DeviceWalks]) -> Estimate | None:
 
     At the hip it comes out too small: the two strongest muscles, which take part in carrying it, have no electrode.
     """
-    both = [walks[joint] for joint in FOOT_SHOWS_AT if joint in walks]
+    pairs = [walks[joint] for joint in FOOT_SHOWS_AT if joint in walks]
     masses = [
-        foot_mass(one.model, as_walk(one.nominal), as_walk(one.device), one.device.per_kg)
-        for one in both
-        if one.device.per_kg.size and one.model.r2 >= LEAST_R2
+        foot_mass(pair.model, as_walk(pair.nominal), as_walk(pair.device), pair.device.per_kg)
+        for pair in pairs
+        if pair.device.per_kg.size and pair.model.r2 >= LEAST_R2
     ]
     if len(masses) < len(FOOT_SHOWS_AT):
         return None

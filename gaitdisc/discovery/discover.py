@@ -13,6 +13,7 @@ from gaitdisc.discovery.answer import answer, augment_with
 from gaitdisc.discovery.case import FEWEST_SAMPLES, TRIED_SUBSTEPS, Case, hangs_on_step, set_up_case, split_in_time
 from gaitdisc.discovery.catalogue import ALL, Request
 from gaitdisc.discovery.decision import Verdict, decide, prove_held_out
+from gaitdisc.discovery.estimated_filter import note_other
 from gaitdisc.discovery.held_out import grows_along_runs, holding_out_others, is_uninformative, noted, noting_alike
 from gaitdisc.discovery.odd_trials import agreeing_trials, without_trial_apart
 from gaitdisc.discovery.result import Discovery
@@ -23,7 +24,6 @@ from gaitdisc.discovery.spiked_samples import without_spikes
 from gaitdisc.discovery.symbolic_regression import read_instead, read_shape
 from gaitdisc.discovery.uncertain_inputs import weigh_input_errors, weigh_unstated_errors
 from gaitdisc.errors import SchemaError
-from gaitdisc.recording import Finding
 from gaitdisc.simulation.compiled_simulation import Rows
 from gaitdisc.simulation.measured import Measured
 from gaitdisc.simulation.running import compile_simulation, refuse_divergence
@@ -77,11 +77,7 @@ def weigh_explanations(
     verdict = decide(case, as_read)
     for other in case.at_other_cutoffs if verdict.found.parts else ():
         if other.leaves_noise(again := other.as_read()):
-            hz = ", ".join(f"{one:.3g}" for one in dict.fromkeys(other.record_filter.cutoffs_hz) if one)
-            what = f"at {hz} Hz, which is within the error of this estimate, only noise is left, so no effect is named"
-            spoils = "a small effect; if you know the cut-off, state lowpass in the simulation file"
-            finding = Finding("note", "low-pass", case.measured.source, what, spoils)
-            return other.noting(finding), again, Verdict(again, ())
+            return other.noting(note_other(other.record_filter, case.measured.source)), again, Verdict(again, ())
     while hangs_on_step(case, verdict.found) and case.substeps < TRIED_SUBSTEPS[-1]:
         progress("the identified effects depend on the integration step: repeating the search with half the step")
         case = replace(case, substeps=2 * case.substeps)

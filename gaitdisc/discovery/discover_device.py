@@ -50,24 +50,24 @@ def discover_study(
     errors: dict[str, GaitdiscError] = {}
     walks = PersonWalks(read, person)
     for word in words:
-        of = f"{word}: " if word and len(words) > 1 else ""
-        own = replace(request, progress=lambda step, of=of: request.progress(f"{of}{step}"))
-        own.progress(f"comparing both walks of {participant} with the Nominal model")
+        prefix = f"{word}: " if word and len(words) > 1 else ""
+        labelled = replace(request, progress=lambda step, prefix=prefix: request.progress(f"{prefix}{step}"))
+        labelled.progress(f"comparing both walks of {participant} with the Nominal model")
         try:
-            answers[word] = _discover_condition(walks, word, own, joint)
+            answers[word] = _discover_condition(walks, word, labelled, joint)
         except GaitdiscError as error:
             errors[word] = error
     if not answers:
         raise errors[words[0]]
     if len(words) == 1:
         return answers
-    seen = {word: one.public for word, (one, _) in answers.items()}
+    seen = {word: answer.public for word, (answer, _) in answers.items()}
     rows = [
         ConditionAnswer(word, str(errors[word])) if word in errors
         else ConditionAnswer(word, seen[word].sentence, seen[word].verdict, seen[word].effects, seen[word].beside)
         for word in words
     ]  # fmt: skip
-    return {word: (replace(one, conditions=tuple(rows)), model) for word, (one, model) in answers.items()}
+    return {word: (replace(answer, conditions=tuple(rows)), model) for word, (answer, model) in answers.items()}
 
 
 def _discover_condition(
@@ -80,80 +80,80 @@ def _discover_condition(
     study, person, progress = walks.study, walks.participant, request.progress
     called = list_words(study, person).files
     others = {*study.conditions.words} - {study.conditions.nominal, condition}
-    own = [file for trial in person.trials if trial.condition not in others for file in trial.files]
-    files = {study.path_of(file): called[Path(file).name] for file in own}
+    recorded = [file for trial in person.trials if trial.condition not in others for file in trial.files]
+    files = {study.path_of(file): called[Path(file).name] for file in recorded}
     try:
-        both = walks.calibrated(condition, joint)
+        pair = walks.calibrated(condition, joint)
     except NoMomentsError as lacking:
         progress("comparing only the motion of both walks")
         motion = nominal_and_trials(against(study, condition), person.id, joint)
-        request = replace(request, possible=lambda one: one.kind != "observation")  # both walks have the same sensors
-        found, augmented = find_missing(*motion, request, files)
+        request = replace(request, possible=lambda effect: effect.kind != "observation")  # both have the same sensors
+        answer, augmented = find_missing(*motion, request, files)
         why = f"{lacking.needed[:1].upper()}{lacking.needed[1:]}, but {lacking.found}"
         how = "only the motion of both walks was compared, which gives no moment of the device"
-        return replace(found, sentence=f"{why}: {how}. {found.sentence}"), augmented
-    muscles = both.changed.model if both.changed else both.model
-    model = joint_model(both.device, muscles)
-    data = cut_walk_trials(both.device, muscles, model)
+        return replace(answer, sentence=f"{why}: {how}. {answer.sentence}"), augmented
+    muscles = pair.changed.model if pair.changed else pair.model
+    model = joint_model(pair.device, muscles)
+    data = cut_walk_trials(pair.device, muscles, model)
     if study.conditions.others:
         model = replace(model, title=f"{model.title}, {condition}")
-    found, augmented = find_missing(model, data, replace(request, possible=both.weighed), files)
-    found, augmented = with_model_error(found, both), model if both.agrees else augmented
-    errors = beside(both, found)
-    if joint == "ankle_angle" and not found.effects:
+    answer, augmented = find_missing(model, data, replace(request, possible=pair.weighed), files)
+    answer, augmented = with_model_error(answer, pair), model if pair.agrees else augmented
+    errors = beside(pair, answer)
+    if joint == "ankle_angle" and not answer.effects:
         progress("estimating a mass added to the foot from the moments of the knee and hip")
-        found = with_foot_mass(found, walks, condition)
-    if found.provenance is not None:
-        found = replace(found, provenance=replace(found.provenance, section=DEVICE))
-    return replace(found, findings=(*device_findings(both), *found.findings), beside=errors), augmented
+        answer = with_foot_mass(answer, walks, condition)
+    if answer.provenance is not None:
+        answer = replace(answer, provenance=replace(answer.provenance, section=DEVICE))
+    return replace(answer, findings=(*device_findings(pair), *answer.findings), beside=errors), augmented
 
 
-def with_model_error(found: Discovery, walks: DeviceWalks) -> Discovery:
+def with_model_error(answer: Discovery, walks: DeviceWalks) -> Discovery:
     """Return what was found with the number of both walks, whose interval holds the error of the moment model."""
     if walks.agrees:
-        said = "The Nominal moment model predicts the device walk as well as held-out Nominal strides: "
-        return replace(found, verdict="no_gap", effects=(), sentence=f"{said}no effect is missing.")
+        agreement = "The Nominal moment model predicts the device walk as well as held-out Nominal strides: "
+        return replace(answer, verdict="no_gap", effects=(), sentence=f"{agreement}no effect is missing.")
     if walks.changed is not None:
-        found = _with_number(found, walks.changed)
-    if not found.effects or walks.nominal.joint != "hip_flexion":
-        return found
+        answer = _with_number(answer, walks.changed)
+    if not answer.effects or walks.nominal.joint != "hip_flexion":
+        return answer
     electrodes = {name.split("_")[1] for name in walks.nominal.muscles}
     unseen = " and ".join(muscle for muscle, channels in DEEP.items() if not electrodes & set(channels))
     doubt = f" The size of the effect is unreliable: no electrode records the {unseen} of the hip." if unseen else ""
-    return replace(found, sentence=found.sentence + doubt)
+    return replace(answer, sentence=answer.sentence + doubt)
 
 
-def _with_number(found: Discovery, changed: Changed) -> Discovery:
+def _with_number(answer: Discovery, changed: Changed) -> Discovery:
     """Return what was found with the number of the change, if the search names it too."""
     change = changed.change
-    effect = next((one for one in found.effects if (one.name, one.place) == (change.name, change.place)), None)
+    effect = next((named for named in answer.effects if (named.name, named.place) == (change.name, change.place)), None)
     if effect is None or change.number not in effect.estimates:
-        return found
+        return answer
     old = effect.estimates[change.number]
     half = float(np.hypot((old.high - old.low) / 2, NORMAL_95 * changed.spread))
     new = Estimate(changed.value, changed.value - half, changed.value + half, old.unit)
     mended = replace(effect, estimates={**effect.estimates, change.number: new})
-    sentence = found.sentence.replace(estimate_text(old), estimate_text(new))
+    text = answer.sentence.replace(estimate_text(old), estimate_text(new))
     if abs(old.value - new.value) > APART * abs(new.value):
         number = f"{old.value:.3g} {old.unit}".removesuffix(" 1")
-        sentence += f" In augmented.toml, this number is {number}, fitted together with the other parameters."
-    return replace(found, effects=tuple(mended if one is effect else one for one in found.effects), sentence=sentence)
+        text += f" In augmented.toml, this number is {number}, fitted together with the other parameters."
+    return replace(answer, effects=tuple(mended if item is effect else item for item in answer.effects), sentence=text)
 
 
-def with_foot_mass(found: Discovery, walks: PersonWalks, condition: str) -> Discovery:
+def with_foot_mass(answer: Discovery, walks: PersonWalks, condition: str) -> Discovery:
     """Return what was found at the ankle where nothing is missing there, with a mass that knee and hip show."""
     try:
         mass = weigh_foot({joint: walks.at(condition, joint) for joint in FOOT_SHOWS_AT})
     except ChannelError:  # files that know the ankle alone
-        return found
+        return answer
     if mass is None:
-        return found
+        return answer
     sentence = (
         f"The mass added to the foot is {estimate_text(mass)}, estimated from the knee moment and supported by the hip "
         "moment; the ankle moment is insensitive to it."
     )
     effect = FoundEffect("parameter", "added_foot_mass", "wrong_parameter", "", {"value": mass})
-    return replace(found, verdict="wrong_parameter", effects=(effect,), sentence=sentence)
+    return replace(answer, verdict="wrong_parameter", effects=(effect,), sentence=sentence)
 
 
 def device_findings(walks: DeviceWalks) -> tuple[Finding, ...]:
@@ -189,7 +189,7 @@ def device_findings(walks: DeviceWalks) -> tuple[Finding, ...]:
     return tuple(findings)
 
 
-def beside(walks: DeviceWalks, found: Discovery) -> dict[str, float]:
+def beside(walks: DeviceWalks, answer: Discovery) -> dict[str, float]:
     """Return the root mean square error of the net moment on the held-out strides, model by model [N m].
 
     Nominal with the named effect is that of the discovery. Augmented adds a plain regression of what is left (angle,
@@ -197,14 +197,14 @@ def beside(walks: DeviceWalks, found: Discovery) -> dict[str, float]:
     the device walk itself. Both learn from all strides of the device walk that are not held out.
     """
     device, model = walks.device, walks.model
-    at = found.runs.time[np.isfinite(found.runs.time)]
+    at = answer.runs.time[np.isfinite(answer.runs.time)]
     held = np.isin(device.stride, np.unique(device.stride[np.isin(np.round(device.time, 4), np.round(at, 4))]))
     held &= device.stride >= 0
     known = np.isfinite(device.moment) & np.isfinite(device.phase) & np.isfinite(device.rate)
     learned = known & ~held
     driven = drives(device)
     nominal = model.net(driven)
-    angle, rate, phase = (np.nan_to_num(each) for each in (device.angle, device.rate, device.phase))
+    angle, rate, phase = (np.nan_to_num(signal) for signal in (device.angle, device.rate, device.phase))
     muscles = model.by_muscle(driven)  # percent stride, the last column, brings its harmonics
     library = np.column_stack((angle, rate, angle**2, rate**2, angle * rate, *muscles.T, 100 * phase))
     names = (*map(str, range(library.shape[1] - 1)), "phi")
@@ -216,58 +216,58 @@ def beside(walks: DeviceWalks, found: Discovery) -> dict[str, float]:
     def error(predicted: Values) -> float:
         return float(np.sqrt(np.mean((device.moment - predicted)[known & held] ** 2)))
 
-    _, after, _ = found.held_out.channels["net_moment"]
+    _, after, _ = answer.held_out.channels["net_moment"]
     return {
         "Nominal": error(nominal),
-        "Nominal + named effect": after if found.effects else error(nominal),
+        "Nominal + named effect": after if answer.effects else error(nominal),
         "Augmented (plain regression)": error(augmented),
         "Exo": error(exo),
     }
 
 
-def over_people(found: Mapping[str, Discovery]) -> pd.DataFrame:
+def over_people(answers: Mapping[str, Discovery]) -> pd.DataFrame:
     """A row a number of each effect: in how many people it was named, mean, Student's 95 % interval (n > 1), who."""
     from scipy.stats import t
 
     numbers = [
-        (effect.name, effect.place, number, each.unit, person, each.value)
-        for person, answer in found.items()
+        (effect.name, effect.place, number, estimate.unit, person, estimate.value)
+        for person, answer in answers.items()
         for effect in answer.effects
-        for number, each in effect.estimates.items()
+        for number, estimate in effect.estimates.items()
     ]
     rows: list[tuple[object, ...]] = []
     values = pd.DataFrame(numbers, columns=pd.Index((*NUMBER, "person", "value")))
-    for key, own in values.groupby(list(NUMBER), sort=False):
-        largest = own.sort_values("value", key=lambda value: -abs(value), kind="stable")
+    for key, group in values.groupby(list(NUMBER), sort=False):
+        largest = group.sort_values("value", key=lambda value: -abs(value), kind="stable")
         who = ", ".join(largest["person"] + largest["value"].map(" {:.3g}".format))
-        mean, half = own["value"].mean(), float(t.ppf(0.975, len(own) - 1) * own["value"].sem())
-        rows.append((*key, len(own), len(found), mean, mean - half, mean + half, who))
-    without = [person for person, answer in found.items() if not answer.effects]
+        mean, half = group["value"].mean(), float(t.ppf(0.975, len(group) - 1) * group["value"].sem())
+        rows.append((*key, len(group), len(answers), mean, mean - half, mean + half, who))
+    without = [person for person, answer in answers.items() if not answer.effects]
     if without:
-        rows.append((NOTHING, "", "", "", len(without), len(found), *[float("nan")] * 3, ", ".join(without)))
+        rows.append((NOTHING, "", "", "", len(without), len(answers), *[float("nan")] * 3, ", ".join(without)))
     table = pd.DataFrame(rows, columns=pd.Index(COLUMNS))
     return table.sort_values("people", ascending=False, kind="stable", ignore_index=True)
 
 
-def over_conditions(found: Mapping[str, Mapping[str, Discovery]]) -> pd.DataFrame:
+def over_conditions(by_person: Mapping[str, Mapping[str, Discovery]]) -> pd.DataFrame:
     """Rows of `over_people` for each condition (person -> condition -> answer), named in a first column if several."""
     tables = {
-        word: over_people({person: answers[word] for person, answers in found.items() if word in answers})
-        for word in dict.fromkeys(word for answers in found.values() for word in answers)
+        word: over_people({person: answers[word] for person, answers in by_person.items() if word in answers})
+        for word in dict.fromkeys(word for answers in by_person.values() for word in answers)
     }
-    if not any(answer.conditions for answers in found.values() for answer in answers.values()):
+    if not any(answer.conditions for answers in by_person.values() for answer in answers.values()):
         return next(iter(tables.values()), over_people({}))
     return pd.concat(tables, names=["condition"]).reset_index(0).reset_index(drop=True)
 
 
 def lines(table: pd.DataFrame) -> list[str]:
     """Each row of `over_conditions` as a line of text."""
-    said = []
+    texts = []
     for row in table.to_dict("records"):
-        what = f"{row['condition']}: " if "condition" in row else ""
-        what += f"{row['effect']} at {row['place']}, {row['number']}" if row["place"] else row["effect"]
+        label = f"{row['condition']}: " if "condition" in row else ""
+        label += f"{row['effect']} at {row['place']}, {row['number']}" if row["place"] else row["effect"]
         mean = f", mean {row['mean']:.3g} {row['unit']}".rstrip() if row["place"] else ""
         if np.isfinite(row["low"]):
             mean += f" (95 % CI {row['low']:.3g} to {row['high']:.3g})"
-        said.append(f"{what}: {row['people']} of {row['of']}{mean}: {row['who']}")
-    return said
+        texts.append(f"{label}: {row['people']} of {row['of']}{mean}: {row['who']}")
+    return texts

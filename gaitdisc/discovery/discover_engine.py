@@ -16,7 +16,7 @@ from gaitdisc.discovery.discover_files import find_missing, seal
 from gaitdisc.discovery.effect_words import named_at
 from gaitdisc.discovery.estimated_filter import find_record_filter
 from gaitdisc.discovery.first_states import guess_states
-from gaitdisc.discovery.fit_by_engine import EngineFit, base_runs, errs_less, held_out, with_own_runs
+from gaitdisc.discovery.fit_by_engine import EngineFit, at_other_cutoffs, base_runs, errs_less, held_out, with_own_runs
 from gaitdisc.discovery.grids import find_rhythm
 from gaitdisc.discovery.result import ENGINE, Discovery, FoundEffect
 from gaitdisc.discovery.scored_model import Part
@@ -61,10 +61,7 @@ def discover_engine(
     request: Request = ALL,
     files: dict[Path, str] | None = None,
 ) -> EngineAnswer:
-    """Find what a model of MuJoCo or OpenSim lacks.
-
-    measured: reads the trials, once the mapping says what their columns are
-    """
+    """Find what a model of MuJoCo or OpenSim lacks; its mapping says by which columns trials are read."""
     mapping, engine = read_mapping(model)
     data = measured(mapping)
     refuse_unmeasured(mapping, engine, data)
@@ -79,7 +76,10 @@ def discover_engine(
     fit = EngineFit(mapping, engine, data, states, low_pass=passed, progress=request.progress)
     request.progress(f"running {engine.path.name} with {engine.called} along every trial")
     as_read = write_model(engine, mapping)  # what the mapping says otherwise than the model's file
-    answer = EngineAnswer(_NOTHING, mapping, as_read, base_runs(as_read.engine, fit), engine)
+    runs = base_runs(as_read.engine, fit)
+    if not request.effects and not runs.leave_mere_noise:
+        runs, fit, noted = at_other_cutoffs(as_read.engine, fit, runs, clean, period) or (runs, fit, noted)
+    answer = EngineAnswer(_NOTHING, mapping, as_read, runs, engine)
     if request.effects or not answer.runs.leave_mere_noise:
         answer = search(fit, answer, replace(request, refitted=fit.noted), read)
     else:

@@ -53,7 +53,7 @@ def find_missing(
     try:
         with np.errstate(over="ignore", invalid="ignore"):  # an explanation that runs away explains nothing
             explained = explain(model, data, request)
-            found, augmented = answer(*explained, request.refitted)
+            discovery, augmented = answer(*explained, request.refitted)
     except np.linalg.LinAlgError as error:
         raise SamplingError(
             "each sample of a simulation must be predictable from the previous one",
@@ -62,14 +62,14 @@ def find_missing(
         ) from error
     files = {**files, **({request.catalogue: "catalogue"} if request.catalogue else {})}
     listed = unit_findings(model) if isinstance(model, Simulation) else ()  # a function has no units to check
-    found = seal(replace(found, findings=(*listed, *found.findings)), augmented, data, files)
+    discovery = seal(replace(discovery, findings=(*listed, *discovery.findings)), augmented, data, files)
     if request.twins:
-        request.answered(found, augmented)
-        found = search_twins(found, *explained, model, request)
-    return found, augmented
+        request.answered(discovery, augmented)
+        discovery = search_twins(discovery, *explained, model, request)
+    return discovery, augmented
 
 
-def seal(found: Discovery, model: Simulation, data: Measured, files: dict[Path, str]) -> Discovery:
+def seal(discovery: Discovery, model: Simulation, data: Measured, files: dict[Path, str]) -> Discovery:
     """Return an answer with what it and its augmented model rest on; it is written without a name of a person."""
     settings = {"title": model.title, "trials": len(data.trials), "rate_hz": data.rate, "channels": list(data.channels)}
     hashes = {called: file_sha256(path) for path, called in files.items()}
@@ -79,13 +79,13 @@ def seal(found: Discovery, model: Simulation, data: Measured, files: dict[Path, 
     public = PublicWords(words, {path.name: called for path, called in files.items()})
     numbered = {name: f"trial {number}" for number, name in enumerate(data.trials, 1)}
     trials = {name: called for name, called in numbered.items() if PublicWords().said(name) != name}
-    seen = {
-        finding: public.finding(replace(finding, what=_without(finding.what, trials))) for finding in found.findings
+    hidden = {
+        finding: public.finding(replace(finding, what=_without(finding.what, trials))) for finding in discovery.findings
     }
-    return replace(found, provenance=made, hide=partial(_hidden, trials=trials, findings=seen))
+    return replace(discovery, provenance=made, hide=partial(_hidden, trials=trials, findings=hidden))
 
 
-def _hidden(found: Discovery, trials: Mapping[str, str], findings: Mapping[Finding, Finding]) -> Discovery:
+def _hidden(discovery: Discovery, trials: Mapping[str, str], findings: Mapping[Finding, Finding]) -> Discovery:
     """Return an answer without a name of a person.
 
     trials: names of trials that may be one, and what they are called
@@ -96,15 +96,15 @@ def _hidden(found: Discovery, trials: Mapping[str, str], findings: Mapping[Findi
         return replace(size, of=_without(size.of, trials))
 
     return replace(
-        found,
-        sentence=_without(found.sentence, trials),
-        train=sized(found.train),
-        held_out=sized(found.held_out),
-        runs=replace(found.runs, names=tuple(_without(name, trials) for name in found.runs.names)),
-        findings=tuple(findings.get(finding, finding) for finding in found.findings),
+        discovery,
+        sentence=_without(discovery.sentence, trials),
+        train=sized(discovery.train),
+        held_out=sized(discovery.held_out),
+        runs=replace(discovery.runs, names=tuple(_without(name, trials) for name in discovery.runs.names)),
+        findings=tuple(findings.get(finding, finding) for finding in discovery.findings),
         explanations=tuple(
             replace(explanation, held_out=explanation.held_out and sized(explanation.held_out))
-            for explanation in found.explanations
+            for explanation in discovery.explanations
         ),
         hide=None,
     )

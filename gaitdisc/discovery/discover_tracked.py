@@ -82,32 +82,32 @@ def discover_tracked(tracked: Tracked, kinematics: Path, request: Request = ALL)
     progress("computing the noise of the moments from the noise of the angles")
     angle_noise = moments_of_angle_noise(walk, tracked.noise_deg)
     base, joints = search_joints(walk, angle_noise, request)
-    found = make_discovery(base, joints)
+    discovery = make_discovery(base, joints)
     progress("writing the effects into the model")
-    masses, augmented = {one.name: one for one in engine.parameters}, draft(engine)
-    for one in found.effects:
-        if one.kind == "port":
-            augmented = augmented.with_effect(Term(one.place, "port", one.name, one.term))
-        elif one.place in masses:
-            mass = replace(masses[one.place], value=one.estimates["value"].value)
+    masses, augmented = {parameter.name: parameter for parameter in engine.parameters}, draft(engine)
+    for effect in discovery.effects:
+        if effect.kind == "port":
+            augmented = augmented.with_effect(Term(effect.place, "port", effect.name, effect.term))
+        elif effect.place in masses:
+            mass = replace(masses[effect.place], value=effect.estimates["value"].value)
             augmented = replace(augmented, parameters=(*augmented.parameters, mass))
     written = write_model(engine, augmented)
     notes = [note.replace("augmented.toml", "discovery.json") for note in written.notes]
-    for one in found.effects:
-        if one.kind == "parameter" and one.place not in masses:  # what muscles do otherwise is not in the model's file
-            number = f"{one.place} = {one.estimates['value'].value:.4g}"
+    for effect in discovery.effects:
+        if effect.kind == "parameter" and effect.place not in masses:  # changed muscles are not in the model's file
+            number = f"{effect.place} = {effect.estimates['value'].value:.4g}"
             notes.append(f"{number} changes the forces, not the model: only discovery.json contains it")
-    said = (stretch_used(walk, kinematics.name), *_gaps(walk, written))
+    lines = (stretch_used(walk, kinematics.name), *_gaps(walk, written))
     shown = [summarise_joint(walk, number, joint) for number, joint in zip(walk.joints, joints, strict=True)]
     findings += [*shown, *doubts(shown)]
-    findings += [Finding("note", "written back", "model", one, "") for one in notes]
-    findings += [Finding("note", "own runs" if k else "stretch", "model", one, "") for k, one in enumerate(said)]
+    findings += [Finding("note", "written back", "model", note, "") for note in notes]
+    findings += [Finding("note", "own runs" if k else "stretch", "model", line, "") for k, line in enumerate(lines)]
     hashes = {file.name: file_sha256(file) for file in (engine.path, kinematics, *tracked.files)}
     settings = {"title": base.title, "seconds": float(np.ptp(motion.time)), "rate_hz": motion.rate_hz}
-    made = provenance_now({**settings, "channels": list(found.channels)}, SEED, hashes, TRACKED)
-    sentence = found.sentence if walk.joints else only_residuals(walk)
-    found = replace(found, sentence=sentence, findings=tuple(findings), provenance=made)
-    return TrackedAnswer(found, augmented, replace(written, notes=tuple(notes)), tracked, said)
+    made = provenance_now({**settings, "channels": list(discovery.channels)}, SEED, hashes, TRACKED)
+    sentence = discovery.sentence if walk.joints else only_residuals(walk)
+    discovery = replace(discovery, sentence=sentence, findings=tuple(findings), provenance=made)
+    return TrackedAnswer(discovery, augmented, replace(written, notes=tuple(notes)), tracked, lines)
 
 
 def make_discovery(base: Simulation, joints: list[JointFinding]) -> Discovery:
@@ -119,20 +119,20 @@ def make_discovery(base: Simulation, joints: list[JointFinding]) -> Discovery:
         if joint.named is not None:
             named.setdefault(joint.named.candidate.identity, (joint.named, []))[1].append(joint)
     effects, rivals = [], []
-    for best, (one, *others) in named.values():
-        pairs = ((each.joint.left, each.named.predicted) for each in (one, *others) if each.named)
-        before, left = np.sum([(np.sum(left**2), np.sum((left - taken) ** 2)) for left, taken in pairs], axis=0)
-        effects.append(_effect(base, best, 1 - left / max(before, 1e-300)))
-        beside = [replace(_effect(base, rival), tied=best.gained - rival.gained < CRITERIA.tie) for rival in one.rivals]
-        rivals += beside[1:4]
-    unexplained = [] if named else [one for one in joints if one.rivals and not one.at_noise]
-    unexplained.sort(key=lambda one: -one.rivals[0].gained)
-    rivals += [_effect(base, one.rivals[0]) for one in unexplained[:1]]
+    for best, (lead, *others) in named.values():
+        pairs = ((joint.joint.left, joint.named.predicted) for joint in (lead, *others) if joint.named)
+        before, after = np.sum([(np.sum(rest**2), np.sum((rest - taken) ** 2)) for rest, taken in pairs], axis=0)
+        effects.append(_effect(base, best, 1 - after / max(before, 1e-300)))
+        close = [replace(_effect(base, rival), tied=best.gained - rival.gained < CRITERIA.tie) for rival in lead.rivals]
+        rivals += close[1:4]
+    unexplained = [] if named else [joint for joint in joints if joint.rivals and not joint.at_noise]
+    unexplained.sort(key=lambda joint: -joint.rivals[0].gained)
+    rivals += [_effect(base, joint.rivals[0]) for joint in unexplained[:1]]
     units = tuple(sensor.unit for sensor in base.sensors)
-    measured, left = (np.column_stack([getattr(one.joint, name) for one in joints]) for name in ("demanded", "left"))
+    measured, residual = (np.stack([getattr(joint.joint, key) for joint in joints], 1) for key in ("demanded", "left"))
     closed = np.column_stack([joint.named.predicted if joint.named else 0.0 * joint.joint.left for joint in joints])
-    walk = [one[None] for one in (measured, measured - left, measured - left + closed)]
-    found = Discovery(
+    walk = [values[None] for values in (measured, measured - residual, measured - residual + closed)]
+    discovery = Discovery(
         next(iter(named.values()))[0].candidate.verdict if named else "no_gap",
         "",
         where=tuple(Whereabouts(effect.kind, effect.place, 1.0 / len(named)) for effect in effects),
@@ -145,36 +145,36 @@ def make_discovery(base: Simulation, joints: list[JointFinding]) -> Discovery:
         runs=Runs(np.arange(1), joints[0].joint.time[None], np.zeros((1, 0)), *walk, names=("whole walk",)),
     )
     if not unexplained:
-        return write_sentence(found, base, tuple(best for best, _ in named.values()))
+        return write_sentence(discovery, base, tuple(best for best, _ in named.values()))
     first = unexplained[0]
     best = first.prove(first.rivals[0])
     if best.gained <= 0:  # nothing explains anything: where most is left
-        first = max(unexplained, key=lambda one: np.linalg.norm(one.joint.left) / one.joint.floor)
-    name, left = f"net_{first.joint.port}", first.joint.left
-    before, _, floor = found.held_out.channels[name]
+        first = max(unexplained, key=lambda joint: np.linalg.norm(joint.joint.left) / joint.joint.floor)
+    name, moment = f"net_{first.joint.port}", first.joint.left
+    before, _, floor = discovery.held_out.channels[name]
     size = f"{amount(before)} {(unit := units[joints.index(first)])} (noise floor {amount(floor)} {unit})"
     sentence = f"No effect is named: the residual of {name} is {size}, and no tested effect explains it."
     if best.gained > 0:
-        fitted, held = (amount(float(np.sqrt(np.mean((left - one) ** 2)))) for one in (best.explained, best.predicted))
+        fit, held = (amount(float(np.sqrt(np.mean((moment - part) ** 2)))) for part in (best.explained, best.predicted))
         sentence = (
-            f"Not proven: {named_at(rivals[0])} reduces the residual of {size} to {fitted} {unit} in the fit and to "
+            f"Not proven: {named_at(rivals[0])} reduces the residual of {size} to {fit} {unit} in the fit and to "
             f"{held} {unit} on held-out time; its evidence is {best.gained:.0f}. A name requires {CRITERIA.margin:.0f} "
             f"or more, and {100 * CLOSED:.0f} % less squared residual on held-out time. Another walk can decide."
         )
-    return replace(found, verdict="unexplained", sentence=sentence)
+    return replace(discovery, verdict="unexplained", sentence=sentence)
 
 
-def _effect(base: Simulation, one: Named, closed: float = float("nan")) -> FoundEffect:
-    candidate, numbers = one.candidate, name_estimates(one, one.covariance, base)
+def _effect(base: Simulation, named: Named, closed: float = float("nan")) -> FoundEffect:
+    candidate, numbers = named.candidate, name_estimates(named, named.covariance, base)
     place = candidate.kind, candidate.place, candidate.name
-    return FoundEffect(*place, one.term, numbers, closed, one.gained, bounds=candidate.bounds)
+    return FoundEffect(*place, named.term, numbers, closed, named.gained, bounds=candidate.bounds)
 
 
-def _gap(joints: list[JointFinding], taken: list[Values | float]) -> GapSize:
+def _gap(joints: list[JointFinding], explained: list[Values | float]) -> GapSize:
     sizes = {}
-    for one, effect in zip(joints, taken, strict=True):
-        before, after = (float(np.sqrt(np.mean(each**2))) for each in (one.joint.left, one.joint.left - effect))
-        sizes[f"net_{one.joint.port}"] = (before, after, one.joint.floor)
+    for joint, effect in zip(joints, explained, strict=True):
+        before, after = (float(np.sqrt(np.mean(moment**2))) for moment in (joint.joint.left, joint.joint.left - effect))
+        sizes[f"net_{joint.joint.port}"] = (before, after, joint.joint.floor)
     spreads = np.array([max(float(np.std(joint.joint.demanded)), 1e-9) for joint in joints])
     before, after, floor = np.sqrt(np.mean((np.array(list(sizes.values())).T / spreads) ** 2, axis=1)).tolist()
     first = min((joint.named.test for joint in joints if joint.named), key=lambda test: test.p, default=None)
@@ -186,9 +186,9 @@ def stretch_used(walk: Pass, file: str) -> str:
     time, (begin, end) = walk.motion.time, walk.motion.span
     ranges = []
     for k in walk.joints:
-        one, q = walk.engine.coordinates[k], walk.motion.q[:, k]
-        unit, factor = display_unit(one.unit)
-        ranges.append(f"range of {one.called}: {factor * q.min():.3g} to {factor * q.max():.3g} {unit}")
+        joint, q = walk.engine.coordinates[k], walk.motion.q[:, k]
+        unit, factor = display_unit(joint.unit)
+        ranges.append(f"range of {joint.called}: {factor * q.min():.3g} to {factor * q.max():.3g} {unit}")
     used = f"{file} covers {begin:.2f} to {end:.2f} s; the search used {time[0]:.2f} to {time[-1]:.2f} s"
     return "; ".join([used, *ranges])
 
@@ -206,14 +206,14 @@ def _gaps(walk: Pass, written: WrittenModel) -> tuple[str, ...]:
     if not isinstance(written.engine, OpensimTracked) or written.engine is walk.engine:
         return ()
     after = written.engine.demanded(walk.motion) - walk.pulls.sum(axis=1)
-    said = []
+    lines = []
     for k in walk.joints:
         if np.abs(after - walk.left)[:, k].max() < NOTHING_NM:
             continue
-        one = walk.engine.coordinates[k]
-        before, now = (f"{amount(walk.size(each[:, k]))} {one.force_unit}" for each in (walk.left, after))
-        said.append(f"{one.called}, with the written model: residual {before} without the effects, {now} with them")
-    return tuple(said)
+        joint = walk.engine.coordinates[k]
+        before, rest = (f"{amount(walk.size(curve[:, k]))} {joint.force_unit}" for curve in (walk.left, after))
+        lines.append(f"{joint.called}, with the written model: residual {before} without the effects, {rest} with them")
+    return tuple(lines)
 
 
 def search_joints(walk: Pass, angle_noise: Values, request: Request = ALL) -> tuple[Simulation, list[JointFinding]]:
@@ -228,14 +228,14 @@ def search_joints(walk: Pass, angle_noise: Values, request: Request = ALL) -> tu
     base = _simulation(walk)
     possible, joints = _candidates(base, walk, request.shapes), []
     for number in walk.joints:
-        one = walk.engine.coordinates[number]
-        request.progress(f"analysing the residual at {one.called}")
-        places = {one.port, *(f"{name}_{word}" for name in walk.groups_at(number) for word in ("strength", "delay"))}
-        candidates = tuple(each for each in possible if each.place in places)
+        joint = walk.engine.coordinates[number]
+        request.progress(f"analysing the residual at {joint.called}")
+        places = {joint.port, *(f"{name}_{word}" for name in walk.groups_at(number) for word in ("strength", "delay"))}
+        candidates = tuple(candidate for candidate in possible if candidate.place in places)
         joints.append(joint_finding(_left(walk, base, number, angle_noise), candidates, len(walk.joints)))
-    if not all(one.at_noise for one in joints):
+    if not all(joint.at_noise for joint in joints):
         masses = walk.masses_by_joints()
-        joints = name_across_joints(joints, tuple(one for one in possible if one.place in masses))
+        joints = name_across_joints(joints, tuple(candidate for candidate in possible if candidate.place in masses))
     return base, joints
 
 
@@ -245,19 +245,19 @@ def _simulation(walk: Pass) -> Simulation:
     for name in walk.groups:
         numbers.append(Parameter(f"{name}_strength", 1.0, "1", 1 - STRENGTH, 1 + STRENGTH, "factor on the force"))
         numbers.append(Parameter(f"{name}_delay", 0.0, "s", meaning="delay of these muscles compared with the file"))
-    seen, sensors = [], []
+    observed, sensors = [], []
     for k in walk.joints:
-        one = walk.engine.coordinates[k]
+        joint = walk.engine.coordinates[k]
         terms = [f"{name}_strength*delay({name}, {name}_delay)" for name in walk.groups_at(k)]
-        seen.append((f"net_{one.port}", " + ".join([*terms, one.port])))
-        sensors.append(Sensor(f"net_{one.port}", one.force_unit))
+        observed.append((f"net_{joint.port}", " + ".join([*terms, joint.port])))
+        sensors.append(Sensor(f"net_{joint.port}", joint.force_unit))
     return replace(
         plain,
         title=f"tracked walk of {walk.engine.path.name}",
         model="",
         inputs=tuple(Input(name, "N m", "moment from the forces file") for name in walk.groups),
         parameters=(*numbers, *walk.engine.parameters),
-        observations=tuple(seen) or plain.observations,
+        observations=tuple(observed) or plain.observations,
         sensors=tuple(sensors),
     )
 
@@ -265,14 +265,14 @@ def _simulation(walk: Pass) -> Simulation:
 def _candidates(base: Simulation, walk: Pass, more: tuple[Shape, ...]) -> list[Candidate]:
     """What may act at the joints: a device's shapes at their ports, muscles stronger or later, effects of the user."""
     joints = [walk.engine.coordinates[k] for k in walk.joints]
-    places = tuple(Place("port", one.port, ((one.name, one.speed),), (), (), one.unit == "rad") for one in joints)
+    places = tuple(Place("port", dof.port, ((dof.name, dof.speed),), (), (), dof.unit == "rad") for dof in joints)
     effects = {*EFFECTS, *(shape.name for shape in more)}
     every = list_candidates(base, places, (*read_shapes(), *more))
-    return [one for one in every if one.kind == "parameter" or (one.name in effects and not one.states)]
+    return [effect for effect in every if effect.kind == "parameter" or (effect.name in effects and not effect.states)]
 
 
 def _left(walk: Pass, base: Simulation, number: int, angle_noise: Values) -> ResidualMoment:
-    motion, one = walk.motion, walk.engine.coordinates[number]
+    motion, joint = walk.motion, walk.engine.coordinates[number]
     points = Points(motion.time, np.hstack([motion.q, motion.v]), np.zeros((len(motion.time), len(base.inputs))))
     known: dict[object, Values] = {}
 
@@ -287,16 +287,16 @@ def _left(walk: Pass, base: Simulation, number: int, angle_noise: Values) -> Res
             return -walk.demanded_by_mass[candidate.place][:, [number]]
         if candidate.verdict == "wrong_parameter":
             group, _, word = candidate.place.rpartition("_")
-            own = walk.groups[group]
+            moment = walk.groups[group]
             if word == "delay":
-                own = np.interp(motion.time - constants["value"], motion.time, own) - own
-            return own[:, None]
+                moment = np.interp(motion.time - constants["value"], motion.time, moment) - moment
+            return moment[:, None]
         extras = replace(points, extras={f"_{name}": value for name, value in constants.items()})
         pieces = [np.broadcast_to(evaluate(base, piece, extras), len(motion.time)) for piece in candidate.pieces]
         return np.column_stack(pieces)
 
     return ResidualMoment(
-        one.port,
+        joint.port,
         walk.times,
         walk.dense(walk.left[:, number]),
         walk.dense(walk.demanded[:, number]),
@@ -306,30 +306,30 @@ def _left(walk: Pass, base: Simulation, number: int, angle_noise: Values) -> Res
     )
 
 
-def summarise_joint(walk: Pass, number: int, found: JointFinding) -> Finding:
+def summarise_joint(walk: Pass, number: int, finding: JointFinding) -> Finding:
     """Return what a joint can show, and what is left there."""
-    one, joint = walk.engine.coordinates[number], found.joint
-    unit = one.force_unit
-    spring = found.least(walk.dense(walk.motion.q[:, number] - walk.motion.q[:, number].mean()))
-    damper = found.least(walk.dense(walk.motion.v[:, number]))
+    coordinate, joint = walk.engine.coordinates[number], finding.joint
+    unit = coordinate.force_unit
+    spring = finding.least(walk.dense(walk.motion.q[:, number] - walk.motion.q[:, number].mean()))
+    damper = finding.least(walk.dense(walk.motion.v[:, number]))
     shares = [
-        f"{100 * found.least(walk.dense(walk.groups[name])):.2g} % of the force of its {name.split('_')[-2]} muscles"
+        f"{100 * finding.least(walk.dense(walk.groups[name])):.2g} % of the force of its {name.split('_')[-2]} muscles"
         for name in walk.groups_at(number)
     ]
-    left = float(np.sqrt(np.mean(joint.left**2)))
+    rms = float(np.sqrt(np.mean(joint.left**2)))
     what = (
-        f"{one.called}: residual {left:.3g} {unit} of a required {np.std(joint.demanded):.3g} {unit}, noise "
-        f"{joint.floor:.2g} {unit}; smallest visible effects: a spring of {spring:.2g} {unit}/{one.unit}, a damper of "
-        f"{damper:.2g} {unit} s/{one.unit}" + "".join(f", {each}" for each in shares)
+        f"{coordinate.called}: residual {rms:.3g} {unit} of a required {np.std(joint.demanded):.3g} {unit}, noise "
+        f"{joint.floor:.2g} {unit}; smallest visible effects: a spring of {spring:.2g} {unit}/{coordinate.unit}, a "
+        f"damper of {damper:.2g} {unit} s/{coordinate.unit}" + "".join(f", {share}" for share in shares)
     )
-    if left > BEYOND * joint.floor and found.named is None:
+    if rms > BEYOND * joint.floor and finding.named is None:
         return Finding("warning", "without a name", "model", what, "this joint's residual, which no effect explains")
-    return Finding("note", "joint", "model", what, "", one.called)
+    return Finding("note", "joint", "model", what, "", coordinate.called)
 
 
 def doubts(shown: list[Finding]) -> list[Finding]:
     """Warn where joints are left far beyond their noise and have no name: the forces may answer another motion."""
-    unnamed = [one for one in shown if one.severity == "warning"]
+    unnamed = [finding for finding in shown if finding.severity == "warning"]
     if not unnamed:
         return []
     what = (

@@ -98,7 +98,7 @@ def estimate_text(estimate: Estimate) -> str:
     '−1.1 deg (95 % CI −1.7 to −0.6)'
     """
     unit, factor = display_unit(estimate.unit)
-    value, low, high = (factor * one for one in (estimate.value, estimate.low, estimate.high))
+    value, low, high = (factor * number for number in (estimate.value, estimate.low, estimate.high))
     if not (math.isfinite(low) and math.isfinite(high)):
         return with_unit(amount(value), unit)
     step = (high - low) / 2
@@ -135,24 +135,24 @@ def at_place(kind: str, place: str) -> str:
     return f"in the {kind} {place}" if kind != "equation" else f"in the equation of {place}"
 
 
-def named_at(one: FoundEffect | Candidate) -> str:
+def named_at(effect: FoundEffect | Candidate) -> str:
     """Name an effect and say where it enters."""
-    return f"{spoken(one.name)} {at_place(one.kind, one.place)}"
+    return f"{spoken(effect.name)} {at_place(effect.kind, effect.place)}"
 
 
-def outside_text(effect: FoundEffect, found: Estimate) -> str:
+def outside_text(effect: FoundEffect, estimate: Estimate) -> str:
     """Say that a wrong parameter lies outside the bounds that the file gives it; nothing where it does not.
 
     >>> wrong = FoundEffect("parameter", "g", "wrong_parameter", "", bounds=(9.79, 9.83))
     >>> outside_text(wrong, Estimate(17.0, 14.0, 20.0, "m/s^2")), outside_text(wrong, Estimate(9.8, 9.7, 9.9, "m/s^2"))
     ('outside its bounds, 9.79 to 9.83 m/s^2', '')
     """
-    if not effect.bounds or effect.bounds[0] <= found.value <= effect.bounds[1]:
+    if not effect.bounds or effect.bounds[0] <= estimate.value <= effect.bounds[1]:
         return ""
-    unit, factor = display_unit(found.unit)
-    low, high = (f"{factor * one:.6g}" for one in effect.bounds)
+    unit, factor = display_unit(estimate.unit)
+    low, high = (f"{factor * bound:.6g}" for bound in effect.bounds)
     if not (math.isfinite(effect.bounds[0]) and math.isfinite(effect.bounds[1])):
-        above = found.value > effect.bounds[1]
+        above = estimate.value > effect.bounds[1]
         return f"{'above' if above else 'below'} its bound, {with_unit(high if above else low, unit)}"
     return f"outside its bounds, {with_unit(f'{low} to {high}', unit)}"
 
@@ -165,7 +165,7 @@ def would_distinguish(name: str, other: str) -> str:
     """
     if name == other:
         return "movement in which the inputs of the two places differ"
-    for one, two, recording in APART:
-        if (name in one and other in two) or (other in one and name in two):
+    for first, second, recording in APART:
+        if (name in first and other in second) or (other in first and name in second):
             return recording
     return "longer trials of larger and more varied movement"

@@ -31,28 +31,34 @@ ROUGH = 1.0  # times the noise's power at the cut-off, from which on a signal th
 
 
 def find_record_filter(
-    simulation: Simulation, measured: Measured, period: float, guess: Values | None = None
+    simulation: Simulation, measured: Measured, period: float, guess: Values | None = None, like: Values | None = None
 ) -> tuple[RecordFilter, tuple[Finding, ...]]:
     """Return what the measured channels went through: as the file says, or as their spectra show.
 
     period: the motion's main period [s]
-    guess (trial, sample, state): states of every trial, roughly; the simulation says nothing where absent
+    guess (trial, sample, state): states of every trial, roughly
+    like (run, sample, channel): the channels as the simulation has them, where it was run before
     """
     stated = tuple(simulation.sensor(name).lowpass for name in measured.channels)
     unknown = [number for number, cutoff in enumerate(stated) if cutoff is None]
     units = [simulation.sensor(name).unit for name in measured.channels]
-    seen = {number: found for number in unknown if (found := find_filter(_trials(measured, number), measured.rate))}
+
+    def find(number: int, at_hz: float | None = None) -> RecordedFilter | None:
+        each = None if like is None else [*like[:, :, number]]
+        return find_filter(_trials(measured, number), measured.rate, each, at_hz)
+
+    seen = {number: found for number in unknown if (found := find(number))}
     for number in [number for number in unknown if number not in seen]:  # its own spectrum shows none clearly
         alike = MOTION if units[number] in MOTION else {units[number]}
         beside = [one.cutoff_hz for k, one in seen.items() if units[k] in alike and one.signal <= ROUGH]
-        if beside and (found := find_filter(_trials(measured, number), measured.rate, at_hz=geometric_mean(beside))):
+        if beside and (found := find(number, geometric_mean(beside))):
             seen[number] = found
     felt = any(one.signal > FELT for one in seen.values())
-    if guess is None:  # channels of one unit are taken to be recorded alike
+    if guess is None and like is None:  # channels of one unit are taken to be recorded alike
         sure = {number: one for number, one in seen.items() if one.signal <= ROUGH}
         alike = {number: [one for k, one in sure.items() if units[k] == units[number]] for number in unknown}
         seen = {number: sure.get(number, some[0]) for number, some in alike.items() if some}
-    elif (inputs := bool(seen) and _inputs_are_filtered(simulation, measured)) or felt:
+    elif guess is not None and ((inputs := bool(seen) and _inputs_are_filtered(simulation, measured)) or felt):
         length = min(max(int(period * measured.rate), FEWEST_SAMPLES), int(measured.samples.min()) // 2)
         runs = cut_segments(measured.samples, tuple(range(len(measured.trials))), length, length // OVERLAP)
         size = np.nanstd(measured.observed, axis=(0, 1))
@@ -69,6 +75,14 @@ def find_record_filter(
         spoils = "results that depend on this filter; state lowpass in the simulation file if you know the cut-off"
         findings.append(Finding("note", "low-pass", measured.source, what, spoils, measured.channels[number]))
     return passed, tuple(findings)
+
+
+def note_other(passed: RecordFilter, source: str) -> Finding:
+    """Finding that no effect is named because of another cut-off."""
+    hz = ", ".join(f"{one:.3g}" for one in dict.fromkeys(passed.cutoffs_hz) if one)
+    what = f"at {hz} Hz, which is within the error of this estimate, only noise is left, so no effect is named"
+    spoils = "a small effect; if you know the cut-off, state lowpass in the simulation file"
+    return Finding("note", "low-pass", source, what, spoils)
 
 
 def _trials(measured: Measured, channel: int) -> list[Values]:

@@ -29,8 +29,8 @@ def list_estimates(model: ScoredModel, number: int, base: Simulation) -> dict[st
     returns: by name: `stiffness`, `engagement`, ... A stiffness, a damping, a drag and a friction are positive where
         they resist. A sine and a cosine of one argument are an `amplitude` and a `phase`
     """
-    part, own = model.parts[number], model.names[number]
-    rows = [model.fit.free.index(own[slot]) for slot in part.candidate.slots]
+    part, name_of = model.parts[number], model.names[number]
+    rows = [model.fit.free.index(name_of[slot]) for slot in part.candidate.slots]
     return name_estimates(part, np.asarray(model.fit.covariance)[np.ix_(rows, rows)], base)
 
 
@@ -38,23 +38,23 @@ def name_estimates(part: Part, covariance: Values, base: Simulation) -> dict[str
     """Return an explanation's numbers under their names, by their covariance (slot, slot), NaN where unknown."""
     candidate, slots = part.candidate, part.candidate.slots
     units, names = slot_units(candidate, base), NAMES | dict(candidate.names or {})
-    found: dict[str, Estimate] = {}
+    estimates: dict[str, Estimate] = {}
     number, waning = 0, candidate.pieces and _WANING.match(candidate.pieces[0])
     while number < len(slots):
         slot, pair = slots[number], slots[number : number + 2]
         if _is_wave(candidate, number):
-            both = np.array([part.values[one] for one in pair])
+            both = np.array([part.values[term] for term in pair])
             block = covariance[number : number + 2, number : number + 2]
             for name, value, slope, unit in _wave(both, units[slot]):
-                found[free_name(name, found)] = _estimate(value, float(slope @ block @ slope), unit)
+                estimates[free_name(name, estimates)] = _estimate(value, float(slope @ block @ slope), unit)
             number += 2
             continue
         name = names.get(slot, slot)
         sign = -1 if name in RESISTING and not waning else 1
         value, variance = sign * part.values[slot], float(covariance[number, number])
-        found[free_name(name, found)] = _estimate(value, variance, units[slot])
+        estimates[free_name(name, estimates)] = _estimate(value, variance, units[slot])
         number += 1
-    return found
+    return estimates
 
 
 def wrong_starts(simulation: Simulation, as_read: ScoredModel) -> dict[str, Estimate]:
@@ -68,7 +68,7 @@ def wrong_starts(simulation: Simulation, as_read: ScoredModel) -> dict[str, Esti
     fit, segments = as_read.fit, as_read.shooting.segments
     first = np.flatnonzero(segments.begin == 0)
     slopes = fit.slopes[first][..., : fit.starts.shape[1]]
-    variance = np.stack([np.diag(np.linalg.pinv(one.T @ one)) for one in slopes])
+    variance = np.stack([np.diag(np.linalg.pinv(slope.T @ slope)) for slope in slopes])
     weight = 1 / np.maximum(variance, 1e-300)
     mean = (weight * fit.starts[first]).sum(axis=0) / weight.sum(axis=0)
     unlike = (weight * (fit.starts[first] - mean) ** 2).sum(axis=0) / max(len(first) - 1, 1)
@@ -82,24 +82,24 @@ def wrong_starts(simulation: Simulation, as_read: ScoredModel) -> dict[str, Esti
 
 def slot_units(candidate: Candidate, base: Simulation) -> dict[str, str]:
     """Return the unit of each number of an explanation."""
-    own = {part.name: part.unit for part in (*base.states, *base.inputs, *base.parameters)} | {"t": "s"}
+    unit_of = {part.name: part.unit for part in (*base.states, *base.inputs, *base.parameters)} | {"t": "s"}
     if candidate.verdict == "missing_physics":
         place = places_unit(base, candidate.kind, candidate.place)
-        position = find_unit(candidate.role, own) if candidate.role else "1"
+        position = find_unit(candidate.role, unit_of) if candidate.role else "1"
         constants = {slot: UNIT_OF_GRID.get(grid, position) for slot, grid in (candidate.constants or {}).items()}
-        known = own | {f"_{slot}": unit for slot, unit in constants.items()}
+        known = unit_of | {f"_{slot}": unit for slot, unit in constants.items()}
         known |= {name: unit_of_state(base, rate) for name, rate in candidate.states.items()}
         factors = [divide(place, "1" if piece == "1" else find_unit(piece, known)) for piece in candidate.pieces]
         return dict(zip(candidate.slots, [*factors, *constants.values()], strict=True))
     if candidate.constants:  # limits of an input, or of the force that it makes on a coordinate
-        moved = [own[name] for name in names(parse(candidate.role or candidate.place)) if name != candidate.place]
-        unit = ("N" if "m" in moved else "N m") if moved else own[candidate.place]
+        moved = [unit_of[name] for name in names(parse(candidate.role or candidate.place)) if name != candidate.place]
+        unit = ("N" if "m" in moved else "N m") if moved else unit_of[candidate.place]
         return dict.fromkeys(candidate.slots, unit)
     (slot,) = candidate.slots
     if slot in ("gain", "seconds"):
         return {slot: "1" if slot == "gain" else "s"}
     if candidate.verdict == "wrong_parameter":
-        return {slot: own[candidate.place]}
+        return {slot: unit_of[candidate.place]}
     channel = unit_of_channel(base, candidate.place)
     return {slot: divide(channel, "s") if slot == "rate" else channel}
 

@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from gaitdisc.discovery.criteria import CRITERIA
+from gaitdisc.discovery.estimated_filter import find_record_filter, note_other
 from gaitdisc.discovery.estimates import name_estimates
 from gaitdisc.discovery.grids import find_rhythm
 from gaitdisc.discovery.joint_and_trials import lag_signal
@@ -25,6 +26,7 @@ from gaitdisc.engines.motion import Values
 from gaitdisc.engines.own_runs import Driven, OwnRuns, residual_by, root_mean_square, spread_stretches, trial_called
 from gaitdisc.engines.written import WrittenModel, forces_at, write_model
 from gaitdisc.processing.kept_parts import hash_content
+from gaitdisc.recording import Finding
 from gaitdisc.simulation.evaluating import Points
 from gaitdisc.simulation.expression import names, parse
 from gaitdisc.simulation.measured import Measured
@@ -178,27 +180,59 @@ def errs_less(runs: OwnRuns, without: Values, held: NDArray[np.bool_]) -> bool:
 
 def base_runs(engine: Engine, fit: EngineFit) -> OwnRuns:
     """Run a model as read along every trial."""
-    mapping, data, recorded = fit.mapping, fit.measured, fit.low_pass.filtered
+    mapping, data = fit.mapping, fit.measured
     at = spread_stretches(data, find_rhythm(data.observed, data.rate).samples, engine.fibres, fit.low_pass.margin)
     given = hash_content((mapping, data, data.drive, fit.low_pass), engine.path.read_text(encoding="utf-8"))
-    driven, runs = Driven(engine, mapping, data.drive.inputs, recorded=recorded, progress=fit.progress), []
+    driven = Driven(engine, mapping, data.drive.inputs, recorded=fit.low_pass.filtered, progress=fit.progress)
+    left, starts = [], []
     for trial in np.unique(at.trial):  # each is kept as it ends
         known = recall(given, str(trial))
         if known is None:
-            known = residual_by(driven, data, at.among(at.trial == trial), fit.states).tolist()
-            keep(known)
-        runs += known
-    left = np.array(runs)
-    sensors = {name: mapping.sensor(name) for name in data.channels}
-    given = np.array([sensor.sd or np.nan for sensor in sensors.values()], float)
-    units, passed = {name: one.unit for name, one in sensors.items()}, fit.low_pass
-    runs = OwnRuns(left, left, at, engine.called, units, floor=sensor_noise(data.observed), states=fit.states.shape[2])
+            near: dict[int, Values] = {}
+            own = residual_by(driven, data, at.among(at.trial == trial), fit.states, near)
+            keep(known := [own.tolist(), [near[row].tolist() for row in range(len(own))]])
+        left, starts = left + known[0], starts + known[1]
+    units, whole = {name: mapping.sensor(name).unit for name in data.channels}, np.array(left)
+    return with_noise(OwnRuns(whole, whole, at, engine.called, units, np.zeros(0), np.array(starts)), fit)
+
+
+def with_noise(runs: OwnRuns, fit: EngineFit) -> OwnRuns:
+    """Return runs with the size of the noise that a sensor states, or that the record or the runs show."""
+    data, passed = fit.measured, fit.low_pass
+    given = np.array([fit.mapping.sensor(name).sd or np.nan for name in data.channels], float)
+    runs = replace(runs, floor=sensor_noise(data.observed))
     if passed.margin:  # a filter hides the size of the noise: what is within windows shows it
-        runs = replace(runs, every=passed.every, memory=passed.autocorrelation(at.length))
-        hidden = np.sqrt(np.nanmean(runs.variances(left)[1], axis=(0, 1)))
+        runs = replace(runs, every=passed.every, memory=passed.autocorrelation(runs.at.length))
+        hidden = np.sqrt(np.nanmean(runs.variances(runs.before)[1], axis=(0, 1)))
         runs = replace(runs, floor=np.where([one is None for one in passed.cutoffs_hz], runs.floor, hidden))
         given = given * passed.gains
     return replace(runs, floor=np.where(np.isnan(given), runs.floor, given))
+
+
+def at_other_cutoffs(
+    engine: Engine, fit: EngineFit, runs: OwnRuns, clean: Measured, period: float
+) -> tuple[OwnRuns, EngineFit, tuple[Finding, ...]] | None:
+    """Runs that leave mere noise at a cut-off found beside the model's own runs, or within the error of that one.
+
+    A test holds at every value of a number that is not known, or not at all (Berger & Boos 1994, J Am Stat Assoc 89).
+    """
+    at, data, stated = runs.at, fit.measured, [fit.mapping.sensor(name).lowpass for name in clean.channels]
+    if None not in stated or np.isinf(runs.before).any():
+        return None
+    seen = data.observed[at.trial[:, None], at.first[:, None] + np.arange(at.length)]
+    model, near = Driven(engine, fit.mapping, data.drive.inputs, progress=fit.progress), dict(enumerate(runs.starts))
+    simulated = seen - (residual_by(model, data, replace(at, margin=0), fit.states, near) if at.margin else runs.before)
+    again, noted = find_record_filter(fit.mapping, clean, period, like=simulated)
+    if again.margin and not fit.low_pass.margin:  # none was seen before, so that runs left no room at their ends
+        fit = replace(fit, low_pass=again)
+        runs = base_runs(engine, fit)
+        return (runs, fit, noted) if runs.leave_mere_noise else at_other_cutoffs(engine, fit, runs, clean, period)
+    for other in (again, *again.within_error(stated)) if again.margin else ():
+        left, fit = seen - other.filtered(simulated, 1), replace(fit, low_pass=other)
+        left[:, : at.margin], left[:, at.length - at.margin :] = np.nan, np.nan
+        if (tried := with_noise(replace(runs, before=left, after=left), fit)).leave_mere_noise:
+            return tried, fit, noted if other == again else (*noted, note_other(other, clean.source))
+    return None
 
 
 def held_out(found: Discovery, runs: OwnRuns, data: Measured) -> NDArray[np.bool_]:

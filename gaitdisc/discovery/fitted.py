@@ -18,10 +18,7 @@ OF_SEGMENTS = ("starts", "states", "residual", "white", "slopes")  # of a fit, o
 
 @dataclass(frozen=True)
 class Prior:
-    """Normal distributions of parameters around the file's values, cut off at the file's bounds.
-
-    Half the width between the bounds is two standard deviations.
-    """
+    """Normal distributions around the file's values; half the width between its bounds, where they end, is two SD."""
 
     names: tuple[str, ...] = ()
     # (number,), where they stand among the parameters

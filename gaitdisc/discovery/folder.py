@@ -103,9 +103,9 @@ def load_discovery(folder: Path) -> Discovery:
 def _restore(value: Any) -> Any:
     """Return what JSON held as results hold it: tuples, and NaN where a number was not finite."""
     if isinstance(value, Mapping):
-        return {key: _restore(one) for key, one in value.items()}
+        return {key: _restore(item) for key, item in value.items()}
     if isinstance(value, list):
-        return tuple(_restore(one) for one in value)
+        return tuple(_restore(item) for item in value)
     return float("nan") if value is None else value
 
 
@@ -118,7 +118,7 @@ def _effect(row: Mapping[str, Any]) -> FoundEffect:
         place,
         row["name"],
         row["term"],
-        {name: Estimate(**_restore(each)) for name, each in row["estimates"].items()},
+        {name: Estimate(**_restore(estimate)) for name, estimate in row["estimates"].items()},
         **_restore(row["evidence"]),
         bounds=tuple(edge if bound is None else bound for bound, edge in bounds),
         reads_as=reading["expression"],
@@ -128,8 +128,8 @@ def _effect(row: Mapping[str, Any]) -> FoundEffect:
 
 
 def _gap(row: Mapping[str, Any]) -> GapSize:
-    size = _restore({key: one for key, one in row.items() if key != "unexplained"})
-    channels = {name: tuple(one[key] for key in SIZES) for name, one in size["channels"].items()}
+    size = _restore({key: value for key, value in row.items() if key != "unexplained"})
+    channels = {name: tuple(errors[key] for key in SIZES) for name, errors in size["channels"].items()}
     return GapSize(**(size | {"channels": channels}))
 
 
@@ -140,9 +140,9 @@ def _runs(table: pd.DataFrame, channels: tuple[str, ...]) -> Runs:
     samples = int(sample.max()) + 1 if len(table) else 0
 
     def spread(values: np.ndarray) -> np.ndarray:
-        whole = np.full((len(runs), samples, *values.shape[1:]), np.nan)
-        whole[place, sample] = values
-        return whole
+        padded = np.full((len(runs), samples, *values.shape[1:]), np.nan)
+        padded[place, sample] = values
+        return padded
 
     named = table["trial"].astype(str)
     trials = named.groupby(table["run"].to_numpy()).first().to_numpy(object)

@@ -117,38 +117,38 @@ def beside_others(
     return ranked(compared(pairs), search.candidates)[0]
 
 
-def settle(search: Search, now: ScoredModel, worth: float, explored: set[Explanations]) -> ScoredModel:
+def settle(search: Search, model: ScoredModel, worth: float, explored: set[Explanations]) -> ScoredModel:
     """Exchange and eliminate explanations, by what one has to be worth, until nothing changes."""
     for _ in range(SETTLED):
-        before = now
-        now = prune(search, exchange(search, now, explored), worth)
-        if sorted(now.labels) == sorted(before.labels):
+        before = model
+        model = prune(search, exchange(search, model, explored), worth)
+        if sorted(model.labels) == sorted(before.labels):
             break
-    return now
+    return model
 
 
-def exchange(search: Search, now: ScoredModel, explored: set[Explanations]) -> ScoredModel:
+def exchange(search: Search, model: ScoredModel, explored: set[Explanations]) -> ScoredModel:
     """Return the model after each explanation was tried against all others in its place."""
-    for number in range(len(now.parts)):
-        rest = search.without(now, number)
-        if rest.explanations in explored:
+    for number in range(len(model.parts)):
+        fewer = search.without(model, number)
+        if fewer.explanations in explored:
             continue
-        explored.add(rest.explanations)
-        others = search.extended(rest)[1:]
-        if others:
-            now, *others = compared([now, *others])
-            best = ranked(others, search.candidates)[0]
-            if best.bic < now.bic - SAME:
-                now = best
-    return now
+        explored.add(fewer.explanations)
+        rivals = search.extended(fewer)[1:]
+        if rivals:
+            model, *rivals = compared([model, *rivals])
+            best = ranked(rivals, search.candidates)[0]
+            if best.bic < model.bic - SAME:
+                model = best
+    return model
 
 
-def prune(search: Search, now: ScoredModel, worth: float, fewest: int = 1) -> ScoredModel:
+def prune(search: Search, model: ScoredModel, worth: float, fewest: int = 1) -> ScoredModel:
     """Return the model without the explanations that are missed least, by less than a worth, while it has others."""
-    while len(now.parts) > fewest:
-        fewer = [search.without(now, number) for number in range(len(now.parts))]
-        best = min(fewer, key=lambda model: model.bic)
-        if best.bic > now.bic + worth:
+    while len(model.parts) > fewest:
+        fewer = [search.without(model, number) for number in range(len(model.parts))]
+        best = min(fewer, key=lambda fit: fit.bic)
+        if best.bic > model.bic + worth:
             break
-        now = best
-    return now
+        model = best
+    return model

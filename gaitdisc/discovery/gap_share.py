@@ -98,11 +98,11 @@ def cross_validated(scale: GapScale, begun: ScoredModel, parts: tuple[Part, ...]
     return CrossValidated(**vars(model), errors=errors, gap=scale.gap_above(float(errors.mean())))
 
 
-def errs_more(one: CrossValidated, other: CrossValidated) -> float:
+def errs_more(model: CrossValidated, other: CrossValidated) -> float:
     """Chance of so much greater left-out errors of one set if it were no worse than another (Wilcoxon, one-sided)."""
-    if not np.isfinite(one.errors).all() or len(one.errors) != len(other.errors):
+    if not np.isfinite(model.errors).all() or len(model.errors) != len(other.errors):
         return 0.0
-    return errors_rise_p(np.sqrt(other.errors), np.sqrt(one.errors))
+    return errors_rise_p(np.sqrt(other.errors), np.sqrt(model.errors))
 
 
 def errors_left_out(fit: Fitted) -> Values:
@@ -117,15 +117,15 @@ def errors_left_out(fit: Fitted) -> Values:
 
 
 def _without_runs(fit: Fitted) -> Values:
-    left, slopes = fit.projected
-    runs = len(left)
+    residual, slopes = fit.projected
+    runs = len(residual)
     folds = min(FOLDS, runs)
     fold = np.arange(runs) * folds // runs
     errors = []
     for number in range(folds):
         moved = _estimate(fit.among(np.flatnonzero(fold != number)))
         for run in np.flatnonzero(fold == number):
-            pieces = np.array_split(left[run] - slopes[run] @ moved, math.ceil(PIECES / runs))
+            pieces = np.array_split(residual[run] - slopes[run] @ moved, math.ceil(PIECES / runs))
             errors += [float(np.mean(piece**2)) for piece in pieces]
     return np.array(errors)
 
@@ -140,8 +140,8 @@ def _without_pieces(fit: Fitted) -> Values:
             white, slopes = fit.white.copy(), fit.slopes.copy()
             white[run, piece], slopes[run, piece] = 0.0, 0.0
             moved = _estimate(replace(fit, white=white, slopes=slopes))
-            left = white[run] - slopes[run, :, known:] @ moved
-            start = np.linalg.lstsq(slopes[run, :, :known], left, rcond=None)[0]
+            residual = white[run] - slopes[run, :, known:] @ moved
+            start = np.linalg.lstsq(slopes[run, :, :known], residual, rcond=None)[0]
             error = fit.white[run, piece] - fit.slopes[run, piece] @ np.concatenate([start, moved])
             errors.append(float(np.mean(error**2)))
     return np.array(errors)
@@ -149,9 +149,9 @@ def _without_pieces(fit: Fitted) -> Values:
 
 def _estimate(fit: Fitted) -> Values:
     """By how much the constants of least misfit differ from a fit's (free,)."""
-    left, slopes = fit.stacked
+    residual, slopes = fit.stacked
     if not fit.free:
         return np.zeros(0)
     normal = slopes.T @ slopes
     size = np.sqrt(np.maximum(np.diag(normal), 1e-300))
-    return np.linalg.lstsq(normal / np.outer(size, size), slopes.T @ left / size, rcond=WEAK)[0] / size
+    return np.linalg.lstsq(normal / np.outer(size, size), slopes.T @ residual / size, rcond=WEAK)[0] / size

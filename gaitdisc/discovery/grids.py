@@ -44,15 +44,15 @@ def find_rhythm(observed: Values, rate: float) -> Rhythm:
         known = np.isfinite(trial)  # without the empty end, gaps bridged by straight lines
         length = int(np.flatnonzero(known.any(axis=1))[-1]) + 1
         at = np.arange(length)
-        whole = zip(trial[:length].T, known[:length].T, strict=True)
-        seen = np.column_stack([np.interp(at, at[there], values[there]) for values, there in whole])
-        centred = seen - seen.mean(axis=0)
+        pairs = zip(trial[:length].T, known[:length].T, strict=True)
+        filled = np.column_stack([np.interp(at, at[there], values[there]) for values, there in pairs])
+        centred = filled - filled.mean(axis=0)
         centred = centred / np.maximum(centred.std(axis=0), 1e-12)
-        power = (np.abs(np.fft.rfft(centred * np.hanning(len(seen))[:, None], axis=0)) ** 2).sum(axis=1)
-        frequency = np.fft.rfftfreq(len(seen), 1 / rate)
+        power = (np.abs(np.fft.rfft(centred * np.hanning(len(filled))[:, None], axis=0)) ** 2).sum(axis=1)
+        frequency = np.fft.rfftfreq(len(filled), 1 / rate)
         power[0] = 0.0
         power = np.maximum(power - NOISE_FACTOR * np.median(power), 0.0)
-        periods.append(1 / max(float((frequency * power).sum() / max(power.sum(), 1e-300)), 1 / (len(seen) / rate)))
+        periods.append(1 / max(float((frequency * power).sum() / max(power.sum(), 1e-300)), 1 / (len(filled) / rate)))
     return Rhythm(float(np.median(periods)), observed.shape[1] / rate, rate)
 
 
@@ -90,4 +90,4 @@ def delays(rhythm: Rhythm, either_way: bool = False) -> Values:
 def cells(constants: dict[str, str], along: Values, rhythm: Rhythm) -> list[dict[str, float]]:
     """Return every combination of the constants' beginnings, for x along the run (sample,)."""
     axes = [grid(kind, along, rhythm) for kind in constants.values()]
-    return [dict(zip(constants, (float(one) for one in cell), strict=True)) for cell in product(*axes)]
+    return [dict(zip(constants, (float(value) for value in cell), strict=True)) for cell in product(*axes)]

@@ -34,12 +34,12 @@ def run_trials(case: Case, model: ScoredModel, trials: tuple[int, ...], like: Sc
     return run
 
 
-def free_run_error(case: Case, now: ScoredModel) -> float:
+def free_run_error(case: Case, model: ScoredModel) -> float:
     """Mean square that free runs of the held-out trials err by, over each channel's variance."""
-    return free_runs(case, now)[0]
+    return free_runs(case, model)[0]
 
 
-def free_runs(case: Case, now: ScoredModel) -> tuple[float, float]:
+def free_runs(case: Case, model: ScoredModel) -> tuple[float, float]:
     """Return what free runs of the held-out trials err by, and what the doubt about starts and inputs makes of it.
 
     A run begins with what its first samples say, a period or a third of the trial, and errs over the others: a start
@@ -47,25 +47,25 @@ def free_runs(case: Case, now: ScoredModel) -> tuple[float, float]:
 
     returns: mean squares, over each channel's variance
     """
-    scale, found = case.scale, []
+    scale, errors = case.scale, []
     for trial in case.held_out:
-        begun = begin_by_first_samples(case, now, trial)
+        begun = begin_by_first_samples(case, model, trial)
         shooting, segments = begun.shooting, begun.shooting.segments
-        whole = shooting.at(now.machine, (), begun.fit.values, begun.fit.starts)
-        error = np.where(np.isfinite(whole.residual), (whole.residual / scale.spread) ** 2, CRITERIA.lost)
-        slopes = np.nan_to_num(whole.slopes.reshape(*whole.residual.shape, -1))
+        fit = shooting.at(model.machine, (), begun.fit.values, begun.fit.starts)
+        error = np.where(np.isfinite(fit.residual), (fit.residual / scale.spread) ** 2, CRITERIA.lost)
+        slopes = np.nan_to_num(fit.slopes.reshape(*fit.residual.shape, -1))
         first = count_first_samples(case, segments)
         late = (segments.samples[:, segments.compared] >= first)[..., None] & shooting.known
         early = slopes[~late & shooting.known]
         start = np.einsum("...i,ij,...j", slopes, np.linalg.pinv(early.T @ early), slopes)
-        moved = np.zeros_like(whole.residual)  # mean square that the stated errors of inputs move the run by
+        moved = np.zeros_like(fit.residual)  # mean square that the stated errors of inputs move the run by
         for seed in range(DRAWN if wandering(case.search.base) else 0):
             drawn = with_drawn_errors(case.measured, case.search.base, seed)
-            _, there = replace(shooting, measured=drawn).run(now.machine, whole.starts[None], whole.values[None])
-            moved += (shooting.seen - whole.residual - there[0]) ** 2 / DRAWN
+            _, there = replace(shooting, measured=drawn).run(model.machine, fit.starts[None], fit.values[None])
+            moved += (shooting.seen - fit.residual - there[0]) ** 2 / DRAWN
         doubt = start * (scale.size / scale.spread) ** 2 + moved / scale.spread**2
-        found.append([np.fmin(error, CRITERIA.lost)[late].mean(), np.fmin(doubt, CRITERIA.lost)[late].mean()])
-    error, doubt = np.mean(found, axis=0)
+        errors.append([np.fmin(error, CRITERIA.lost)[late].mean(), np.fmin(doubt, CRITERIA.lost)[late].mean()])
+    error, doubt = np.mean(errors, axis=0)
     return float(error), float(doubt)
 
 
@@ -85,14 +85,14 @@ def count_first_samples(case: Case, trial: Segments) -> int:
     return trial.margin + max(min(round(case.rhythm.samples), samples // 3), 1)
 
 
-def strays(case: Case, now: ScoredModel, before: float) -> bool:
+def strays(case: Case, model: ScoredModel, before: float) -> bool:
     """Whether free runs of held-out trials err more than as read, and than noise, model error and start explain."""
-    (error, doubt), scale = free_runs(case, now), case.scale
+    (error, doubt), scale = free_runs(case, model), case.scale
     least = float(np.mean((scale.size / scale.spread) ** 2))
     return error > max(before, CRITERIA.grown**2 * (least + doubt))
 
 
-def grows_along_runs(case: Case, now: ScoredModel) -> bool:
+def grows_along_runs(case: Case, model: ScoredModel) -> bool:
     """Whether free runs of unseen data err clearly more than the short runs that a model was fitted to.
 
     What a sensor's noise leaves, also one that remembers, is as large in a long run as in a short one, but for the
@@ -100,28 +100,28 @@ def grows_along_runs(case: Case, now: ScoredModel) -> bool:
     What leaves half of the variance beyond the noise describes nothing, however long the runs. Where a small change of
     the start grows, free runs say nothing.
     """
-    if not case.spans_a_period(now):
+    if not case.spans_a_period(model):
         return False
-    (error, doubt), scale = free_runs(case, now), case.scale
-    short = max(scale.relative(now.fit), CRITERIA.model_error) ** 2
-    noise = float(np.mean((case.noise_floor(now.noise.size) / scale.spread) ** 2))
+    (error, doubt), scale = free_runs(case, model), case.scale
+    short = max(scale.relative(model.fit), CRITERIA.model_error) ** 2
+    noise = float(np.mean((case.noise_floor(model.noise.size) / scale.spread) ** 2))
     return error > min(CRITERIA.grown**2 * (short + doubt), CRITERIA.half + noise + doubt)
 
 
-def is_uninformative(case: Case, as_read: ScoredModel, now: ScoredModel) -> bool:
+def is_uninformative(case: Case, as_read: ScoredModel, model: ScoredModel) -> bool:
     """Whether the held-out data can say nothing for or against what the others speak for.
 
     A spring that engages beyond where a trial goes changes nothing in it. What counts is how far the two runs are
     apart, never which of them the measurement prefers.
     """
-    if not now.parts or now.gained < CRITERIA.support:
+    if not model.parts or model.gained < CRITERIA.support:
         return False
-    return _apart(case, as_read, now, case.held_out) <= CRITERIA.support and bool(_informative(case, as_read, now))
+    return _apart(case, as_read, model, case.held_out) <= CRITERIA.support and bool(_informative(case, as_read, model))
 
 
-def holding_out_others(case: Case, as_read: ScoredModel, now: ScoredModel) -> Case:
+def holding_out_others(case: Case, as_read: ScoredModel, model: ScoredModel) -> Case:
     """Return the case with other trials held out: the last of those that are informative."""
-    held = _informative(case, as_read, now)[-len(case.held_out) :]
+    held = _informative(case, as_read, model)[-len(case.held_out) :]
     learned = tuple(sorted({*case.learned, *case.held_out} - {*held}))
     return replace(case, learned=learned, held_out=held)
 
@@ -134,22 +134,22 @@ def noting_alike(case: Case) -> Case:
     return case.noting(Finding("note", "held out", case.measured.source, what, spoils))
 
 
-def noted(before: Case, now: Case, why: str = ALIKE) -> Case:
+def noted(before: Case, after: Case, why: str = ALIKE) -> Case:
     """Return a case with a finding that says what is held out in place of what, and why."""
-    held = ([f"trial {one.measured.trials[trial]}" for trial in one.held_out] for one in (before, now))
+    held = ([f"trial {case.measured.trials[trial]}" for trial in case.held_out] for case in (before, after))
     what = "{} {}; the search held out {} instead".format(why, *map(" and ".join, held))
-    finding = Finding("note", "held out", now.measured.source, what, "nothing; by default the last trial is held out")
-    return now.noting(finding)
+    finding = Finding("note", "held out", after.measured.source, what, "nothing; by default the last trial is held out")
+    return after.noting(finding)
 
 
-def _informative(case: Case, as_read: ScoredModel, now: ScoredModel) -> tuple[int, ...]:
+def _informative(case: Case, as_read: ScoredModel, model: ScoredModel) -> tuple[int, ...]:
     """Return the learned trials on which the two runs are apart."""
-    return tuple(one for one in case.learned if _apart(case, as_read, now, (one,)) > CRITERIA.support)
+    return tuple(trial for trial in case.learned if _apart(case, as_read, model, (trial,)) > CRITERIA.support)
 
 
-def _apart(case: Case, as_read: ScoredModel, now: ScoredModel, trials: tuple[int, ...]) -> float:
+def _apart(case: Case, as_read: ScoredModel, model: ScoredModel, trials: tuple[int, ...]) -> float:
     """Return by how much the misfit would fall on trials if what was found were true: how far the runs are apart."""
-    before, after = (run_trials(case, one, trials, now) for one in (as_read, now))
+    before, after = (run_trials(case, version, trials, model) for version in (as_read, model))
     return float(((before.fit.white - after.fit.white) ** 2).sum())
 
 
@@ -196,13 +196,13 @@ class Proof:
     def closed(self) -> float:
         """Share of the plain squared error that goes, each channel over its spread."""
         spread = np.nanstd(self.before.shooting.seen, axis=(0, 1))
-        before, after = (np.nanmean((one.fit.residual / spread) ** 2) for one in (self.before, self.after))
+        before, after = (np.nanmean((model.fit.residual / spread) ** 2) for model in (self.before, self.after))
         return float(1 - after / before)
 
 
-def prove(case: Case, before: ScoredModel, now: ScoredModel, like: ScoredModel) -> Proof:
+def prove(case: Case, before: ScoredModel, after: ScoredModel, like: ScoredModel) -> Proof:
     """Run two models over the held-out trials and test what they err by."""
-    first, second = (run_trials(case, one, case.held_out, like) for one in (before, now))
+    first, second = (run_trials(case, model, case.held_out, like) for model in (before, after))
     return Proof(first, second, compare_runs(case, first, second, like))
 
 
@@ -216,10 +216,10 @@ def gap_size(
 ) -> GapSize:
     """Measure the gap before and after, against the noise's standard deviation (channel,)."""
     spread = np.nanstd(after.shooting.seen, axis=(0, 1))
-    rms = [np.sqrt(np.nanmean(one.fit.residual**2, axis=(0, 1))) for one in (before, after)]
+    rms = [np.sqrt(np.nanmean(model.fit.residual**2, axis=(0, 1))) for model in (before, after)]
     sizes = {name: (float(rms[0][i]), float(rms[1][i]), float(floor[i])) for i, name in enumerate(channels)}
-    whole = [float(np.sqrt(np.mean((one / spread) ** 2))) for one in (*rms, floor)]
-    return GapSize(whole[0], whole[1], whole[2], test.p, sizes, test.pieces, alpha=test.alpha)
+    overall = [float(np.sqrt(np.mean((error / spread) ** 2))) for error in (*rms, floor)]
+    return GapSize(overall[0], overall[1], overall[2], test.p, sizes, test.pieces, alpha=test.alpha)
 
 
 def tabulate_runs(case: Case, before: ScoredModel, after: ScoredModel) -> Runs:

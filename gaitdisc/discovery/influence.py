@@ -37,14 +37,14 @@ class Idle:
             ("note", "parameter", self.parameters, "nothing; these data cannot determine such a parameter"),
             ("note", "state", self.states, "nothing; these data cannot determine such an initial value"),
         )
-        found = []
+        findings = []
         for severity, part, names, spoils in idle:
             words = " and ".join(repr(name) for name in names)
-            who = f"{part} {words} has" if len(names) == 1 else f"{part}s {words} have"
+            subject = f"{part} {words} has" if len(names) == 1 else f"{part}s {words} have"
             if names:
-                what = f"{who} no effect on the measured channels"
-                found.append(Finding(severity, "no influence", source, what, spoils))
-        return tuple(found)
+                what = f"{subject} no effect on the measured channels"
+                findings.append(Finding(severity, "no influence", source, what, spoils))
+        return tuple(findings)
 
 
 def idle_parts(shooting: Shooting, simulation: Simulation, places: tuple[Place, ...], starts: Values) -> Idle:
@@ -53,7 +53,7 @@ def idle_parts(shooting: Shooting, simulation: Simulation, places: tuple[Place, 
     states, parameters = starts.shape[1], len(simulation.parameters)
     nudges = np.arange(1, 1 + states + len(machine.defaults))  # version 0 is as it is, each other has one nudge
     of_states, of_numbers = np.split(nudges, [states])
-    many_starts, values = (np.repeat(one[None], 1 + len(nudges), axis=0) for one in (starts, machine.defaults))
+    many_starts, values = (np.repeat(numbers[None], 1 + len(nudges), axis=0) for numbers in (starts, machine.defaults))
     many_starts[of_states, :, np.arange(states)] += NUDGE * np.maximum(np.abs(starts).max(axis=0), 1.0)[:, None]
     sizes = np.abs(machine.defaults)
     values[of_numbers, np.arange(len(of_numbers))] += NUDGE * np.where(sizes, sizes, 1.0)

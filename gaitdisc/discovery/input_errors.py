@@ -45,10 +45,10 @@ def with_constant_errors(simulation: Simulation) -> Simulation:
 def with_drawn_errors(measured: Measured, simulation: Simulation, seed: int) -> Measured:
     """Return trials whose inputs err once more as stated: a stationary Markov process (Ornstein and Uhlenbeck)."""
     rng, inputs = np.random.default_rng(seed), measured.drive.inputs.copy()
-    for column, one in wandering(simulation):
-        kept = float(np.exp(-1 / (measured.rate * (one.wander or 0.0))))
-        for size in (one.sd or 0.0, (one.gain or 0.0) * measured.drive.inputs[..., column]):
+    for column, signal in wandering(simulation):
+        memory = float(np.exp(-1 / (measured.rate * (signal.wander or 0.0))))
+        for size in (signal.sd or 0.0, (signal.gain or 0.0) * measured.drive.inputs[..., column]):
             new = rng.normal(size=inputs.shape[:2])
-            new[:, 1:] *= np.sqrt(1 - kept**2)
-            inputs[..., column] += size * np.asarray(lfilter([1.0], [1.0, -kept], new, axis=1))
+            new[:, 1:] *= np.sqrt(1 - memory**2)
+            inputs[..., column] += size * np.asarray(lfilter([1.0], [1.0, -memory], new, axis=1))
     return replace(measured, drive=replace(measured.drive, inputs=inputs))

@@ -81,7 +81,7 @@ def changes(record: JointRecord) -> list[Change]:
 
     def later(driven: Driven, delay_s: float) -> Driven:
         at = np.arange(len(driven.angle))
-        late = np.column_stack([np.interp(at - delay_s * driven.rate_hz, at, one) for one in driven.envelopes.T])
+        late = np.column_stack([np.interp(at - delay_s * driven.rate_hz, at, emg) for emg in driven.envelopes.T])
         return replace(driven, envelopes=late)
 
     changes.append(Change("wrong_parameter", "emg_delay", "value", DELAYS_S, later))
@@ -113,19 +113,19 @@ def joint_model(record: JointRecord, model: MuscleMoment) -> Simulation:
         Input("others", "N m", "moment of muscles without an electrode, as in the Nominal walk"),
         Input("phase", "1", "percent stride / 100"),
     ]
-    groups = [one for one in (against, towards) if any(group == one for _, group in muscles)]
+    groups = [acting for acting in (against, towards) if any(group == acting for _, group in muscles)]
     numbers = [Parameter("emg_delay", 0.0, "s", meaning="additional delay of EMG compared with the Nominal walk")]
     numbers += [
         Parameter(f"{group}_strength", 1.0, "1", 1 - STRENGTH, 1 + STRENGTH, "strength compared with the Nominal walk")
         for group in groups
     ]
-    said = [f"{group}_strength*{name}_gain*delay({name}, emg_delay)" for name, group in muscles]
-    said += ["others", f"{word}_moment"]
+    terms = [f"{group}_strength*{name}_gain*delay({name}, emg_delay)" for name, group in muscles]
+    terms += ["others", f"{word}_moment"]
     if carried:
         inputs.append(Input("per_kg", "N m/kg", "change of the muscles' moment per kg added to the foot"))
         at_foot = "mass at the foot, in addition to that of the body"
         numbers.append(Parameter("added_foot_mass", 0.0, "kg", meaning=at_foot))
-    total = " + ".join(said) + (" - added_foot_mass*per_kg" if carried else "")
+    total = " + ".join(terms) + (" - added_foot_mass*per_kg" if carried else "")
     return Simulation(
         title=f"{word} of {record.subject}: Nominal moment model and inverse dynamics",
         states=(
@@ -169,12 +169,12 @@ def cut_walk_trials(record: JointRecord, model: MuscleMoment, simulation: Simula
     first, last = 0, int(record.stride.max())
     while first + STRIDES - 1 <= last:
         inside = np.flatnonzero((record.stride >= first) & (record.stride < first + STRIDES))
-        whole = len(inside) > 1 and (np.diff(inside) == 1).all() and usable[inside].all()
-        whole = whole and np.isfinite(record.moment[inside]).mean() > KNOWN
-        if whole:
-            kept = inside[::step]
-            trials.append(TrialColumns(str(len(trials) + 1), record.time[kept], inputs[kept], seen[kept]))
-        first += STRIDES if whole else 1
+        complete = len(inside) > 1 and (np.diff(inside) == 1).all() and usable[inside].all()
+        complete = complete and np.isfinite(record.moment[inside]).mean() > KNOWN
+        if complete:
+            thinned = inside[::step]
+            trials.append(TrialColumns(str(len(trials) + 1), record.time[thinned], inputs[thinned], seen[thinned]))
+        first += STRIDES if complete else 1
     if len(trials) < FEWEST_TRIALS:
         raise StrideError(
             f"the walk must have {FEWEST_TRIALS} series of {STRIDES} consecutive strides with a known load on the foot "
@@ -194,9 +194,9 @@ def lag_signal(signal: Values, samples: float) -> Values:
     """
     from scipy.signal import lfilter
 
-    kept = np.exp(-1 / samples)
-    late = samples * (1 - kept)
-    return signal[:, :1] + lfilter([1 - late, late - kept], [1, -kept], signal - signal[:, :1])
+    decay = np.exp(-1 / samples)
+    late = samples * (1 - decay)
+    return signal[:, :1] + lfilter([1 - late, late - decay], [1, -decay], signal - signal[:, :1])
 
 
 def weighed(candidate: Candidate) -> bool:
@@ -230,7 +230,7 @@ def nominal_and_trials(
     if refusals:
         raise SchemaError(
             f"both walks of {participant} are required",
-            "; ".join(f"{one.condition}: {one.reason}" for one in refusals),
+            "; ".join(f"{refusal.condition}: {refusal.reason}" for refusal in refusals),
             "Correct the walk, or choose another participant.",
         )
     nominal, device = (walks[word] for word in study.conditions.both)
@@ -244,7 +244,7 @@ def nominal_model(walk: ProcessedWalk, name: str) -> Simulation:
     known = np.isfinite(np.column_stack([angle, rate, speedup, phase])).all(axis=1)
     turn = 2 * np.pi * np.outer(phase[known], np.arange(1, HARMONICS + 1))
     library = np.column_stack([-angle[known], -rate[known], np.ones(known.sum()), np.sin(turn), np.cos(turn)])
-    stiffness, damping, mean, *waves = (float(one) for one in np.linalg.lstsq(library, speedup[known], rcond=None)[0])
+    stiffness, damping, mean, *waves = np.linalg.lstsq(library, speedup[known], rcond=None)[0].tolist()
     pieces = [f"{mean:.6g}"]
     for order in range(HARMONICS):
         about = f"{2 * np.pi * (order + 1):.9g}*phase"
@@ -265,20 +265,20 @@ def stride_trials(walk: ProcessedWalk, name: str, strides: int = MOTION_STRIDES)
     """Cut a walk into trials of so many strides in a row."""
     angle, _, _, phase = _motion(walk, name)
     time = np.asarray(walk.state.time)
-    own = walk.strides[walk.side]
+    cycles = walk.strides[walk.side]
     trials: list[TrialColumns] = []
     first = 0
-    while first + strides <= len(own):
-        inside = (time >= own.start[first]) & (time < own.end[first + strides - 1])
-        whole = np.isfinite(phase[inside]).all() and np.isfinite(angle[inside]).all()
-        if whole:
+    while first + strides <= len(cycles):
+        inside = (time >= cycles.start[first]) & (time < cycles.end[first + strides - 1])
+        complete = np.isfinite(phase[inside]).all() and np.isfinite(angle[inside]).all()
+        if complete:
             label = str(len(trials) + 1)
             trials.append(TrialColumns(label, time[inside], phase[inside, None], angle[inside, None]))
-        first += strides if whole else 1
+        first += strides if complete else 1
     if len(trials) < FEWEST_TRIALS:
         raise StrideError(
             f"a walk must have at least {FEWEST_TRIALS} separate series of {strides} consecutive strides",
-            f"{walk.trial.name} has {len(own)} strides, which give {len(trials)} such series",
+            f"{walk.trial.name} has {len(cycles)} strides, which give {len(trials)} such series",
             "Record a longer walk, or use fewer strides per series.",
         )
     return check_measured(trials, ("phase",), ("theta",), walk.trial.name)
@@ -288,5 +288,5 @@ def _motion(walk: ProcessedWalk, name: str) -> tuple[Values, ...]:
     """Angle, rate, acceleration [rad, s] and share of the stride, sample by sample."""
     column = walk.state.names.index(name)
     trajectory = walk.trajectory
-    motion = (np.radians(each[:, column]) for each in (trajectory.x, trajectory.xdot, trajectory.xddot))
+    motion = (np.radians(signal[:, column]) for signal in (trajectory.x, trajectory.xdot, trajectory.xddot))
     return (*motion, np.asarray(trajectory.phi) / 100)

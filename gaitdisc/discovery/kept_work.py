@@ -36,25 +36,25 @@ class Work:
     known: dict[str, Any]  # of the earlier run, as far as this one may still come to it
     chain: str = ""  # hash of all that the next result follows from
     done: dict[str, Any] = field(default_factory=dict)
-    found: str = ""  # what explains the data best so far
-    said: float = field(default_factory=time.perf_counter)  # [s]
+    best: str = ""  # what explains the data best so far
+    reported_at: float = field(default_factory=time.perf_counter)  # [s]
     saved: float = field(default_factory=time.perf_counter)  # [s]
 
     def progress(self, step: str) -> None:
         """Say a step."""
-        self.said = time.perf_counter()
+        self.reported_at = time.perf_counter()
         self.say(step)
 
     def add(self, result: Any) -> None:
         """Keep a result; an earlier run that had not come to it has none that follow from it."""
-        again = self.chain in self.known
-        if again and not self.done:
+        known = self.chain in self.known
+        if known and not self.done:
             self.progress(f"continuing an earlier run: {counted(len(self.known), 'fit')} reused")
         self.done[self.chain] = result
-        if not again:
+        if not known:
             self.known = {}
-            if time.perf_counter() - self.said > SILENT_S:
-                self.progress(f"{counted(len(self.done), 'fit')} done{self.found and f'; so far: {self.found}'}")
+            if time.perf_counter() - self.reported_at > SILENT_S:
+                self.progress(f"{counted(len(self.done), 'fit')} done{self.best and f'; so far: {self.best}'}")
             if time.perf_counter() - self.saved > SAVED_S:
                 self.save()
 
@@ -92,21 +92,21 @@ def kept_work(folder: Path, say: Callable[[str], None], anew: bool = False) -> I
     except BaseException as stop:  # a person or the system
         if work.known or work.done:
             work.save()
-        if isinstance(stop, KeyboardInterrupt) and work.found:
-            raise KeyboardInterrupt(f"So far: {work.found}; held-out data have not confirmed it yet.") from stop
+        if isinstance(stop, KeyboardInterrupt) and work.best:
+            raise KeyboardInterrupt(f"So far: {work.best}; held-out data have not confirmed it yet.") from stop
         raise
     finally:
         _WORK.reset(token)
 
 
-def recall(*given: str | bytes) -> Any:
+def recall(*keys: str | bytes) -> Any:
     """Return what an earlier run kept of the next result, which follows from what is given and those before."""
     work = _WORK.get()
     if work is None:
         return None
     digest = sha256(work.chain.encode())
-    for one in given:
-        digest.update(one.encode() if isinstance(one, str) else one)
+    for key in keys:
+        digest.update(key.encode() if isinstance(key, str) else key)
     work.chain = digest.hexdigest()
     if work.chain in work.known:
         work.add(work.known[work.chain])
@@ -134,4 +134,4 @@ def note_found(words: str) -> None:
     """Note what explains the data best so far."""
     work = _WORK.get()
     if work is not None:
-        work.found = words
+        work.best = words

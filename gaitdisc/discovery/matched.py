@@ -60,31 +60,31 @@ def _check_trials(measured: Measured, where: str) -> None:
 
 def _check_inputs(simulation: Simulation, measured: Measured, where: str) -> None:
     names = [signal.name for signal in simulation.inputs]
-    given = measured.drive.inputs
-    if given.shape[2] != len(names):
+    inputs = measured.drive.inputs
+    if inputs.shape[2] != len(names):
         raise ShapeError(
             f"the trials must have the inputs of {simulation.title!r}: {', '.join(names) or 'none'}",
-            f"the number of inputs in {where} is {given.shape[2]}",
+            f"the number of inputs in {where} is {inputs.shape[2]}",
             "Give one column for each input, in this order.",
         )
     for trial, (name, samples) in enumerate(zip(measured.trials, measured.samples, strict=True)):
-        for sample, column in np.argwhere(~np.isfinite(given[trial, :samples])):
+        for sample, column in np.argwhere(~np.isfinite(inputs[trial, :samples])):
             raise ShapeError(
                 "an input must have a value in every sample",
-                f"{where}, trial {name!r}, {names[column]!r}: {given[trial, sample, column]} in sample {sample + 1}",
+                f"{where}, trial {name!r}, {names[column]!r}: {inputs[trial, sample, column]} in sample {sample + 1}",
                 "Fill the gap, or split the trial there.",
             )
 
 
 def _check_observed(measured: Measured, where: str) -> None:
-    seen = np.isfinite(measured.observed)
-    for trial, column in np.argwhere(~seen.any(axis=1)):
+    known = np.isfinite(measured.observed)
+    for trial, column in np.argwhere(~known.any(axis=1)):
         raise ShapeError(
             "an observed channel must have values in every trial",
             f"{where}, trial {measured.trials[trial]!r} has no value of {measured.channels[column]!r}",
             "Remove the trial or the channel.",
         )
-    values = np.where(seen, measured.observed, np.nan)
+    values = np.where(known, measured.observed, np.nan)
     low, high = np.nanmin(values, axis=(0, 1)), np.nanmax(values, axis=(0, 1))
     for name, least, most in zip(measured.channels, low, high, strict=True):
         if least == most:

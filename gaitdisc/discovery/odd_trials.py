@@ -61,8 +61,8 @@ class Change:
 
 def agreeing_trials(case: Case, measured: Measured) -> Measured:
     """Return the trials, if three or more, without those turned in sign or shifted in time, each with a finding."""
-    odd = odd_trials(case) if len(measured.trials) > FEWEST_OTHERS else ()
-    if not odd:
+    outliers = odd_trials(case) if len(measured.trials) > FEWEST_OTHERS else ()
+    if not outliers:
         return measured
     source = measured.source or case.search.base.title
     findings = tuple(
@@ -70,16 +70,16 @@ def agreeing_trials(case: Case, measured: Measured) -> Measured:
             "warning",
             ODD_TRIAL,
             source,
-            f"trial {measured.trials[one.trial]!r} looks as if {one.change}. With this correction, the error of the "
-            f"simulation falls from {one.errors[0]:.2g} to {one.errors[1]:.2g} standard deviations. In the other "
-            f"trials the same correction raises the error from {one.errors[2]:.2g} to {one.errors[3]:.2g}",
+            f"trial {measured.trials[odd.trial]!r} looks as if {odd.change}. With this correction, the error of the "
+            f"simulation falls from {odd.errors[0]:.2g} to {odd.errors[1]:.2g} standard deviations. In the other "
+            f"trials the same correction raises the error from {odd.errors[2]:.2g} to {odd.errors[3]:.2g}",
             "this trial, which was left out; correct or remove it",
-            one.channel,
+            odd.channel,
         )
-        for one in odd
+        for odd in outliers
     )
-    kept = measured.selected(sorted(set(range(len(measured.trials))) - {one.trial for one in odd}))
-    return replace(kept, findings=(*kept.findings, *findings))
+    agreeing = measured.selected(sorted(set(range(len(measured.trials))) - {odd.trial for odd in outliers}))
+    return replace(agreeing, findings=(*agreeing.findings, *findings))
 
 
 def odd_trials(case: Case) -> tuple[Odd, ...]:
@@ -88,28 +88,28 @@ def odd_trials(case: Case) -> tuple[Odd, ...]:
     samples = max(int(case.predictable_periods() * case.rhythm.samples), FEWEST_SAMPLES)
     as_read = fit_trials(case, case.measured, samples)
     before = trial_errors(as_read)
-    found: dict[int, list[Odd]] = {}
+    suspects: dict[int, list[Odd]] = {}
     for change in (*_turn(case), *_shift(case, as_read)):
         after = trial_errors(fit_trials(case, change.measured, samples))
         for trial in range(count):
-            then, now = (float(np.median(np.delete(each, trial))) for each in (before, after))
-            errors = (float(before[trial]), float(after[trial]), then, now)
+            others_before, others_after = (float(np.median(np.delete(error, trial))) for error in (before, after))
+            errors = (float(before[trial]), float(after[trial]), others_before, others_after)
             likely = change.words.startswith(SIGN) or errors[1] < CRITERIA.apart * errors[2]
             if CRITERIA.apart * errors[1] < errors[0] and errors[3] > CRITERIA.unlike * errors[2] and likely:
-                found.setdefault(trial, []).append(Odd(trial, change.words, change.channel, errors))
-    clear = count - len(found) >= max(FEWEST_OTHERS, len(found) + 1)
-    return tuple(_either(found[trial]) for trial in sorted(found)) if clear else ()
+                suspects.setdefault(trial, []).append(Odd(trial, change.words, change.channel, errors))
+    clear = count - len(suspects) >= max(FEWEST_OTHERS, len(suspects) + 1)
+    return tuple(_either(suspects[trial]) for trial in sorted(suspects)) if clear else ()
 
 
-def _either(found: list[Odd]) -> Odd:
+def _either(changes: list[Odd]) -> Odd:
     """What suits a trial best, with what else would serve alike; of the shifts in time the best alone."""
-    least = min(one.errors[1] for one in found)
-    alike = [one for one in found if one.errors[1] <= AS_GOOD * least]
-    moved = sorted((one for one in alike if not one.change.startswith(SIGN)), key=lambda one: one.errors[1])
-    turned = [one for one in alike if one.change.startswith(SIGN)]
-    names = " or of ".join(one.change.removeprefix(SIGN) for one in turned)
-    words = ([f"{SIGN}{names} were reversed"] if turned else []) + [one.change for one in moved[:1]]
-    return replace([*turned, *moved][0], change=", or ".join(words))
+    least = min(odd.errors[1] for odd in changes)
+    alike = [odd for odd in changes if odd.errors[1] <= AS_GOOD * least]
+    shifted = sorted((odd for odd in alike if not odd.change.startswith(SIGN)), key=lambda odd: odd.errors[1])
+    turned = [odd for odd in alike if odd.change.startswith(SIGN)]
+    names = " or of ".join(odd.change.removeprefix(SIGN) for odd in turned)
+    words = ([f"{SIGN}{names} were reversed"] if turned else []) + [odd.change for odd in shifted[:1]]
+    return replace([*turned, *shifted][0], change=", or ".join(words))
 
 
 def fit_trials(case: Case, measured: Measured, samples: int) -> ScoredModel:
@@ -159,10 +159,10 @@ def _shift(case: Case, as_read: ScoredModel) -> Iterator[Change]:
         seen = measured.observed[trial, : measured.samples[trial]] / spread
         run = segments.of(measured.observed)[mine] / spread - fit.residual[mine] / spread
         slopes, begin = fit.slopes[mine], segments.begin[mine]
-        now, *left = (_left(seen, run, slopes, begin + shift) for shift in (0, *shifts))
-        padded = np.array([np.inf, *left, np.inf])  # local minima, the least first
+        plain, *errors = (_left(seen, run, slopes, begin + shift) for shift in (0, *shifts))
+        padded = np.array([np.inf, *errors, np.inf])  # local minima, the least first
         lowest = np.flatnonzero((padded[1:-1] <= padded[:-2]) & (padded[1:-1] <= padded[2:]))
-        promising = [k for k in sorted(lowest.tolist(), key=lambda k: left[k]) if left[k] < PROMISING * now]
+        promising = [k for k in sorted(lowest.tolist(), key=lambda k: errors[k]) if errors[k] < PROMISING * plain]
         likely |= {shifts[place] for place in promising[:SHIFTS_TRIED]}
     for shift in sorted(likely):
         words = f"its channels are {abs(shift) / measured.rate:.3g} s too {'late' if shift > 0 else 'early'}"
@@ -172,7 +172,7 @@ def _shift(case: Case, as_read: ScoredModel) -> Iterator[Change]:
 def shift_channels(measured: Measured, shift: int) -> Measured:
     """Return trials whose channels come a number of samples earlier against their inputs; each loses as many."""
     inputs, seen = max(-shift, 0), max(shift, 0)
-    trials = [(each, int(samples) - abs(shift)) for each, samples in enumerate(measured.samples)]
+    trials = [(trial, int(samples) - abs(shift)) for trial, samples in enumerate(measured.samples)]
     driving = [measured.drive.inputs[trial, inputs : inputs + samples] for trial, samples in trials]
     drive = Drive.of(driving, measured.rate, measured.drive.time0 + inputs / measured.rate)
     observed = np.full((len(trials), int(drive.samples.max()), len(measured.channels)), np.nan)
@@ -187,9 +187,9 @@ def _left(seen: Values, run: Values, slopes: Values, begin: NDArray[np.intp]) ->
     inside = (samples >= 0) & (samples < len(seen))
     residual = np.where(inside[..., None], seen[np.clip(samples, 0, len(seen) - 1)] - run, 0.0)
     flat = np.nan_to_num(residual).reshape(len(begin), -1)
-    kept = np.repeat(inside, run.shape[2], axis=1)
-    rest = without(find_basis(slopes * kept[..., None]), flat[..., None])[..., 0]
-    return float((rest**2).sum() / max(kept.sum(), 1))
+    mask = np.repeat(inside, run.shape[2], axis=1)
+    rest = without(find_basis(slopes * mask[..., None]), flat[..., None])[..., 0]
+    return float((rest**2).sum() / max(mask.sum(), 1))
 
 
 def without_trial_apart(case: Case) -> Measured:
@@ -211,12 +211,12 @@ def without_trial_apart(case: Case) -> Measured:
     promised = search.scorer(as_read).leave_out_each(search.open_beside(as_read))  # to first order
     trial, other = np.argsort(promised)[:2].tolist()
     least = _leave_out_each(case, trial, spread)
-    wanted = max(CRITERIA.apart * least, CRITERIA.model_error)
-    others = as_read.shooting.segments.trial != other
-    if np.sqrt(np.nanmean((as_read.fit.residual[others] / spread) ** 2)) < wanted:  # a search leaves no more of these
+    limit = max(CRITERIA.apart * least, CRITERIA.model_error)
+    included = as_read.shooting.segments.trial != other
+    if np.sqrt(np.nanmean((as_read.fit.residual[included] / spread) ** 2)) < limit:  # a search leaves no more of these
         return measured
     next_least = _leave_out_each(case, other, spread)
-    if next_least < wanted:
+    if next_least < limit:
         return measured
     what = (
         f"trial {measured.trials[trial]!r} is an outlier: no single model fits it together with the other trials. The "
@@ -225,8 +225,8 @@ def without_trial_apart(case: Case) -> Measured:
     )
     source = measured.source or case.search.base.title
     spoils = "this trial, which was left out; check gain and offset of its channels, and whether one was constant"
-    kept = measured.selected([one for one in range(count) if one != trial])
-    return replace(kept, findings=(*kept.findings, Finding("warning", ODD_TRIAL, source, what, spoils)))
+    agreeing = measured.selected([number for number in range(count) if number != trial])
+    return replace(agreeing, findings=(*agreeing.findings, Finding("warning", ODD_TRIAL, source, what, spoils)))
 
 
 def _leave_out_each(case: Case, trial: int, spread: Values) -> float:
@@ -234,4 +234,4 @@ def _leave_out_each(case: Case, trial: int, spread: Values) -> float:
     others = tuple(other for other in range(len(case.measured.trials)) if other != trial)
     part = replace(case, learned=others)
     as_read = part.as_read()
-    return float(np.sqrt(min(leaves(one, spread) for one in (as_read, *part.search.extended(as_read)))))
+    return float(np.sqrt(min(leaves(model, spread) for model in (as_read, *part.search.extended(as_read)))))

@@ -32,11 +32,11 @@ def estimates_table(discovery: Discovery) -> Table:
     """Every number of what was found, with its interval."""
     rows, records = [], []
     for effect in discovery.effects:
-        for name, one in effect.estimates.items():
+        for name, estimate in effect.estimates.items():
             number = name.replace("_", " ")
-            degrees = estimate_text(one) if display_unit(one.unit)[1] != 1.0 else ""
-            rows.append((spoken(effect.name), effect.place, number, *_amounts(one), degrees))
-            records.append((effect.name, effect.kind, effect.place, name, *asdict(one).values(), effect.term))
+            degrees = estimate_text(estimate) if display_unit(estimate.unit)[1] != 1.0 else ""
+            rows.append((spoken(effect.name), effect.place, number, *_amounts(estimate), degrees))
+            records.append((effect.name, effect.kind, effect.place, name, *asdict(estimate).values(), effect.term))
     caption = "The identified effect, in the units of the simulation file; low and high: 95 % confidence interval."
     headings = ("effect", "place", "number", "value", "low", "high", "in degrees")
     if not any(row[-1] for row in rows):
@@ -54,7 +54,7 @@ def gap_table(discovery: Discovery) -> Table:
                 continue
             shown, factor = display_unit(unit)
             before, after, floor = size.channels[channel]
-            amounts = [with_unit(amount(factor * one, factor * floor / 10), shown) for one in (before, after, floor)]
+            amounts = [with_unit(amount(factor * rms, factor * floor / 10), shown) for rms in (before, after, floor)]
             p = NONE if discovery.effects and before == after else p_cell(size.p)  # the effect changes nothing here
             rows.append((data, channel, *amounts, _percent(share_closed(before, after, floor)), p))
             records.append((data, channel, before, after, floor, unit, share_closed(before, after, floor), size.p))
@@ -78,7 +78,7 @@ def gap_table(discovery: Discovery) -> Table:
 def models_table(discovery: Discovery) -> Table:
     """Held-out error of the models of chapter 4, of a device walk, with the named effect among them."""
     channel, unit = (discovery.channels[-1], discovery.units[-1]) if discovery.channels else ("", "")
-    rows = tuple((name, with_unit(amount(one, 0.1), unit)) for name, one in discovery.beside.items())
+    rows = tuple((name, with_unit(amount(error, 0.1), unit)) for name, error in discovery.beside.items())
     caption = (
         f"Root mean square error of {channel} on the held-out strides. Nominal: calibrated on the Nominal walk. "
         "Augmented: Nominal, plus a regression of its residual. Exo: calibrated on the device walk itself. Augmented "
@@ -97,7 +97,7 @@ def conditions_table(discovery: Discovery) -> Table:
         for effect in condition.effects:
             rows.append((condition.condition, f"{spoken(effect.name)}, {effect.place}", _numbers(effect), *cells))
             named = (condition.condition, effect.name, effect.place)
-            records += [(*named, name, *asdict(each).values(), *errors) for name, each in effect.estimates.items()]
+            records += [(*named, name, *asdict(value).values(), *errors) for name, value in effect.estimates.items()]
         if not condition.effects:
             why = VERDICTS[condition.verdict] if condition.verdict else f"refused: {condition.sentence}"
             rows.append((condition.condition, why, NONE, *cells))
@@ -115,14 +115,14 @@ def conditions_table(discovery: Discovery) -> Table:
 def trials_table(discovery: Discovery) -> Table:
     """Root mean square error of each held-out trial, before and after, channel by channel."""
     runs, rows, records = discovery.runs, [], []
-    errors = [(runs.measured - one) ** 2 for one in (runs.simulated, runs.augmented)]
+    errors = [(runs.measured - run) ** 2 for run in (runs.simulated, runs.augmented)]
     for number in np.unique(runs.trial):
         name = runs.names[number] if runs.names else str(number + 1)
         for place, (channel, unit) in enumerate(zip(discovery.channels, discovery.units, strict=True)):
             shown, factor = display_unit(unit)
             of_trial = (error[runs.trial == number][:, :, place] for error in errors)
-            before, after = (float(np.sqrt(np.nanmean(one))) for one in of_trial)
-            amounts = (with_unit(amount(factor * one, factor * before / 20), shown) for one in (before, after))
+            before, after = (float(np.sqrt(np.nanmean(squares))) for squares in of_trial)
+            amounts = (with_unit(amount(factor * rms, factor * before / 20), shown) for rms in (before, after))
             rows.append((name, channel, *amounts))
             records.append((name, channel, before, after, unit))
     caption = (
@@ -136,11 +136,10 @@ def trials_table(discovery: Discovery) -> Table:
 def where_table(discovery: Discovery) -> Table:
     """Where the gap arises: place, share, part of the stride, region of the states."""
     rows, records = [], []
-    for one in discovery.where:
-        phase = f"{100 * one.phase[0]:.0f} to {100 * one.phase[1]:.0f} %" if one.phase else NONE
-        rows.append((at_place(one.kind, one.place), _percent(one.share_of_gap), phase, one.region or NONE))
-        begin, end = one.phase or (math.nan, math.nan)
-        records.append((one.kind, one.place, one.share_of_gap, begin, end, one.region))
+    for where in discovery.where:
+        phase = f"{100 * where.phase[0]:.0f} to {100 * where.phase[1]:.0f} %" if where.phase else NONE
+        rows.append((at_place(where.kind, where.place), _percent(where.share_of_gap), phase, where.region or NONE))
+        records.append((where.kind, where.place, where.share_of_gap, *(where.phase or (math.nan,) * 2), where.region))
     caption = "Places at which the gap arises. Share: part of the mean squared gap that an effect at the place removes."
     headings = ("place", "share of the gap", "stride", "region")
     if not any(place.phase for place in discovery.where):  # a machine has no stride
@@ -153,9 +152,9 @@ def corrections_table(discovery: Discovery) -> Table:
     """Numbers of the file that moved within their own bounds."""
     rows, records = [], []
     for correction in discovery.corrections:
-        found = correction.found
-        rows.append((correction.parameter, with_unit(f"{correction.given:.6g}", found.unit), *_amounts(found)))
-        records.append((correction.parameter, correction.given, found.value, found.low, found.high, found.unit))
+        fitted = correction.found
+        rows.append((correction.parameter, with_unit(f"{correction.given:.6g}", fitted.unit), *_amounts(fitted)))
+        records.append((correction.parameter, correction.given, fitted.value, fitted.low, fitted.high, fitted.unit))
     caption = (
         "Parameters of the file that changed within their bounds. These are not effects: they were also fitted in the "
         "initial model and in every explanation. Low and high: 95 % confidence interval."
@@ -171,24 +170,24 @@ def explanations_table(discovery: Discovery) -> Table:
     weighed = discovery.explanations or tuple(Explanation((rival,)) for rival in discovery.rivals)
     small = [Explanation((rival,)) for rival in discovery.rivals if rival.small and discovery.explanations]
     rows, records = [], []
-    for number, one in enumerate((*weighed, *small), 1):
-        first, size = one.effects[0], one.held_out
-        own = number == 1 and one.effects == discovery.effects
-        apart = NONE if own or not named else would_distinguish(named[0].name, one.effects[-1].name)
+    for number, explanation in enumerate((*weighed, *small), 1):
+        first, size = explanation.effects[0], explanation.held_out
+        is_named = number == 1 and explanation.effects == discovery.effects
+        recording = NONE if is_named or not named else would_distinguish(named[0].name, explanation.effects[-1].name)
         closed = share_closed(size.before, size.after, size.noise_floor) if size else math.nan
-        tied = "named" if own else "small" if first.small else "yes" if one.tied else "no"
-        numbers = "; ".join(_numbers(effect) for effect in one.effects)
+        tied = "named" if is_named else "small" if first.small else "yes" if explanation.tied else "no"
+        numbers = "; ".join(_numbers(effect) for effect in explanation.effects)
         bic = f"{first.bic:.0f}".replace("-", "−") if math.isfinite(first.bic) else NONE
-        rows.append((str(number), one.as_given, numbers, _percent(closed), bic, tied, apart))
-        records.append((number, one.as_given, closed, size.p if size else math.nan, first.bic, tied, apart))
+        rows.append((str(number), explanation.as_given, numbers, _percent(closed), bic, tied, recording))
+        records.append((number, explanation.as_given, closed, size.p if size else math.nan, first.bic, tied, recording))
     caption = (
         f"Explanations of the gap, n = {len(rows)}. Closed: share of the squared gap above the noise, on held-out "
         "data. Evidence: reduction of the Bayesian criterion compared with the initial model; larger is better. Tied: "
         "these data cannot distinguish the explanation from the named effect; small: it closes too little to be named."
     )
     if not (discovery.provenance and discovery.provenance.section == TRACKED):  # a walk is searched whole
-        given = '--effects "effect@place, effect@place".'
-        caption += f" To use another explanation, fit it without a search: gaitdisc discover ... {given}"
+        option = '--effects "effect@place, effect@place".'
+        caption += f" To use another explanation, fit it without a search: gaitdisc discover ... {option}"
     headings = ("", "effect@place", "its parameters", "closed", "evidence", "tied", "what would distinguish them")
     columns = ("number", "effects", "closed", "p", "evidence", "tied", "what_would_distinguish_them")
     return Table("rivals", caption, headings, tuple(rows), _frame(records, columns))
@@ -199,7 +198,7 @@ def twins_table(discovery: Discovery) -> Table:
     rows: list[tuple[str, str, int]] = []
     kinds = (("yes", discovery.twins.with_effects), ("no", discovery.twins.without)) if discovery.twins else ()
     for acts, answers in kinds:
-        rows += [(acts, *one) for one in sorted(answers.items(), key=lambda one: (-one[1], one[0]))]
+        rows += [(acts, *answer) for answer in sorted(answers.items(), key=lambda answer: (-answer[1], answer[0]))]
     caption = (
         "Answers to simulated records with your inputs, trials and gaps: free runs of the simulation with and without "
         "the identified effect, plus noise of the estimated size. These records contain no unexplained residual, so "
@@ -220,14 +219,15 @@ def share_closed(before: float, after: float, floor: float) -> float:
     return min((before**2 - after**2) / there, 1.0) if there > 0.02 * floor**2 else math.nan
 
 
-def _amounts(one: Estimate) -> list[str]:
+def _amounts(estimate: Estimate) -> list[str]:
     """Value, low and high end of an interval, in the unit of the file."""
-    return [with_unit(amount(each, (one.high - one.low) / 2), one.unit) for each in (one.value, one.low, one.high)]
+    value, low, high, unit = asdict(estimate).values()
+    return [with_unit(amount(number, (high - low) / 2), unit) for number in (value, low, high)]
 
 
-def _numbers(one: FoundEffect) -> str:
-    numbers = [f"{name.replace('_', ' ')} {estimate_text(each)}" for name, each in one.estimates.items()]
-    outside = [text for estimate in one.estimates.values() if (text := outside_text(one, estimate))]
+def _numbers(effect: FoundEffect) -> str:
+    numbers = [f"{name.replace('_', ' ')} {estimate_text(estimate)}" for name, estimate in effect.estimates.items()]
+    outside = [text for estimate in effect.estimates.values() if (text := outside_text(effect, estimate))]
     return ", ".join([*numbers[:2], *outside]) + (f", and {len(numbers) - 2} more" if len(numbers) > 2 else "")
 
 

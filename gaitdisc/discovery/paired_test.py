@@ -57,7 +57,7 @@ def compare_errors(before: Values, after: Values, floor: Values) -> PairedTest:
     if np.isinf(after).any() or (np.isnan(after) & ~np.isnan(before)).any() or np.isinf(before).any():
         return PairedTest(float("nan"), 0, float("nan"))
     known = np.isfinite(before).sum(axis=(0, 1))
-    first, second = (np.nan_to_num(one / floor) for one in (before, after))
+    first, second = (np.nan_to_num(error / floor) for error in (before, after))
     fall, change = float((first**2 - second**2).sum()), first - second
     covariance = _autocovariance(second, known)
     spread = np.sqrt(max(float((covariance * _lag_products(change)).sum()), 0.0))
@@ -68,15 +68,15 @@ def compare_errors(before: Values, after: Values, floor: Values) -> PairedTest:
     return PairedTest(p, max(int(independent), 1), fall)
 
 
-def sum_error(change: Values, left: Values) -> float:
+def sum_error(change: Values, residual: Values) -> float:
     """Standard deviation of the sum of a change's products with noise that has a residual's autocovariance."""
-    covariance = _autocovariance(np.nan_to_num(left), np.isfinite(left).sum(axis=(0, 1)))
+    covariance = _autocovariance(np.nan_to_num(residual), np.isfinite(residual).sum(axis=(0, 1)))
     return float(np.sqrt(max(float((covariance * _lag_products(change)).sum()), 0.0)))
 
 
-def _autocovariance(left: Values, known: NDArray[np.intp]) -> Values:
+def _autocovariance(residual: Values, known: NDArray[np.intp]) -> Values:
     """Return the autocovariance of what is left (lag, channel), weighed down with the lag."""
-    covariance = _lag_products(left / np.sqrt(np.maximum(known, 1)))
+    covariance = _lag_products(residual / np.sqrt(np.maximum(known, 1)))
     lags = np.abs(np.fft.fftfreq(len(covariance), 1 / len(covariance)))
     memory = min(float(np.abs(covariance[1] / covariance[0]).max()), MOST_MEMORY)
     last = 1.1447 * (4 * memory**2 * int(known.max()) / (1 - memory**2) ** 2) ** (1 / 3)  # the longer the memory
@@ -105,6 +105,6 @@ def errors_rise_p(before: Values, after: Values) -> float:
 
     rises = after - before
     size = np.abs(rises)
-    kept = max(FEWEST_DIFFERING, int((size >= ALIKE_BELOW * size.max()).sum()))
-    rises = rises[np.argsort(-size, kind="stable")[:kept]]
+    n_used = max(FEWEST_DIFFERING, int((size >= ALIKE_BELOW * size.max()).sum()))
+    rises = rises[np.argsort(-size, kind="stable")[:n_used]]
     return float(np.asarray(wilcoxon(rises, alternative="greater"), np.float64)[1]) if rises.any() else 1.0

@@ -55,13 +55,13 @@ def list_places(simulation: Simulation) -> tuple[Place, ...]:
     if not simulation.ports:
         named = (name for name in states if name not in rate_of)
         return tuple(_place(simulation, "equation", name, name, rate_of) for name in named)
-    found = []
-    for port in (one.name for one in simulation.ports):
+    places = []
+    for port in (part.name for part in simulation.ports):
         moved = moved_by(simulation, port)
-        own = find_driven_state(states, port, moved)
-        power = float(np.sign(moved[:, states.index(rate_of.get(own, own))].sum()))
-        found.append(replace(_place(simulation, "port", port, own, rate_of), power=power))
-    return tuple(found)
+        driven = find_driven_state(states, port, moved)
+        power = float(np.sign(moved[:, states.index(rate_of.get(driven, driven))].sum()))
+        places.append(replace(_place(simulation, "port", port, driven, rate_of), power=power))
+    return tuple(places)
 
 
 def find_driven_state(states: tuple[str, ...], port: str, moved: Values) -> str:
@@ -93,28 +93,28 @@ def _rates(machine: Compiled, x: Values, u: Values) -> Values:
 
 def is_speed(simulation: Simulation, kind: str, name: str, state: str) -> bool:
     """Whether a state that no other has as its rate is a speed: by its unit, or as a force moves an inertia there."""
-    unit = next(each.unit for each in simulation.states if each.name == state)
+    unit = next(part.unit for part in simulation.states if part.name == state)
     if unit and unit != "1":
         return SPEEDS.fullmatch(unit) is not None
     inertias = [parameter.name for parameter in simulation.parameters if INERTIAS.fullmatch(parameter.unit or "")]
     equation = dict(simulation.equations).get(state, "")
     forces = [port.name for port in simulation.ports if FORCES.fullmatch(port.unit or "")]
-    return kind == "port" and name in forces and any(re.search(rf"/ *\(?{one}\b", equation) for one in inertias)
+    return kind == "port" and name in forces and any(re.search(rf"/ *\(?{inertia}\b", equation) for inertia in inertias)
 
 
 def _place(simulation: Simulation, kind: str, name: str, driven: str, rate_of: dict[str, str]) -> Place:
     position_of = {rate: position for position, rate in rate_of.items()}
     units = {state.name: state.unit for state in simulation.states}
-    own = position_of.get(driven, driven)
-    motions = [(own, rate_of.get(own, own if is_speed(simulation, kind, name, own) else ""))]
-    if own in rate_of:
+    position = position_of.get(driven, driven)
+    motions = [(position, rate_of.get(position, position if is_speed(simulation, kind, name, position) else ""))]
+    if position in rate_of:
         motions += [
-            (f"{own} - {other}", f"{rate_of[own]} - {rate_of[other]}")
+            (f"{position} - {other}", f"{rate_of[position]} - {rate_of[other]}")
             for other in rate_of
-            if other != own and units[other] == units[own]
+            if other != position and units[other] == units[position]
         ]
         if kind == "port":
-            motions += [(other, rate) for other, rate in rate_of.items() if other != own]
+            motions += [(other, rate) for other, rate in rate_of.items() if other != position]
     others = tuple(state.name for state in simulation.states if state.name not in motions[0])
     products = tuple(combinations([state.name for state in simulation.states], 2))
-    return Place(kind, name, tuple(motions), others, products, own in rate_of and units[own] in ANGLES)
+    return Place(kind, name, tuple(motions), others, products, position in rate_of and units[position] in ANGLES)

@@ -79,8 +79,8 @@ class Power:
             most = with_unit(amount(self.sizes[-1], self.sizes[-1] / 10), self.unit)
             instead = f"; in most records with {most} the answer is {self.instead}" if self.instead else ""
             return f"{what} is found in fewer than 19 of 20 records like these, up to a {number} of {most}{instead}."
-        said = with_unit(amount(size, size / 10), self.unit)
-        return f"{what} is found in 19 of 20 records like these if the {number} is at least {said}."
+        smallest = with_unit(amount(size, size / 10), self.unit)
+        return f"{what} is found in 19 of 20 records like these if the {number} is at least {smallest}."
 
 
 def find_power(model: Simulation, data: Measured, request: Request) -> list[Power]:
@@ -101,40 +101,40 @@ def find_power(model: Simulation, data: Measured, request: Request) -> list[Powe
 def find_power_for(effect: str, case: Case, as_read: ScoredModel, model: Simulation, request: Request) -> Power:
     """Search records with more and more of one effect."""
     request.progress(f"fitting {effect}")
-    now = fit_given(case, as_read, (effect,)).found
-    (part,), fit = now.parts, now.fit
+    scored = fit_given(case, as_read, (effect,)).found
+    (part,), fit = scored.parts, scored.fit
     if not part.candidate.idle:
         raise SchemaError(
             "each effect of a plan must have a number for its size", f"{effect} has none", "Give another effect."
         )
     slot, none = next(iter(part.candidate.idle.items()))
-    name = now.names[0][slot]
-    row, place = fit.free.index(name), now.machine.parameters.index(name)
+    name = scored.names[0][slot]
+    row, place = fit.free.index(name), scored.machine.parameters.index(name)
     one_more = Part(part.candidate, part.values | {slot: none + 1.0})
     exactly = np.zeros((len(part.candidate.slots), len(part.candidate.slots)))
     number, estimate = next(iter(name_estimates(one_more, exactly, case.search.base).items()))
-    sizes, found, most = (math.sqrt(fit.covariance[row, row]) * SIZES).tolist(), [], ""
+    sizes, counts, most = (math.sqrt(fit.covariance[row, row]) * SIZES).tolist(), [], ""
     for size in sizes:
         values = fit.values.copy()
         values[place] = none + (size if estimate.value >= 0 else -size)
-        grown = replace(now, fit=replace(fit, values=values))
+        grown = replace(scored, fit=replace(fit, values=values))
         source = TwinSource(case, grown, as_read.noise, None if part.candidate.states else as_read)
         answers = Counter(search_records([source], model, request))
-        found.append(answers[effect])
+        counts.append(answers[effect])
         most = answers.most_common(1)[0][0]
-        if min(found[-2:]) >= POWER * request.twins and len(found) > 1:
+        if min(counts[-2:]) >= POWER * request.twins and len(counts) > 1:
             break
     instead = "" if most == effect else most
-    sized = tuple(sizes[: len(found)])
-    return Power(effect, number, estimate.unit, sized, (*found,), records=request.twins, instead=instead)
+    sized = tuple(sizes[: len(counts)])
+    return Power(effect, number, estimate.unit, sized, (*counts,), records=request.twins, instead=instead)
 
 
-def tabulate_power(found: Sequence[Power]) -> pd.DataFrame:
+def tabulate_power(powers: Sequence[Power]) -> pd.DataFrame:
     """A row for each effect and size."""
     columns = ("effect", "number", "size", "unit", "found", "records")
     rows = (
-        (one.effect, one.number, size, one.unit, count, one.records)
-        for one in found
-        for size, count in zip(one.sizes, one.found, strict=True)
+        (power.effect, power.number, size, power.unit, count, power.records)
+        for power in powers
+        for size, count in zip(power.sizes, power.found, strict=True)
     )
     return pd.DataFrame([*rows], columns=pd.Index(columns))

@@ -55,8 +55,8 @@ class ResidualMoment:
         """Samples of each block of the time, and those that are further than a gap from it."""
         every = np.arange(len(self.time))
         count = max(min(len(every) // BLOCK, MOST_BLOCKS), 2)
-        parts = np.array_split(every, count)
-        return [(part, every[(every < part[0] - GAP) | (every > part[-1] + GAP)]) for part in parts]
+        blocks = np.array_split(every, count)
+        return [(block, every[(every < block[0] - GAP) | (every > block[-1] + GAP)]) for block in blocks]
 
     def explained(self, candidate: Candidate, values: Mapping[str, float]) -> Values:
         """What a candidate with some numbers makes of the moment (sample,) [N m]."""
@@ -108,14 +108,14 @@ class JointFinding:
     def least(self, column: Values) -> float:
         """Smallest factor of a column (sample,) that would be named here."""
         samples = len(self.joint.time)
-        wanted = (CRITERIA.margin + self._price(1)) * SAMPLES_A_NUMBER / samples
+        required = (CRITERIA.margin + self._price(1)) * SAMPLES_A_NUMBER / samples
         size = float(np.linalg.norm(self._white(column)))
-        return float(np.sqrt(samples * np.expm1(wanted))) / size if size > FLAT else float("inf")
+        return float(np.sqrt(samples * np.expm1(required))) / size if size > FLAT else float("inf")
 
     def weigh(self, candidates: tuple[Candidate, ...], refined: bool) -> list[Named]:
         """Fit candidates to all of the record, the best first."""
         fitted = [self._fitted(candidate, refined) for candidate in candidates]
-        return sorted((named for named in fitted if named is not None), key=lambda one: -one.gained)
+        return sorted((named for named in fitted if named is not None), key=lambda named: -named.gained)
 
     def _fitted(self, candidate: Candidate, refined: bool) -> Named | None:
         """Numbers of a candidate on all of the record, None where it is nowhere in it."""
@@ -126,24 +126,24 @@ class JointFinding:
         explained = joint.explained(candidate, values)
         slopes = np.column_stack([joint.slope(candidate, values, slot) for slot in candidate.slots])
         jacobian = self._white(slopes)
-        before, after = (float((self._white(each) ** 2).sum()) for each in (joint.left, joint.left - explained))
+        before, after = (float((self._white(residual) ** 2).sum()) for residual in (joint.left, joint.left - explained))
         variance = max(after / max(samples - count, 1), 1.0)
         covariance = np.asarray(variance * np.linalg.pinv(jacobian.T @ jacobian), np.float64)
         gained = _fall(before, after, samples) - self._price(count)
         return Named(candidate, values, covariance, explained, np.zeros(samples), gained)
 
-    def prove(self, one: Named) -> Named:
+    def prove(self, fit: Named) -> Named:
         """Predict each block of the time with numbers of the rest."""
         joint = self.joint
-        predicted = joint.predict(one.candidate, [self._numbers(one.candidate, learned) for _, learned in joint.blocks])
-        before, after = (float((self._white(each) ** 2).sum()) for each in (joint.left, joint.left - predicted))
+        predicted = joint.predict(fit.candidate, [self._numbers(fit.candidate, learned) for _, learned in joint.blocks])
+        before, after = (float((self._white(residual) ** 2).sum()) for residual in (joint.left, joint.left - predicted))
         held_out = _fall(before, after, len(predicted))
-        return replace(one, predicted=predicted, held_out=held_out, test=self.test(predicted))
+        return replace(fit, predicted=predicted, held_out=held_out, test=self.test(predicted))
 
     def test(self, predicted: Values) -> PairedTest:
         """Whether what was predicted (sample,) bears out on held-out time."""
-        left = self.joint.left
-        pair = left[None, :, None], (left - predicted)[None, :, None]
+        residual = self.joint.left
+        pair = residual[None, :, None], (residual - predicted)[None, :, None]
         return compare_errors(*pair, np.array([self.joint.floor or 1.0]))
 
     def _numbers(self, candidate: Candidate, some: NDArray[np.intp], refined: bool = True) -> dict[str, float] | None:
@@ -168,26 +168,26 @@ class JointFinding:
         rhythm = Rhythm(span, span, (len(joint.time) - 1) / span)
         starts = cells(dict(candidate.constants or {}), joint.along, rhythm)
         if late:
-            starts = [{"value": float(one)} for one in np.linspace(-LATEST_S, LATEST_S, DELAYS)]
-        scores = [fit(one)[0] for one in starts]
+            starts = [{"value": float(delay)} for delay in np.linspace(-LATEST_S, LATEST_S, DELAYS)]
+        scores = [fit(start)[0] for start in starts]
         best = starts[int(np.argmin(scores))]
         if not np.isfinite(min(scores)):
             return None
         if best and refined:
             names = list(best)
-            grids = [np.unique([one[name] for one in starts]) for name in names]
-            steps = [np.median(np.diff(each)) if len(each) > 1 else 0.1 * abs(each[0]) for each in grids]
+            grids = [np.unique([start[name] for start in starts]) for name in names]
+            steps = [np.median(np.diff(grid)) if len(grid) > 1 else 0.1 * abs(grid[0]) for grid in grids]
             width = np.maximum(steps, FLAT)
             at = np.array([best[name] for name in names])
             simplex = np.vstack([at, *(at + step * np.eye(len(names))[k] for k, step in enumerate(width))])
-            found = minimize(
+            optimum = minimize(
                 lambda x: min(fit(dict(zip(names, x, strict=True)))[0], 1e12),
                 at,
                 method="Nelder-Mead",
                 options={"initial_simplex": simplex, "xatol": 1e-4 * width.max(), "fatol": 1e-3, "maxiter": 60},
             )
-            if found.fun <= min(scores):
-                best = dict(zip(names, map(float, found.x), strict=True))
+            if optimum.fun <= min(scores):
+                best = dict(zip(names, map(float, optimum.x), strict=True))
         factors = fit(best)[1]
         if candidate.verdict == "wrong_parameter":
             return best if late else {"value": candidate.value + float(factors[0])}
@@ -208,31 +208,31 @@ def joint_finding(joint: ResidualMoment, candidates: tuple[Candidate, ...], join
     from scipy.stats import chi2
 
     floor = CRITERIA.model_error * float(np.std(joint.demanded))
-    found = JointFinding(joint, _noise_of_angles(joint), len(candidates) * joints)
-    size = float((found._white(joint.left) ** 2).sum())
-    found = replace(found, at_noise=bool(chi2.sf(size, len(joint.time)) > CHANCE / joints))
+    finding = JointFinding(joint, _noise_of_angles(joint), len(candidates) * joints)
+    size = float((finding._white(joint.left) ** 2).sum())
+    finding = replace(finding, at_noise=bool(chi2.sf(size, len(joint.time)) > CHANCE / joints))
     ordered: list[Named] = []
     for _ in range(ROUNDS):
-        coarse = found.weigh(candidates, refined=False)
-        best = tuple(one.candidate for one in coarse[:REFINED])
-        ordered = found.weigh(best, refined=True)
-        rest = min((joint.left - named.explained for named in ordered), key=np.linalg.norm, default=joint.left)
-        if np.sqrt(np.mean(rest**2)) <= found.noise.size[0]:
+        coarse = finding.weigh(candidates, refined=False)
+        best = tuple(named.candidate for named in coarse[:REFINED])
+        ordered = finding.weigh(best, refined=True)
+        residual = min((joint.left - named.explained for named in ordered), key=np.linalg.norm, default=joint.left)
+        if np.sqrt(np.mean(residual**2)) <= finding.noise.size[0]:
             break
-        found = replace(found, noise=find_noise(rest[None, :, None], used=2, least=floor))
+        finding = replace(finding, noise=find_noise(residual[None, :, None], used=2, least=floor))
     near = [named for named in ordered if named.gained > max(ordered[0].gained - CRITERIA.margin, CRITERIA.margin)]
-    proven = sorted(map(found.prove, near), key=lambda one: -one.held_out)
+    proven = sorted(map(finding.prove, near), key=lambda named: -named.held_out)
     alike = [named for named in proven if named.held_out > proven[0].held_out - CRITERIA.tie]  # of these the plainest
     # of two with one penalty the first in the catalogue is the simpler
     order = [candidate.identity for candidate in candidates]
-    alike.sort(key=lambda one: (one.candidate.penalty(one.values), order.index(one.candidate.identity)))
+    alike.sort(key=lambda named: (named.candidate.penalty(named.values), order.index(named.candidate.identity)))
     ordered = [*alike, *proven[len(alike) :], *ordered[len(near) :]]
     supported = False  # by an explanation of a size that matters, which closes enough on held-out time
     if proven:
-        best, left = ordered[0], float(np.sum((joint.left - ordered[0].predicted) ** 2))
+        best, squares = ordered[0], float(np.sum((joint.left - ordered[0].predicted) ** 2))
         matters = not best.candidate.bounds or best.candidate.beyond_bounds(best.values["value"]) > 0
-        supported = matters and left < (1 - CLOSED) * float(np.sum(joint.left**2))
-    return replace(found, named=ordered[0] if supported else None, rivals=tuple(ordered))
+        supported = matters and squares < (1 - CLOSED) * float(np.sum(joint.left**2))
+    return replace(finding, named=ordered[0] if supported else None, rivals=tuple(ordered))
 
 
 def name_across_joints(joints: list[JointFinding], candidates: tuple[Candidate, ...]) -> list[JointFinding]:
@@ -240,44 +240,44 @@ def name_across_joints(joints: list[JointFinding], candidates: tuple[Candidate, 
 
     What either answer leaves counts as white noise of unknown size; both kinds of answer are as likely beforehand.
     """
-    found, most, choice = joints, CRITERIA.margin, 2 * float(np.log(max(2 * len(candidates), 1)))
-    first = [replace(one, noise=_noise_of_angles(one.joint)) for one in joints]
+    findings, most, choice = joints, CRITERIA.margin, 2 * float(np.log(max(2 * len(candidates), 1)))
+    first = [replace(joint, noise=_noise_of_angles(joint.joint)) for joint in joints]
     for candidate in candidates:
         named = _fit_across_joints(first, candidate)
-        gained = -choice - float(np.log(sum(len(one.explained) for one in named.values())))
+        gained = -choice - float(np.log(sum(len(fit.explained) for fit in named.values())))
         before, after = 0.0, 0.0
-        for k, one in named.items():
+        for k, fit in named.items():
             joint, rivals = joints[k].joint, joints[k].rivals
-            own = rivals[0].explained if rivals and rivals[0].gained > 0 else 0.0
-            sizes = [max(float(np.mean((joint.left - part) ** 2)), joint.floor**2) for part in (own, one.explained)]
+            rival = rivals[0].explained if rivals and rivals[0].gained > 0 else 0.0
+            sizes = [max(float(np.mean((joint.left - part) ** 2)), joint.floor**2) for part in (rival, fit.explained)]
             gained += len(joint.left) / SAMPLES_A_NUMBER * float(np.log(sizes[0] / sizes[1]))
-            gained += joints[k]._price(len(rivals[0].candidate.slots)) if np.any(own) else 0.0
+            gained += joints[k]._price(len(rivals[0].candidate.slots)) if np.any(rival) else 0.0
             before += float(np.sum((joint.left / joint.floor) ** 2))
-            after += float(np.sum(((joint.left - one.predicted) / joint.floor) ** 2))
+            after += float(np.sum(((joint.left - fit.predicted) / joint.floor) ** 2))
         if gained > most and after < (1 - CLOSED) * before:
-            found, most = list(joints), gained
-            for k, one in named.items():
-                whole = replace(one, gained=gained)
-                found[k] = replace(joints[k], named=whole, rivals=(whole, *joints[k].rivals))
-    return found
+            findings, most = list(joints), gained
+            for k, fit in named.items():
+                shared = replace(fit, gained=gained)
+                findings[k] = replace(joints[k], named=shared, rivals=(shared, *joints[k].rivals))
+    return findings
 
 
 def _fit_across_joints(joints: list[JointFinding], candidate: Candidate) -> dict[int, Named]:
     """Fit one number at all joints where it acts, weighed by their information, and predict each block of the time."""
-    fitted = {k: one for k, joint in enumerate(joints) if (one := joint._fitted(candidate, refined=False))}
-    weights = np.array([1 / float(one.covariance[0, 0]) for one in fitted.values()])
+    fitted = {k: fit for k, joint in enumerate(joints) if (fit := joint._fitted(candidate, refined=False))}
+    weights = np.array([1 / float(fit.covariance[0, 0]) for fit in fitted.values()])
 
     def pool(some: NDArray[np.intp]) -> dict[str, float]:
         numbers = [(joints[k]._numbers(candidate, some, refined=False) or candidate.idle)["value"] for k in fitted]
         return {"value": float(weights @ numbers / weights.sum())}
 
     of_blocks = [pool(learned) for _, learned in joints[0].joint.blocks]
-    whole, variance = pool(np.arange(len(joints[0].joint.time))), np.array([[1 / weights.sum()]])
-    for k, one in fitted.items():
+    mean, variance = pool(np.arange(len(joints[0].joint.time))), np.array([[1 / weights.sum()]])
+    for k, fit in fitted.items():
         joint = joints[k].joint
-        predicted, explained = joint.predict(candidate, of_blocks), joint.explained(candidate, whole)
+        predicted, explained = joint.predict(candidate, of_blocks), joint.explained(candidate, mean)
         test = joints[k].test(predicted)
-        fitted[k] = replace(one, values=whole, covariance=variance, explained=explained, predicted=predicted, test=test)
+        fitted[k] = replace(fit, values=mean, covariance=variance, explained=explained, predicted=predicted, test=test)
     return fitted
 
 

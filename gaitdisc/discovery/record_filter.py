@@ -7,7 +7,8 @@ linear, so that what a start state, a constant or an effect changes in the recor
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -17,6 +18,7 @@ from gaitdisc.recording.arrays import Values
 SETTLING_PERIODS = 1.0  # of the cut-off, after which the filter has forgotten all but 1 % (exp(-2 pi / sqrt 2))
 DENSE = 4.0  # samples a period of the cut-off hold all that passes: at half that rate 0.4 % of the power is left
 ROOT_TWO = math.sqrt(2.0)
+CUTOFF_ERRORS = (0.95, 1.05, 0.9, 1.1, 0.86, 1.16)  # within two of its standard deviations, 3 to 7 % (41 records)
 
 
 @dataclass(frozen=True)
@@ -41,6 +43,12 @@ class RecordFilter:
         """Which samples hold all that the filter passes: 1 where they are all needed, 2 where every other is enough."""
         highest = max([one or math.inf for one in self.cutoffs_hz], default=math.inf)
         return max(int(self.rate_hz / (DENSE * highest)), 1)
+
+    def within_error(self, stated: Sequence[float | None]) -> list[RecordFilter]:
+        """Filters with cut-offs lower and higher by the error of an estimate, the nearest first; stated ones stand."""
+        both = [*zip(self.cutoffs_hz, stated, strict=True)]
+        scaled = [tuple(hz and (hz if hz == own else hz * by) for hz, own in both) for by in CUTOFF_ERRORS]
+        return [replace(self, cutoffs_hz=cutoffs) for cutoffs in scaled if cutoffs != self.cutoffs_hz]
 
     @property
     def gains(self) -> Values:

@@ -179,11 +179,11 @@ class Twins:
     def sentence(self) -> str:
         """How often the answer returns or one is invented, and what would distinguish it from those tied with it."""
         invented = sum(count for answer, count in self.without.items() if "@" in answer)
-        said = [f"names an effect in {invented} of {self.records} records in which nothing is missing"]
+        clauses = [f"names an effect in {invented} of {self.records} records in which nothing is missing"]
         if self.with_effects:
             same = self.with_effects.get(self.named, 0)
-            said.insert(0, f"gives the same answer in {same} of {self.records} records with the effect")
-        return f"In simulated records like these, the search {', and '.join(said)}. {self.apart}".rstrip()
+            clauses.insert(0, f"gives the same answer in {same} of {self.records} records with the effect")
+        return f"In simulated records like these, the search {', and '.join(clauses)}. {self.apart}".rstrip()
 
 
 @dataclass(frozen=True)
@@ -308,16 +308,16 @@ class Discovery(Saved, file="discovery.json"):
         rows = [("verdict", self.verdict.replace("_", " ")), ("held-out gap", gap)]
         for effect in self.effects:
             amounts = (
-                f"{name} {each.value:.3g} ({each.low:.3g} to {each.high:.3g}) {each.unit}".strip()
-                for name, each in effect.estimates.items()
+                f"{name} {estimate.value:.3g} ({estimate.low:.3g} to {estimate.high:.3g}) {estimate.unit}".strip()
+                for name, estimate in effect.estimates.items()
             )
             rows.append((f"{effect.name} at {effect.place}", "; ".join(amounts)))
         return as_html(self.sentence, rows)
 
     def to_json(self) -> dict[str, Any]:
         """Return the content of `discovery.json`; a number that is not finite is null."""
-        conditions = [asdict(one) | {"effects": [*map(_effect, one.effects)]} for one in self.conditions]
-        found = {
+        conditions = [asdict(row) | {"effects": [*map(_effect, row.effects)]} for row in self.conditions]
+        content = {
             "verdict": self.verdict,
             "where": [_place_fields(place) for place in self.where],
             "effects": [_effect(effect) | ({"small": True} if effect.small else {}) for effect in self.effects],
@@ -343,46 +343,46 @@ class Discovery(Saved, file="discovery.json"):
             **({"beside": self.beside} if self.beside else {}),
             **({"conditions": conditions} if conditions else {}),
         }
-        return _finite(found) | {
+        return _finite(content) | {
             "findings": [asdict(finding) for finding in self.findings],
             "provenance": asdict(self.provenance) if self.provenance else None,
         }
 
 
-def _place_fields(one: Whereabouts | FoundEffect) -> dict[str, Any]:
+def _place_fields(entry: Whereabouts | FoundEffect) -> dict[str, Any]:
     """Fields of what has a place; its kind is the first key."""
-    values = asdict(one)
+    values = asdict(entry)
     return {values.pop("kind"): values.pop("place")} | values
 
 
-def _effect(one: FoundEffect) -> dict[str, Any]:
-    values = _place_fields(one)
-    place = {key: values[key] for key in (one.kind, "name", "term", "estimates")}
-    evidence = {"evidence": {"held_out": one.held_out, "bic": one.bic}}
+def _effect(effect: FoundEffect) -> dict[str, Any]:
+    values = _place_fields(effect)
+    place = {key: values[key] for key in (effect.kind, "name", "term", "estimates")}
+    evidence = {"evidence": {"held_out": effect.held_out, "bic": effect.bic}}
     some = {key: values[key] for key in ("bounds", "states") if values[key]}
-    if one.reads_as:
-        some["reads_as"] = {"expression": one.reads_as, "effect": one.reads_as_effect or None}
+    if effect.reads_as:
+        some["reads_as"] = {"expression": effect.reads_as, "effect": effect.reads_as_effect or None}
     return place | evidence | some
 
 
-def _gap(one: GapSize) -> dict[str, Any]:
+def _gap(size: GapSize) -> dict[str, Any]:
     return {
-        **dict(zip(SIZES, (one.before, one.after, one.noise_floor), strict=True)),
-        "unexplained": one.unexplained,
-        "p": one.p,
-        "pieces": one.pieces,
-        "alpha": one.alpha,
-        **({"of": one.of} if one.of else {}),
-        "channels": {name: dict(zip(SIZES, sizes, strict=True)) for name, sizes in one.channels.items()},
+        **dict(zip(SIZES, (size.before, size.after, size.noise_floor), strict=True)),
+        "unexplained": size.unexplained,
+        "p": size.p,
+        "pieces": size.pieces,
+        "alpha": size.alpha,
+        **({"of": size.of} if size.of else {}),
+        "channels": {name: dict(zip(SIZES, sizes, strict=True)) for name, sizes in size.channels.items()},
     }
 
 
 def _finite(value: Any) -> Any:
     """Return what JSON knows: lists, and null in the place of a number that is not finite."""
     if isinstance(value, Mapping):
-        return {key: _finite(one) for key, one in value.items()}
+        return {key: _finite(item) for key, item in value.items()}
     if isinstance(value, list | tuple):
-        return [_finite(one) for one in value]
+        return [_finite(item) for item in value]
     if isinstance(value, float):
         return float(value) if np.isfinite(value) else None
     return value

@@ -98,8 +98,8 @@ class Scorer:
             for place, rest in enumerate(others):
                 gains = (score.gain for score in explained[place].gains(some, columns[rest]))
                 gained[place] = max([gained[place], *gains])
-        left = fit.projected[0]
-        return np.array([(left[rest] ** 2).mean() for rest in others]) - gained / [left[rest].size for rest in others]
+        residual = fit.projected[0]
+        return np.array([(residual[at] ** 2).mean() for at in others]) - gained / [residual[at].size for at in others]
 
     def _columns(self, candidates: tuple[Candidate, ...]) -> Iterator[tuple[list[_Cell], Values]]:
         """Yield cells and what each of their slots would change, whitened (segment, number, column)."""
@@ -107,7 +107,7 @@ class Scorer:
         roles = sorted({candidate.role for candidate in candidates if candidate.constants})
         along = dict(zip(roles, np.moveaxis(self._along(roles), -1, 0), strict=True))
         for number, place in enumerate(self.places):
-            here = [one for one in candidates if (one.kind, one.place) == (place.kind, place.name)]
+            here = [effect for effect in candidates if (effect.kind, effect.place) == (place.kind, place.name)]
             for candidate in here:
                 if candidate.states:
                     some, push = self._with_own_states(candidate, along)
@@ -134,16 +134,16 @@ class Scorer:
 
     def _with_own_states(self, candidate: Candidate, along: dict[str, Values]) -> tuple[list[_Cell], Values]:
         """Cells of a term with states of its own, and its pieces along the run (segment, sample, cell times piece)."""
-        some, whole = self._cells(candidate, along), self.model.simulation
+        some, simulation = self._cells(candidate, along), self.model.simulation
         slots = {slot: candidate.named(TRIED)[slot] for slot in candidate.constants or {}}
-        own, pieces = candidate.states_at(slots), candidate.pieces_at(slots)
+        rates, pieces = candidate.states_at(slots), candidate.pieces_at(slots)
         alone = replace(  # without what moves the simulation: its states are known along the run
-            whole,
-            states=(*whole.states, *(State(name) for name in own)),
-            parameters=(*whole.parameters, *(Parameter(name, 1.0) for name in slots.values())),
+            simulation,
+            states=(*simulation.states, *(State(name) for name in rates)),
+            parameters=(*simulation.parameters, *(Parameter(name, 1.0) for name in slots.values())),
             ports=(),
-            definitions=(*((port.name, "0") for port in whole.ports), *whole.definitions),
-            equations=(*((state.name, "0") for state in whole.states), *own.items()),
+            definitions=(*((port.name, "0") for port in simulation.ports), *simulation.definitions),
+            equations=(*((state.name, "0") for state in simulation.states), *rates.items()),
             effects=(),
             observations=tuple((f"piece_{i}", piece) for i, piece in enumerate(pieces)),
             sensors=(),
@@ -162,8 +162,8 @@ class Scorer:
                 values[version, machine.parameters.index(names[slot])] = value
         states = np.repeat(self.model.fit.states[None], len(tried), axis=0)
         if added := len(machine.states) - states.shape[-1]:
-            own = follow(self.model.shooting, machine.simulation, values)[..., -added:]
-            states = np.concatenate([states, np.stack([self.model.shooting.segments.of(one) for one in own])], axis=-1)
+            runs = follow(self.model.shooting, machine.simulation, values)[..., -added:]
+            states = np.concatenate([states, np.stack([self.model.shooting.segments.of(run) for run in runs])], axis=-1)
         return values, states
 
     def _along(self, expressions: list[str]) -> Values:
@@ -225,26 +225,26 @@ class _Explained:
     @classmethod
     def by(cls, fit: Fitted) -> _Explained:
         """What is explained in a fit."""
-        left, flat = fit.stacked
+        residual, flat = fit.stacked
         size = np.linalg.norm(flat, axis=0)
         known = np.linalg.qr(flat[:, size > 0] / size[size > 0])[0]
-        return cls(fit.start_basis, known, left - known @ (known.T @ left))
+        return cls(fit.start_basis, known, residual - known @ (known.T @ residual))
 
     def gains(self, some: list[_Cell], columns: Values) -> Iterator[Score]:
         """Yield the score of each cell that changes anything; it has as many columns as slots that these stand for."""
-        own = without(self.starts, columns).reshape(-1, columns.shape[2])
-        own = np.vstack([own, np.zeros((self.left.size - len(own), own.shape[1]))])
-        own -= self.constants @ (self.constants.T @ own)
-        normal, match = own.T @ own, own.T @ self.left
+        slopes = without(self.starts, columns).reshape(-1, columns.shape[2])
+        slopes = np.vstack([slopes, np.zeros((self.left.size - len(slopes), slopes.shape[1]))])
+        slopes -= self.constants @ (self.constants.T @ slopes)
+        normal, match = slopes.T @ slopes, slopes.T @ self.left
         size = np.maximum(np.sqrt(np.maximum(np.diag(normal), 0)), 1e-150)
         normal = normal / np.outer(size, size)
         first = 0
         for cell in some:
             mine = slice(first, first + len(cell.idle))
             first = mine.stop
-            found = np.linalg.lstsq(normal[mine, mine], match[mine] / size[mine], rcond=1e-10)[0] / size[mine]
-            gain = float(found @ match[mine])
-            if size[mine].max() <= 1e-9 or (cell.whole and found[0] <= 0):
+            steps = np.linalg.lstsq(normal[mine, mine], match[mine] / size[mine], rcond=1e-10)[0] / size[mine]
+            gain = float(steps @ match[mine])
+            if size[mine].max() <= 1e-9 or (cell.whole and steps[0] <= 0):
                 continue
-            values = {slot: none + float(factor) for (slot, none), factor in zip(cell.idle.items(), found, strict=True)}
+            values = {slot: none + float(factor) for (slot, none), factor in zip(cell.idle.items(), steps, strict=True)}
             yield Score(cell.candidate, values | cell.constants, gain)

@@ -41,45 +41,45 @@ class Search:
     guess: Values = field(compare=False)  # (trial, sample, state), states of the record, roughly
     progress: Callable[[str], None] = field(default_factory=lambda: lambda _: None, compare=False)
 
-    def extended(self, now: ScoredModel) -> list[ScoredModel]:
+    def extended(self, current: ScoredModel) -> list[ScoredModel]:
         """Return the model and others with one explanation more, under the noise of the best; nothing if none fits."""
-        penalty = float(np.log(now.fit.white.size))
+        penalty = float(np.log(current.fit.white.size))
 
         def price(score: Score) -> float:
             """By how much the criterion would rise, to first order."""
             return penalty * len(score.candidate.slots) - score.gain
 
-        scores = self.scorer(now).scores(self.open_beside(now))
+        scores = self.scorer(current).scores(self.open_beside(current))
         worth = sorted((score for score in scores if price(score) < 0), key=price)[:REFITTED]
-        fitted = [self.with_part(now, score) for score in self._report(worth)]
+        fitted = [self.with_part(current, score) for score in self._report(worth)]
         fitted = [model for model in fitted if self.sensible(model) and is_certain(model, -1)]
-        fitted += [] if now.parts else self.far_off(now)
+        fitted += [] if current.parts else self.far_off(current)
         likeliest: dict[Explanations, ScoredModel] = {}
         for model in sorted(fitted, key=lambda model: model.bic):
             likeliest.setdefault(model.explanations, model)
         if not likeliest:
             return []
-        before, *longer = compared([now, *[*likeliest.values()][:MOST_COMPARED]])
+        before, *longer = compared([current, *[*likeliest.values()][:MOST_COMPARED]])
         return [before, *(replace(model, gained=before.bic - model.bic) for model in longer)]
 
-    def with_part(self, now: ScoredModel, part: Part, turns: int = TURNS, starts: Values | None = None) -> ScoredModel:
+    def with_part(self, fit: ScoredModel, part: Part, turns: int = TURNS, starts: Values | None = None) -> ScoredModel:
         """Fit a model with one explanation more to the same runs."""
-        return now.refitted(now.shooting, (*now.parts, part), starts, turns, NEARLY)
+        return fit.refitted(fit.shooting, (*fit.parts, part), starts, turns, NEARLY)
 
-    def far_off(self, now: ScoredModel) -> list[ScoredModel]:
+    def far_off(self, current: ScoredModel) -> list[ScoredModel]:
         """Fit numbers without bounds, and limits of a force along the record: slopes at the file's reach neither."""
-        fitted, segments = [], now.shooting.segments
-        for candidate in self.open_beside(now):
+        fitted, segments = [], current.shooting.segments
+        for candidate in self.open_beside(current):
             begun, starts = list[dict[str, float]](), None
             if candidate.verdict == "wrong_parameter" and not candidate.bounds and candidate.value:
                 begun = [{"value": candidate.value * factor} for factor in DECADES]
             elif candidate.name == "force_saturation":
-                recorded, starts = replace(now.fit, states=segments.of(self.guess)), segments.starts(self.guess)
-                begun = self.scorer(replace(now, fit=recorded)).beginnings(candidate)
-            tried = [self.with_part(now, Part(candidate, values), FEW_TURNS, starts) for values in begun]
-            best = min(tried, key=lambda model: np.nan_to_num(model.fit.misfit, nan=np.inf), default=now)
-            if best.fit.misfit < now.fit.misfit:
-                fitted.append(now.refitted(now.shooting, best.parts, best.fit.starts, TURNS, NEARLY))
+                recorded, starts = replace(current.fit, states=segments.of(self.guess)), segments.starts(self.guess)
+                begun = self.scorer(replace(current, fit=recorded)).beginnings(candidate)
+            tried = [self.with_part(current, Part(candidate, values), FEW_TURNS, starts) for values in begun]
+            best = min(tried, key=lambda model: np.nan_to_num(model.fit.misfit, nan=np.inf), default=current)
+            if best.fit.misfit < current.fit.misfit:
+                fitted.append(current.refitted(current.shooting, best.parts, best.fit.starts, TURNS, NEARLY))
         return fitted
 
     def _report(self, worth: list[Score]) -> Iterator[Score]:
@@ -88,8 +88,8 @@ class Search:
         for done, score in enumerate(worth):
             now = time.perf_counter()
             if done and now - last >= EVERY:
-                left = (now - began) / done * (len(worth) - done)
-                self.progress(f"{done} of {len(worth)} explanations fitted; about {left:.0f} s remain in this round")
+                wait_s = (now - began) / done * (len(worth) - done)
+                self.progress(f"{done} of {len(worth)} explanations fitted; about {wait_s:.0f} s remain in this round")
                 last = now
             yield score
 
@@ -104,7 +104,7 @@ class Search:
 
     def sensible(self, model: ScoredModel) -> bool:
         """Whether every number of a model lies where it means what its name says."""
-        return bool(np.isfinite(model.fit.misfit)) and all(low < one < high for one, (low, high) in self._limits(model))
+        return bool(np.isfinite(model.fit.misfit)) and all(low < x < high for x, (low, high) in self._limits(model))
 
     def shows(self, model: ScoredModel) -> bool:
         """Whether each relaxation is shorter than the longest trial, each yield narrower than what a run can show."""
@@ -159,13 +159,13 @@ class Search:
         driven = any(signal.name == role for signal in self.base.inputs)
         return np.inf if driven else CRITERIA.widest * max(map(abs, self._visited(model, role)))
 
-    def without(self, now: ScoredModel, number: int) -> ScoredModel:
+    def without(self, model: ScoredModel, number: int) -> ScoredModel:
         """Return the model less one explanation."""
-        return self.with_others(now, now.parts[:number] + now.parts[number + 1 :])
+        return self.with_others(model, model.parts[:number] + model.parts[number + 1 :])
 
-    def with_others(self, now: ScoredModel, parts: tuple[Part, ...]) -> ScoredModel:
+    def with_others(self, model: ScoredModel, parts: tuple[Part, ...]) -> ScoredModel:
         """Return the simulation with other explanations, fitted to the runs of a model under its noise."""
-        return now.refitted(now.shooting, parts, turns=TURNS)
+        return model.refitted(model.shooting, parts, turns=TURNS)
 
 
 def is_certain(model: ScoredModel, first: int = 0, end: int | None = None) -> bool:

@@ -70,11 +70,11 @@ class Segments:
         >>> cut_segments(np.array([100]), (0,), 20).spread(60).begin.tolist()
         [0, 40, 80]
         """
-        apart = -(-len(self) * self.length // most)
-        if apart == 1:
+        step = -(-len(self) * self.length // most)
+        if step == 1:
             return self
         number = np.arange(len(self)) - np.searchsorted(self.trial, self.trial)
-        return self.among(np.flatnonzero(number % apart == 0))
+        return self.among(np.flatnonzero(number % step == 0))
 
     @property
     def samples(self) -> NDArray[np.intp]:
@@ -113,8 +113,8 @@ def cut_segments(
     """
     shortest = int(min(samples[trial] for trial in trials)) - 2 * margin
     if shortest < 4:
-        found = f"one trial has {shortest + 2 * margin}"
-        raise SamplingError(f"a trial must have at least {4 + 2 * margin} samples", found, "Remove this trial.")
+        detail = f"one trial has {shortest + 2 * margin}"
+        raise SamplingError(f"a trial must have at least {4 + 2 * margin} samples", detail, "Remove this trial.")
     if shortest // max(shortest // length, 1) != length:
         length = shortest // max(round(shortest / length), 1)
     pairs = [(trial, at) for trial in trials for at in range(0, int(samples[trial]) - 2 * margin - length + 1, length)]

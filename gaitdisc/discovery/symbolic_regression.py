@@ -66,12 +66,12 @@ def read_shape(case: Case, as_read: ScoredModel, verdict: Verdict) -> Verdict:
     begun = replace(plain, shooting=shape.shooting)
     readings = [cross_validated(scale, begun, (part,)) for part in _readings(search, shape)]
     readings = [reading for reading in readings if search.sensible(reading)]
-    for one in sorted(readings, key=lambda one: find_cost(one, plain)):
-        found = score(replace(one, shooting=shape.shooting))
-        proof = prove_held_out(case, as_read, found)
+    for reading in sorted(readings, key=lambda reading: find_cost(reading, plain)):
+        model = score(replace(reading, shooting=shape.shooting))
+        proof = prove_held_out(case, as_read, model)
         if proof.bears_out and proof.closed >= CRITERIA.reading * verdict.proof.closed:
-            reads_as = find_effect(search, one.parts[0].candidate)
-            return replace(verdict, found=found, proof=proof, read=True, reads_as=reads_as)
+            reads_as = find_effect(search, reading.parts[0].candidate)
+            return replace(verdict, found=model, proof=proof, read=True, reads_as=reads_as)
     return verdict
 
 
@@ -99,7 +99,7 @@ def read_instead(case: Case, as_read: ScoredModel, verdict: Verdict) -> Verdict:
 
 def find_effect(search: Search, candidate: Candidate) -> str:
     """Return the name of the catalogue's effect that a reading is, or nothing."""
-    alike = (one for one in search.candidates if (one.kind, one.place) == (candidate.kind, candidate.place))
+    alike = (effect for effect in search.candidates if (effect.kind, effect.place) == (candidate.kind, candidate.place))
     return next((effect.name for effect in alike if effect.pieces == candidate.pieces), "")
 
 
@@ -108,12 +108,13 @@ def _readings(search: Search, shape: ScoredModel) -> Iterator[Part]:
     (part,) = shape.parts
     if len(part.candidate.pieces) <= len(TRIED):
         yield part
-    place = next(one for one in search.places if (one.kind, one.name) == (part.candidate.kind, part.candidate.place))
-    motion = next((one for one in place.motions if one[0] == part.candidate.role), None)
+    candidate = part.candidate
+    place = next(place for place in search.places if (place.kind, place.name) == (candidate.kind, candidate.place))
+    motion = next((motion for motion in place.motions if motion[0] == candidate.role), None)
     if motion:
         for pieces, factors in _Curve(search, shape, motion).subsets():
             kinds, values, texts = _constants(pieces)
-            reading = replace(part.candidate, pieces=texts, constants=kinds)
+            reading = replace(candidate, pieces=texts, constants=kinds)
             begin = dict(zip(reading.slots, [*factors, *values.values()], strict=True))
             yield Part(reading, begin)
 
@@ -124,10 +125,10 @@ def _constants(pieces: tuple[Piece, ...]) -> tuple[dict[str, str], dict[str, flo
     values: dict[str, float] = {}
     texts = []
     for number, piece in enumerate(pieces):
-        own = {slot: f"{slot}_{number + 1}" if number else slot for slot in piece.kinds}
-        kinds |= {own[slot]: kind for slot, kind in piece.kinds.items()}
-        values |= {own[slot]: value for slot, value in piece.values.items()}
-        texts.append(with_names(piece.text, {f"_{slot}": f"_{name}" for slot, name in own.items()}))
+        name_of = {slot: f"{slot}_{number + 1}" if number else slot for slot in piece.kinds}
+        kinds |= {name_of[slot]: kind for slot, kind in piece.kinds.items()}
+        values |= {name_of[slot]: value for slot, value in piece.values.items()}
+        texts.append(with_names(piece.text, {f"_{slot}": f"_{name}" for slot, name in name_of.items()}))
     return kinds, values, tuple(texts)
 
 
@@ -197,17 +198,17 @@ class _Curve:
         """Pieces over the position, over its rate, over both, and products of one and the other."""
         rate = self.motion[1]
         angle = any(place.motions[0] == self.motion and place.angle for place in self.search.places)
-        known = [one for one in read_shapes() if angle or one.needs != "angle"]
-        known = [one for one in known if len(one.pieces) == 1 and not one.states and "delay" not in one.pieces[0]]
-        still = [one for one in (*known, BUMP) if one.roles == ("x",) and self.motion[0] != rate]
-        moving = [one for one in known if one.roles == ("v",)] if rate else []
+        known = [form for form in read_shapes() if angle or form.needs != "angle"]
+        known = [form for form in known if len(form.pieces) == 1 and not form.states and "delay" not in form.pieces[0]]
+        still = [form for form in (*known, BUMP) if form.roles == ("x",) and self.motion[0] != rate]
+        moving = [form for form in known if form.roles == ("v",)] if rate else []
         load = Shape("constant_load", ("1",))
-        both = [one for one in known if set(one.roles) == {"x", "v"}] if rate else []
-        for shape in (load, *still, *moving, *both):
+        mixed = [form for form in known if set(form.roles) == {"x", "v"}] if rate else []
+        for shape in (load, *still, *moving, *mixed):
             yield from self._at(shape, along)
-        for one in still:
-            for other in moving:
-                product = Shape("", (f"{_factor(one.pieces[0])}*{_factor(other.pieces[0])}",), one.constants)
+        for over_x in still:
+            for over_v in moving:
+                product = Shape("", (f"{_factor(over_x.pieces[0])}*{_factor(over_v.pieces[0])}",), over_x.constants)
                 yield from self._at(product, along)
 
     def _at(self, shape: Shape, along: Values) -> Iterator[Piece]:
@@ -219,13 +220,13 @@ class _Curve:
 
 def _best_triples(gram: Values, match: Values, pairs: list[tuple[int, ...]]) -> list[tuple[int, int, int]]:
     """Pairs with a third column beside them, what they explain together the most first."""
-    found = []
+    triples = []
     for pair in pairs:
         two = list(pair)
         inverse = np.linalg.inv(gram[np.ix_(two, two)])
-        left = match - gram[:, two] @ (inverse @ match[two])
+        residual = match - gram[:, two] @ (inverse @ match[two])
         size = 1 - np.einsum("ij,jk,ik->i", gram[:, two], inverse, gram[:, two])
-        gained = np.where(size > 1 - ALIKE**2, left**2 / np.maximum(size, 1e-12), 0.0)
+        gained = np.where(size > 1 - ALIKE**2, residual**2 / np.maximum(size, 1e-12), 0.0)
         third = int(np.argmax(gained))
-        found.append((float(match[two] @ inverse @ match[two] + gained[third]), (*pair, third)))
-    return [some for _, some in sorted(found, reverse=True)]
+        triples.append((float(match[two] @ inverse @ match[two] + gained[third]), (*pair, third)))
+    return [some for _, some in sorted(triples, reverse=True)]

@@ -70,16 +70,16 @@ class Pass:
         """What a kilogram more of each body of the model demands, its shape unchanged (sample, coordinate)."""
         engine, motion = self.engine, self.motion
         alone = engine.demanded(motion, loaded=False)
-        heavier = {one.name: {one.name: one.value + 1.0} for one in engine.parameters}
+        heavier = {parameter.name: {parameter.name: parameter.value + 1.0} for parameter in engine.parameters}
         return {name: engine.demanded(motion, False, values) - alone for name, values in heavier.items()}
 
     def masses_by_joints(self) -> set[str]:
         """Names of masses that act at two joints or more; of bodies that move as one, the heaviest one's."""
-        found = dict[tuple[int, ...], str]()
-        for one in sorted(self.engine.parameters, key=lambda one: one.value):
-            sizes = np.abs(self.demanded_by_mass[one.name]).max(axis=0)
-            found[tuple(k for k in self.joints if sizes[k] > NOTHING_NM)] = one.name
-        return {name for joints, name in found.items() if len(joints) > 1}
+        heaviest = dict[tuple[int, ...], str]()
+        for parameter in sorted(self.engine.parameters, key=lambda parameter: parameter.value):
+            sizes = np.abs(self.demanded_by_mass[parameter.name]).max(axis=0)
+            heaviest[tuple(k for k in self.joints if sizes[k] > NOTHING_NM)] = parameter.name
+        return {name for joints, name in heaviest.items() if len(joints) > 1}
 
     @property
     def kept(self) -> slice:
@@ -126,26 +126,26 @@ def compute_pass(tracked: Tracked, kinematics: Path, progress: Callable[[str], N
             continue
         mean = arms[:, :, k].mean(axis=0) * muscles
         for sign, word in SIDES:
-            own = sign * mean > LEAST_ARM_M
-            if own.any():
-                groups[f"{coordinate.name}_{word}_muscles"] = pulls[:, own, k].sum(axis=1)
+            acting = sign * mean > LEAST_ARM_M
+            if acting.any():
+                groups[f"{coordinate.name}_{word}_muscles"] = pulls[:, acting, k].sum(axis=1)
     return Pass(engine, motion, tracked.lowpass_hz, demanded, pulls, groups)
 
 
 def moments_of_angle_noise(walk: Pass, noise_deg: float | None) -> Values:
     """Return what noise of the angles, after the record's low-pass, makes of the moments (draw, sample, coordinate)."""
-    given = noise_deg if noise_deg is not None else (NOISE_DEG if walk.motion.differentiated else 0.0)
-    if not given:
+    size_deg = noise_deg if noise_deg is not None else (NOISE_DEG if walk.motion.differentiated else 0.0)
+    if not size_deg:
         return np.zeros((1, len(walk.times), len(walk.engine.coordinates)))
     rng = np.random.default_rng(SEED)
-    moved = [with_angle_noise(walk, given, rng) for _ in range(DRAWS)]
-    return np.array([walk.dense(one.demanded - walk.demanded) for one in moved])
+    moved = [with_angle_noise(walk, size_deg, rng) for _ in range(DRAWS)]
+    return np.array([walk.dense(noisy.demanded - walk.demanded) for noisy in moved])
 
 
 def with_angle_noise(walk: Pass, noise_deg: float, rng: np.random.Generator) -> Pass:
     """Return a walk whose angles have noise of a size [deg] that went through the record's low-pass."""
     motion, spare = walk.motion, int(walk.motion.rate_hz)
-    sizes = [np.radians(noise_deg) if one.unit == "rad" else noise_deg * MM for one in walk.engine.coordinates]
+    sizes = [np.radians(noise_deg) if dof.unit == "rad" else noise_deg * MM for dof in walk.engine.coordinates]
     white = rng.normal(size=(len(motion.time) + 2 * spare, len(sizes)))
     noise = sosfiltfilt(walk.sections, white, axis=0)
     noise *= sizes / noise.std(axis=0)
@@ -158,13 +158,13 @@ def with_angle_noise(walk: Pass, noise_deg: float, rng: np.random.Generator) -> 
 def balance(walk: Pass) -> list[Finding]:
     """Say what is left at the joint with the ground; refuse a model whose mass is not the walker's."""
     engine, up = walk.engine, walk.engine.vertical
-    found = []
+    findings = []
     for k in engine.base:
-        one, size = engine.coordinates[k], walk.size(walk.demanded[:, k])
-        what = f"{one.called}: {size:.3g} {one.force_unit} (rms) that neither the ground nor the body explains"
-        found.append(Finding("note", "residual", "model", what, "", one.called))
+        joint, size = engine.coordinates[k], walk.size(walk.demanded[:, k])
+        what = f"{joint.called}: {size:.3g} {joint.force_unit} (rms) that neither the ground nor the body explains"
+        findings.append(Finding("note", "residual", "model", what, "", joint.called))
     if up < 0:
-        return found
+        return findings
     mean = float(np.mean(walk.dense(walk.demanded[:, up])))
     share = mean / walk.weight_n
     if abs(share) > WRONG_MASS:
@@ -176,18 +176,18 @@ def balance(walk: Pass) -> list[Finding]:
             "Scale the model to the walker's mass, or correct the scale of the force plates. Otherwise this error "
             "would be named as a missing effect.",
         )
-    return found
+    return findings
 
 
 def refuse_other_motion(walk: Pass) -> None:
     """Refuse forces whose residuals do not balance this motion: they were computed for another one, or failed."""
     weight = walk.weight_n
     for k in walk.engine.base:
-        one, size = walk.engine.coordinates[k], walk.size(walk.left[:, k])
-        if one.unit == "m" and walk.strongest[k] > 0 and weight and size > OTHER_MOTION * weight:
+        joint, size = walk.engine.coordinates[k], walk.size(walk.left[:, k])
+        if joint.unit == "m" and walk.strongest[k] > 0 and weight and size > OTHER_MOTION * weight:
             raise SchemaError(
                 f"residual forces must be at most {100 * OTHER_MOTION:.0f} % of the weight",
-                f"the residual of {one.called} is {size:.0f} N (root mean square), and the weight is {weight:.0f} N",
+                f"the residual of {joint.called} is {size:.0f} N (root mean square), and the weight is {weight:.0f} N",
                 "Compute the forces for this motion again: they belong to another motion, or their computation failed.",
             )
 
@@ -195,7 +195,7 @@ def refuse_other_motion(walk: Pass) -> None:
 def only_residuals(walk: Pass) -> str:
     """Return what can be said where no file gives the forces of muscles."""
     base = [(k, walk.engine.coordinates[k]) for k in sorted(walk.engine.base)]
-    sizes = [f"{amount(walk.size(walk.demanded[:, k]))} {one.force_unit} at {one.called}" for k, one in base]
+    sizes = [f"{amount(walk.size(walk.demanded[:, k]))} {joint.force_unit} at {joint.called}" for k, joint in base]
     return (
         "No effect can be named at a joint: no file gives the muscle forces, so any moment between two segments is "
         f"attributed to muscles. The ground and the body leave residuals of {', '.join(sizes)} (rms)."

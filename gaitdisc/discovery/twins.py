@@ -66,11 +66,11 @@ class TwinSource:
             return case
         order = np.argsort(drive.time0)
         inputs, observed, states = (
-            np.concatenate([one[part, : drive.samples[part]] for part in order])[None]
-            for one in (drive.inputs, measured.observed, case.guess)
+            np.concatenate([signal[part, : drive.samples[part]] for part in order])[None]
+            for signal in (drive.inputs, measured.observed, case.guess)
         )
-        whole = Drive.of([*inputs], drive.rate, [float(drive.time0.min())])
-        measured = replace(measured, drive=whole, observed=observed, trials=(first,))
+        joined = Drive.of([*inputs], drive.rate, [float(drive.time0.min())])
+        measured = replace(measured, drive=joined, observed=observed, trials=(first,))
         return replace(case, measured=measured, search=replace(case.search, guess=states))
 
     @cached_property
@@ -98,9 +98,9 @@ class TwinSource:
         model, record, seen = self.now, like.observed, np.full_like(like.observed, np.nan)
         states = np.full((*record.shape[:2], len(model.machine.states)), np.nan)
         for trial, samples in enumerate(map(int, like.samples)):
-            whole = replace(self.case.shooting(Segments(np.array([trial]), np.array([0]), samples)), measured=like)
-            runs = whole.run(model.machine, larger * self.starts[trial][None], model.fit.values[None])
-            states[trial, :samples], seen[trial, :samples] = (one[0, 0] for one in runs)
+            shooting = replace(self.case.shooting(Segments(np.array([trial]), np.array([0]), samples)), measured=like)
+            runs = shooting.run(model.machine, larger * self.starts[trial][None], model.fit.values[None])
+            states[trial, :samples], seen[trial, :samples] = (run[0, 0] for run in runs)
         low, high = np.nanmin(record, axis=(0, 1)), np.nanmax(record, axis=(0, 1))
         stays, known = np.maximum(low - seen, seen - high) < FLED * (high - low), np.isfinite(record)
         return states, replace(like, observed=np.where(known, seen, np.nan)) if np.all(stays[known]) else None
@@ -153,18 +153,18 @@ def sped_up(drive: Drive, factor: float) -> Drive:
 
 def say_apart(source: TwinSource, rivals: Sequence[ScoredModel]) -> str:
     """Say which change of the measurement would best distinguish an answer from what is tied with it."""
-    others, table = [replace(source, now=rival) for rival in rivals], list[tuple[str, Values]]()
+    twins, table = [replace(source, now=rival) for rival in rivals], list[tuple[str, Values]]()
     for words, drive, larger in list_changes(source.case):
         measured = replace(source.case.measured, drive=drive)
-        pairs = [[weigh_run(*both, measured, larger) for both in ((source, one), (one, source))] for one in others]
+        pairs = [[weigh_run(*two, measured, larger) for two in ((source, twin), (twin, source))] for twin in twins]
         table.append((words, np.nan_to_num(np.min(pairs, axis=1), nan=0.0, posinf=0.0)))  # whichever of the two is true
-    (_, now), *changes = table
+    (_, baseline), *changes = table
     words, then = max(changes, key=lambda change: np.minimum(change[1], CLEARLY).sum())
     clear, tried = then >= CLEARLY, f"{len(changes)} simulated changes of the measurement"
     if not clear.any():
         return f"None of {tried} would distinguish the tied explanations (expected evidence: at most {then.max():.0f})."
-    names = " or ".join(named_at(one.parts[-1].candidate) for one, it in zip(rivals, clear, strict=True) if it)
-    evidence = f"expected evidence {then[clear].min():.0f}, now {now[clear].max():.0f}"
+    names = " or ".join(named_at(rival.parts[-1].candidate) for rival, it in zip(rivals, clear, strict=True) if it)
+    evidence = f"expected evidence {then[clear].min():.0f}, now {baseline[clear].max():.0f}"
     return f"Of {tried}, {words} would best distinguish the answer from {names}: {evidence}."
 
 
@@ -190,16 +190,16 @@ def refuse_twins(model: str) -> NoReturn:
 
 
 def search_twins(
-    found: Discovery, case: Case, as_read: ScoredModel, verdict: Verdict, model: Simulation, request: Request
+    discovery: Discovery, case: Case, as_read: ScoredModel, verdict: Verdict, model: Simulation, request: Request
 ) -> Discovery:
     """Return an answer with what the same search says of its twins: with what was found in them, and without."""
-    acts = verdict.found.parts and found.verdict not in RANDOM
+    acts = verdict.found.parts and discovery.verdict not in RANDOM
     models = [verdict.found, as_read] if acts else [as_read]
-    sources = [TwinSource(case, now, verdict.found.noise) for now in models]
+    sources = [TwinSource(case, scored, verdict.found.noise) for scored in models]
     if any(source.draw(0) is None for source in sources):
         what = "a free run of the simulation departs from the record, so records like these cannot be simulated"
         finding = Finding("note", "twins", case.measured.source, what, "the estimate of how often this answer is right")
-        return replace(found, findings=(*found.findings, finding))
+        return replace(discovery, findings=(*discovery.findings, finding))
     note_found("")
     answers = [*search_records(sources, model, request)]
     acting, without = (dict(Counter(some)) for some in (answers[: -request.twins], answers[-request.twins :]))
@@ -207,7 +207,7 @@ def search_twins(
         rivals = weigh_rivals(case.search, verdict.found, verdict.rivals, 0.0) if acts else ()
         tied = [rival.scored for rival in rivals if rival.tied]
         apart = say_apart(sources[0], tied) if tied else ""
-    return replace(found, twins=Twins(request.twins, _name(found), acting, without, apart))
+    return replace(discovery, twins=Twins(request.twins, _name(discovery), acting, without, apart))
 
 
 def search_records(sources: Sequence[TwinSource], model: Simulation, request: Request) -> Iterator[str]:
@@ -218,11 +218,11 @@ def search_records(sources: Sequence[TwinSource], model: Simulation, request: Re
         answer = recall(f"record {number}", source.now.fit.values.tobytes())
         if answer is None:
             if pending is None:  # those before were kept by an earlier run
-                twins = (one.draw(its_number) for one, its_number in records[done - 1 :])
+                twins = (twin.draw(its_number) for twin, its_number in records[done - 1 :])
                 pending = _search_side_by_side(model, twins, len(records) - done + 1, rule)
             answer = next(pending)
-            left = (time.perf_counter() - begun) / done * (len(records) - done)
-            request.progress(f"{done} of {len(records)} simulated records searched; about {left:.0f} s remain")
+            remaining = (time.perf_counter() - begun) / done * (len(records) - done)
+            request.progress(f"{done} of {len(records)} simulated records searched; about {remaining:.0f} s remain")
             keep(answer)
         yield answer
 
@@ -248,6 +248,7 @@ def _search(model: Simulation, twin: Measured | None, request: Request) -> str:
         return _name(discover(model, twin, request)[0])
 
 
-def _name(found: Discovery) -> str:
+def _name(discovery: Discovery) -> str:
     """Say an answer in short: the effects at their places, or the verdict."""
-    return ", ".join(sorted(f"{one.name}@{one.place}" for one in found.effects if not one.small)) or found.verdict
+    effects = sorted(f"{effect.name}@{effect.place}" for effect in discovery.effects if not effect.small)
+    return ", ".join(effects) or discovery.verdict

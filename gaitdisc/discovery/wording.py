@@ -50,15 +50,15 @@ DIRECTIONS = re.compile(
 def write_sentence(discovery: Discovery, base: Simulation, parts: tuple[Part, ...]) -> Discovery:
     """Return the discovery with its sentence; parts: the explanations behind its effects, in their order."""
     odd = (finding for finding in discovery.findings if finding.kind == ODD_TRIAL)
-    said = [
+    sentences = [
         _say(discovery, base, parts),
         _say_given(discovery),
         _say_tied(discovery),
         _say_gap(discovery),
         _say_moved(discovery),
-        *(f"{one.what[:1].upper()}{one.what[1:]}. This trial was left out." for one in odd),
+        *(f"{finding.what[:1].upper()}{finding.what[1:]}. This trial was left out." for finding in odd),
     ]
-    return replace(discovery, sentence=" ".join(one for one in said if one))
+    return replace(discovery, sentence=" ".join(sentence for sentence in sentences if sentence))
 
 
 def _say(discovery: Discovery, base: Simulation, parts: tuple[Part, ...]) -> str:
@@ -71,16 +71,16 @@ def _say(discovery: Discovery, base: Simulation, parts: tuple[Part, ...]) -> str
         other = "one trial cannot show whether a" if discovery.held_out.of.endswith("quarter") else "no"
         return f"Process noise of {push} (standard deviation) acts {where}; {other} deterministic effect is missing."
     if discovery.verdict == "wrong_initial_condition":
-        starts = " and ".join(f"{one.place} at {estimate_text(one.estimates['initial'])}" for one in effects)
+        starts = " and ".join(f"{effect.place} at {estimate_text(effect.estimates['initial'])}" for effect in effects)
         return f"Only the initial condition is wrong: trials begin with {starts}; the dynamics agree within the noise."
     if discovery.verdict == "unnamed":
         return f"{_say_unnamed(effects[0], base, discovery.where)}."
-    said = [_one(effect, part, base, discovery.where) for effect, part in zip(effects, parts, strict=True)]
-    missing = [one for one, part in zip(said, parts, strict=True) if part.candidate.verdict == "missing_physics"]
-    others = [one for one, part in zip(said, parts, strict=True) if part.candidate.verdict != "missing_physics"]
+    texts = [_one(effect, part, base, discovery.where) for effect, part in zip(effects, parts, strict=True)]
+    missing = [text for text, part in zip(texts, parts, strict=True) if part.candidate.verdict == "missing_physics"]
+    errors = [text for text, part in zip(texts, parts, strict=True) if part.candidate.verdict != "missing_physics"]
     lacks = [f"The simulation lacks {'; and '.join(missing)}"] if missing else []
-    whole = "; besides, ".join([*lacks, *others])
-    return f"{whole[:1].upper()}{whole[1:]}."
+    sentence = "; besides, ".join([*lacks, *errors])
+    return f"{sentence[:1].upper()}{sentence[1:]}."
 
 
 def _say_given(discovery: Discovery) -> str:
@@ -88,9 +88,9 @@ def _say_given(discovery: Discovery) -> str:
     if not discovery.given:
         return ""
     bear = "support it" if discovery.given == "proven" else "do not support it"
-    said = f"The effect was given, not searched for: the held-out data {bear} ({_chance(discovery.held_out)})."
+    sentence = f"The effect was given, not searched for: the held-out data {bear} ({_chance(discovery.held_out)})."
     idle = [named_at(effect) for effect in discovery.effects if effect.small]
-    return f"{said} The other effects suffice without {' or '.join(idle)}." if idle else said
+    return f"{sentence} The other effects suffice without {' or '.join(idle)}." if idle else sentence
 
 
 def _nothing(discovery: Discovery) -> str:
@@ -147,15 +147,15 @@ def _one(effect: FoundEffect, part: Part, base: Simulation, where: tuple[Whereab
     if kind == "wrong_parameter":
         estimate = effect.estimates["value"]
         unit, factor = display_unit(estimate.unit)
-        given = with_unit(f"{factor * base.values()[effect.place]:.6g}", unit)
+        file_value = with_unit(f"{factor * base.values()[effect.place]:.6g}", unit)
         outside = outside_text(effect, estimate)
-        said = f"the parameter {effect.place} is {estimate_text(estimate)}, but {given} in the file"
-        return f"{said}, {outside}" if outside else said
+        text = f"the parameter {effect.place} is {estimate_text(estimate)}, but {file_value} in the file"
+        return f"{text}, {outside}" if outside else text
     estimate = next(iter(effect.estimates.values()))
     subject = f"the {'driving signal' if kind == 'input_error' else 'measured'} {effect.place}"
     if effect.name.endswith("_saturation"):
         subject = f"the force of {effect.place}" if effect.name == "force_saturation" else subject
-        limits = (SATURATED[name].format(estimate_text(one)) for name, one in effect.estimates.items())
+        limits = (SATURATED[name].format(estimate_text(limit)) for name, limit in effect.estimates.items())
         return f"{subject} saturates {' and '.join(limits)}"
     return f"{subject} {_signal(effect.name, estimate)}"
 
@@ -179,20 +179,18 @@ def _missing(effect: FoundEffect, part: Part, base: Simulation, where: tuple[Whe
         opposes = effect.term.startswith("-") == (next(iter(effect.estimates.values())).value > 0)
         form = re.sub(r"^\((\w+)\)$", r"\1", re.sub(r"\b_", "", part.candidate.pieces[0]))
         noun = f"a term proportional to {MINUS * opposes}{form}"
-    names, left = part.candidate.names or {}, dict(effect.estimates)
+    names, rest = part.candidate.names or {}, dict(effect.estimates)
     for slot in part.candidate.constants or {}:
         if f"{{{slot}}}" in how:
-            how = how.replace(f"{{{slot}}}", _constant(left.pop(names.get(slot, slot)), part, base))
-    many = len(left) > 1
-    numbers = [
-        f"{name.replace('_', ' ')} {estimate_text(one)}" if many else estimate_text(one) for name, one in left.items()
-    ]
+            how = how.replace(f"{{{slot}}}", _constant(rest.pop(names.get(slot, slot)), part, base))
+    many = len(rest) > 1
+    numbers = [f"{name.replace('_', ' ')} " * many + estimate_text(estimate) for name, estimate in rest.items()]
     if len(numbers) > 4:
-        numbers = [f"{len(numbers)} numbers, largest {max(left.items(), key=lambda one: abs(one[1].value))[0]}"]
+        numbers = [f"{len(numbers)} numbers, largest {max(rest.items(), key=lambda pair: abs(pair[1].value))[0]}"]
     role = part.candidate.role
     of = f" of {role}" if " " in role and not how and effect.kind == "port" else ""  # a difference of two states
-    said = [f"{noun}{of} {at_place(effect.kind, effect.place)}: {', '.join(numbers)}", how, _stride(effect, where)]
-    return ", ".join(one for one in said if one)
+    texts = [f"{noun}{of} {at_place(effect.kind, effect.place)}: {', '.join(numbers)}", how, _stride(effect, where)]
+    return ", ".join(text for text in texts if text)
 
 
 def _is_force(effect: FoundEffect, base: Simulation) -> bool:
@@ -218,7 +216,7 @@ def _stride(effect: FoundEffect, where: tuple[Whereabouts, ...]) -> str:
 
 
 def _say_unnamed(effect: FoundEffect, base: Simulation, where: tuple[Whereabouts, ...]) -> str:
-    seen = [one for one in base.signals if re.search(rf"\b{re.escape(one)}\b", effect.term)]
+    seen = [signal for signal in base.signals if re.search(rf"\b{re.escape(signal)}\b", effect.term)]
     over = f", a function of {' and '.join(seen)}," if seen else ""
     stride = _stride(effect, where)
     acts = f" ({stride})" if stride else ""
@@ -234,9 +232,9 @@ def _say_tied(discovery: Discovery) -> str:
     tied = [rival for rival in discovery.rivals if rival.tied]
     if not tied or not discovery.effects:
         return ""
-    names = " or ".join(named_at(one) for one in tied)
-    apart = would_distinguish(discovery.effects[0].name, tied[0].name)
-    return f"These data cannot distinguish it from {names}. To distinguish them, record {apart}."
+    names = " or ".join(named_at(rival) for rival in tied)
+    recording = would_distinguish(discovery.effects[0].name, tied[0].name)
+    return f"These data cannot distinguish it from {names}. To distinguish them, record {recording}."
 
 
 def _say_gap(discovery: Discovery) -> str:
@@ -253,33 +251,33 @@ def _say_gap(discovery: Discovery) -> str:
         before = with_unit(amount(factor * sizes[channel][0], floor / 10), unit)
         return f"Held-out error{of}: {before} ({noise})."
     worse = [name for name in sizes if name != channel and _goes(discovery, name).startswith("rises")]
-    others = "".join(f"; that of {name} {_goes(discovery, name)}" for name in worse)
+    rises = "".join(f"; that of {name} {_goes(discovery, name)}" for name in worse)
     size = discovery.held_out
     few = 0 < size.pieces < FEW and size.after <= size.before
     tested = f", {_chance(size)}" if few else ""
-    said = f"With it, the held-out error{of} {_goes(discovery, channel)} ({noise}{tested}){others}."
-    left = size.unexplained
-    if left < SMALL or size.after > size.before or may_be_left(size.after, size):
-        return said
-    return f"{said} {100 * left:.0f} % of the squared error above the noise remains unexplained."
+    sentence = f"With it, the held-out error{of} {_goes(discovery, channel)} ({noise}{tested}){rises}."
+    unexplained = size.unexplained
+    if unexplained < SMALL or size.after > size.before or may_be_left(size.after, size):
+        return sentence
+    return f"{sentence} {100 * unexplained:.0f} % of the squared error above the noise remains unexplained."
 
 
 def _say_moved(discovery: Discovery) -> str:
     """Name the numbers that clearly moved within their bounds."""
-    said = []
-    for one in discovery.corrections:
-        if not one.found.low <= one.given <= one.found.high:
-            unit, factor = display_unit(one.found.unit)
-            given = with_unit(f"{factor * one.given:.6g}", unit)
-            said.append(f"{one.parameter} from {given} to {brief_text(one.found)}")
-    return f"Parameters that changed within their bounds: {', '.join(said)}." if said else ""
+    changes = []
+    for correction in discovery.corrections:
+        if not correction.found.low <= correction.given <= correction.found.high:
+            unit, factor = display_unit(correction.found.unit)
+            initial = with_unit(f"{factor * correction.given:.6g}", unit)
+            changes.append(f"{correction.parameter} from {initial} to {brief_text(correction.found)}")
+    return f"Parameters that changed within their bounds: {', '.join(changes)}." if changes else ""
 
 
 def _goes(discovery: Discovery, channel: str) -> str:
     """Say whether an error falls, rises or does not change, to the digits that the noise leaves worth writing."""
     size, (unit, factor) = discovery.held_out.channels[channel], display_channel(discovery, channel)
     step = factor * size[2] / 10
-    before, after = (amount(factor * one, step) for one in size[:2])
+    before, after = (amount(factor * error, step) for error in size[:2])
     if before == after:
         return f"does not change: {with_unit(after, unit)}"
     return f"{'falls' if size[1] < size[0] else 'rises'} from {before} to {with_unit(after, unit)}"

@@ -67,13 +67,14 @@ class OwnRuns:
     engine: str  # its name
     units: Mapping[str, str]  # of the channels
     floor: Values  # (channel,), standard deviation of the noise
-    states: int  # numbers that each run's start was fitted with
+    starts: Values  # (run, state), as fitted
     every: int = 1  # samples between those that hold all that the record's filter passes
     memory: Values | None = None  # (lag, channel), autocorrelation of its noise between these; white where absent
 
     def among(self, some: NDArray[np.bool_]) -> OwnRuns:
         """Return some of them (run,)."""
-        return replace(self, before=self.before[some], after=self.after[some], at=self.at.among(some))
+        each = {name: getattr(self, name)[some] for name in ("before", "after", "starts")}
+        return replace(self, at=self.at.among(some), **each)
 
     @property
     def leave_mere_noise(self) -> bool:
@@ -87,7 +88,7 @@ class OwnRuns:
         known = np.isfinite(between)
         if not known.any() or np.isinf(self.before).any():
             return False
-        free, size = max(known.sum() - self.states * len(self.before), 1), within[known].mean()
+        free, size = max(known.sum() - self.starts.size, 1), within[known].mean()
         over = between[known].sum() / free / size
         return bool(size < MERE_NOISE and variance_ratio.sf(over, free * outer, known.sum() * inner) > CHANCE)
 

@@ -9,8 +9,9 @@ from scipy.signal import butter, sosfiltfilt
 from texts import says
 
 from gaitdisc.discovery import estimated_filter
-from gaitdisc.discovery.case import CUTOFF_ERRORS, set_up_case
+from gaitdisc.discovery.case import set_up_case
 from gaitdisc.discovery.estimated_filter import _as_the_surer
+from gaitdisc.discovery.record_filter import CUTOFF_ERRORS
 from gaitdisc.signals.recorded_filter import RecordedFilter
 from gaitdisc.simulation.compiled_simulation import Drive, Rows
 from gaitdisc.simulation.parts import Sensor
@@ -48,8 +49,7 @@ def test_what_the_file_says_stands(filtered):
 @pytest.mark.parametrize("noise", [0.0, 0.02])
 def test_a_raw_record_went_through_none(noise):
     case = set_up_case(mass(), record(with_load("-14*x**3"), 3, Experiment(seconds=30.0, noise=noise)))
-    assert case.record_filter.cutoffs_hz == (None,) and case.at_other_cutoffs == []
-    assert not case.measured.findings
+    assert case.record_filter.cutoffs_hz == (None,) and case.at_other_cutoffs == [] and not case.measured.findings
 
 
 def test_harmonics_of_a_stride_are_not_taken_for_the_fall_of_a_filter():
@@ -92,8 +92,7 @@ def test_a_filtered_record_of_a_stop_gives_the_strength_of_the_raw_one():
         now = case.search.extended(case.as_read())[1]
         found[lowpass] = abs(next(iter(now.parts[0].values.values())))
     assert now.labels == ("one_sided_spring@load",)
-    assert found[3.0] == pytest.approx(found[0.0], rel=0.05)
-    assert found[0.0] == pytest.approx(60, rel=0.05)
+    assert found[3.0] == pytest.approx(found[0.0], rel=0.05) and found[0.0] == pytest.approx(60, rel=0.05)
 
 
 def test_a_cut_off_that_the_signal_hides_is_that_of_the_surer_channels_of_the_same_unit():
@@ -106,9 +105,7 @@ def test_a_cut_off_that_the_signal_hides_is_that_of_the_surer_channels_of_the_sa
 
 
 @pytest.mark.parametrize(("unit", "second"), [("m", 3.1), ("deg", 3.1), ("N", None)])
-def test_what_a_spectrum_does_not_show_alone_is_sought_at_the_cut_off_of_channels_of_its_unit(
-    monkeypatch, filtered, unit, second
-):
+def test_what_a_spectrum_hides_is_sought_at_that_of_channels_of_its_unit(monkeypatch, filtered, unit, second):
     def find_filter(trials, rate_hz, like=None, at_hz=None):
         first = np.array_equal(trials[0], filtered.observed[0, :, 0])
         return RecordedFilter(3.1, 0.0, 0.0) if first or at_hz else None

@@ -138,7 +138,7 @@ def test_the_true_model_meets_its_own_record_from_a_wrong_start(pendulum, tmp_pa
     left = [residual_by(Driven(one, mapping, measured.drive.inputs), measured, at, begun) for one in models]
     before, after, pushed = (float(root_mean_square(one)[0]) for one in left)
     assert after < 1e-4 and pushed < 1e-4 and before > 0.5
-    found = OwnRuns(left[0], left[1], at, "MuJoCo", units, np.array([1e-4]), 2)
+    found = OwnRuns(left[0], left[1], at, "MuJoCo", units, np.array([1e-4]), begun[:1, 0])
     assert says(found.said, "MuJoCo", "pivot") and not found.leave_mere_noise
 
 
@@ -155,7 +155,7 @@ def test_no_sample_is_compared_in_two_runs_and_none_at_the_ends_of_a_filtered_on
 def test_white_noise_is_mere_noise_and_a_slow_bend_of_half_its_size_is_not():
     rng, at = np.random.default_rng(4), Stretches(np.zeros(8, int), np.zeros(8, int), 200, 100.0)
     noise, bend = rng.normal(size=(8, 200, 1)), 0.5 * np.sin(np.arange(200) / 16)[None, :, None]
-    runs = [OwnRuns(one, one, at, "MuJoCo", {"x": "rad"}, np.ones(1), 2) for one in (noise, noise + bend)]
+    runs = [OwnRuns(one, one, at, "MuJoCo", {"x": "rad"}, np.ones(1), np.zeros(16)) for one in (noise, noise + bend)]
     assert [one.leave_mere_noise for one in runs] == [True, False]
 
 
@@ -176,8 +176,8 @@ def test_noise_that_went_through_the_records_filter_is_mere_noise_as_well_and_it
     """Of 6 Hz: taken for white it would be what a model lacks, and its roughness shows a tenth of its size."""
     rng, at = np.random.default_rng(4), Stretches(np.zeros(8, int), np.zeros(8, int), 200, 100.0)
     passed, bend = RecordFilter((6.0,), 100.0), 0.2 * np.sin(np.arange(200) / 16)[None, :, None]
-    noise = passed.filtered(rng.normal(size=(8, 234, 1)), 1)[:, 17:-17]
-    runs = OwnRuns(noise, noise, at, "MuJoCo", {"x": "rad"}, passed.gains, 0, passed.every, passed.autocorrelation(200))
+    noise, memory = passed.filtered(rng.normal(size=(8, 234, 1)), 1)[:, 17:-17], passed.autocorrelation(200)
+    runs = OwnRuns(noise, noise, at, "MuJoCo", {"x": "rad"}, passed.gains, np.zeros(0), passed.every, memory)
     assert runs.leave_mere_noise and not replace(runs, before=noise + bend).leave_mere_noise
     assert not replace(runs, every=1, memory=None).leave_mere_noise
     assert np.sqrt(np.mean(runs.variances(noise)[1])) == pytest.approx(passed.gains[0], rel=0.1)

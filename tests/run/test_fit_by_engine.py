@@ -9,7 +9,7 @@ from saved_folders import PENDULUM
 
 from gaitdisc.discovery.candidate import Candidate
 from gaitdisc.discovery.discover_engine import _NOTHING, keep_borne_out
-from gaitdisc.discovery.fit_by_engine import NO_FILTER, EngineFit, base_runs
+from gaitdisc.discovery.fit_by_engine import NO_FILTER, EngineFit, at_other_cutoffs, base_runs
 from gaitdisc.discovery.kept_work import kept_work
 from gaitdisc.discovery.record_filter import RecordFilter
 from gaitdisc.discovery.result import FoundEffect
@@ -20,12 +20,11 @@ from gaitdisc.engines.own_runs import residual_by
 from gaitdisc.simulation.compiled_simulation import Drive
 from gaitdisc.simulation.measured import Measured
 
-SPRING = Candidate(
-    "missing_physics", "port", "pivot_moment", "linear_stiffness", ("pivot",), names={"factor": "stiffness"}
-)
+MISSING = ("missing_physics", "port", "pivot_moment")
+SPRING = Candidate(*MISSING, "linear_stiffness", ("pivot",), names={"factor": "stiffness"})
 DAMPED = Candidate("wrong_parameter", "parameter", "pivot_damping", "wrong_parameter", value=0.3)
 WEAK = Candidate("input_error", "input", "drive", "input_gain")
-LATE = Candidate("missing_physics", "port", "pivot_moment", "delayed_feedback", ("delay(pivot, _d)",), {"d": "delays"})
+LATE = Candidate(*MISSING, "delayed_feedback", ("delay(pivot, _d)",), {"d": "delays"})
 KNEE = Path(__file__).parents[2] / "studies/systems/knee_muscles.xml"
 CLIPPED = Candidate("input_error", "input", "drive", "input_saturation", ("min({s}, {limit})",), {"limit": ""})
 
@@ -41,8 +40,7 @@ def driven(folder, change, low_pass):
     controls = [0.5 * np.sin(2 * np.pi * f * t)[:, None] + 0.2 * np.cos(5 * f * t)[:, None] for f in (0.6, 1.0, 1.3)]
     start = Motion(np.full((3, 1), 0.2), np.zeros((3, 1)), np.zeros((3, 1)))
     whole = read_model(folder / "truth.xml").run(start, np.stack(controls), 100.0)
-    seen = whole[:, :, :1] + 0.003 * rng.normal(size=(3, 300, 1))
-    seen = low_pass.filtered(seen, 1)
+    seen = low_pass.filtered(whole[:, :, :1] + 0.003 * rng.normal(size=(3, 300, 1)), 1)
     measured = Measured(Drive.of(controls, 100.0), seen, tuple("123"), ("pivot",))
     return plain, measured, whole
 
@@ -67,6 +65,16 @@ def test_the_engines_own_runs_bring_a_number_to_the_truth(tmp_path, change, part
     """A low-pass takes a little of each swing, as a damper would: the runs go through it as well."""
     one = fitted(*driven(tmp_path, change, low_pass), part, low_pass).effects[0].estimates[number]
     assert one.low < truth < one.high and one.high - one.low < 0.05 * truth
+
+
+@pytest.mark.parametrize(("truth", "missing"), [("damping=", False), ('stiffness="0.6" damping=', True)])
+def test_a_cut_off_that_its_record_hides_is_found_beside_the_engines_own_runs(tmp_path, truth, missing):
+    """Where an effect is missing, no cut-off leaves mere noise."""
+    plain, measured, states = driven(tmp_path, ("damping=", truth), RecordFilter((4.0,), 100.0))
+    for assumed in (None, 4.8):
+        fit = EngineFit(draft(plain), plain, measured, states, low_pass=RecordFilter((assumed,), 100.0))
+        found = at_other_cutoffs(plain, fit, base_runs(plain, fit), measured, 1.0)
+        assert missing if found is None else found[1].low_pass.cutoffs_hz == pytest.approx([4.0], rel=0.15)
 
 
 @pytest.mark.parametrize("done", [2, 4])

@@ -6,14 +6,7 @@ from pathlib import Path
 import pytest
 from texts import says
 
-from gaitdisc.run.workers import (
-    ClusterError,
-    Lost,
-    Workers,
-    compute_in_processes,
-    compute_side_by_side,
-    compute_units,
-)
+from gaitdisc.run.workers import ClusterError, Lost, Workers, compute_in_processes, compute_side_by_side, compute_units
 
 WITHOUT_CLUSTER = "the extra 'cluster' is not installed"
 
