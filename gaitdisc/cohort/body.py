@@ -139,7 +139,7 @@ def joint_moments(leg: Leg, psi: Values, hip: Values, ground: Values, step_s: fl
 
 @compiled
 def _inverse_dynamics(leg, psi, rate, speedup, hip, ground):
-    m, b, q, found = np.empty((3, 3)), np.empty(3), np.empty(3), np.empty((len(psi), 3))
+    m, b, q, moments = np.empty((3, 3)), np.empty(3), np.empty(3), np.empty((len(psi), 3))
     for sample in range(len(psi)):
         inertia(leg, psi[sample], m)
         bias(leg, psi[sample], rate[sample], hip[sample, 0], hip[sample, 1], b)
@@ -149,8 +149,8 @@ def _inverse_dynamics(leg, psi, rate, speedup, hip, ground):
             b[link] -= q[link]
             for other in range(3):
                 b[link] += m[link, other] * speedup[sample, other]
-        found[sample, 0], found[sample, 1], found[sample, 2] = b[0] + b[1] + b[2], -b[1] - b[2], b[2]
-    return found
+        moments[sample, 0], moments[sample, 1], moments[sample, 2] = b[0] + b[1] + b[2], -b[1] - b[2], b[2]
+    return moments
 
 
 def cycle_rate(cycle: Values, step: float, order: int = 1) -> Values:

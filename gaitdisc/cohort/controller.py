@@ -115,10 +115,10 @@ def habitual_activation(person: Person, side: int, phase: Values) -> Values:
         activity(name, phase, person.dimensionless_speed, habit.delay[side], habit.weight[side, group], width)
         for group, (name, width) in enumerate(zip(GROUPS, habit.width, strict=True))
     ]
-    own = habit.cocontraction * np.column_stack(bursts)
+    activation = habit.cocontraction * np.column_stack(bursts)
     if person.learnt is not None:
-        own = own * (1 + person.learnt.stiffness / STIFFNESS * person.adaptation.effort)
-    return np.minimum(habit.rest + own, MOST)
+        activation = activation * (1 + person.learnt.stiffness / STIFFNESS * person.adaptation.effort)
+    return np.minimum(habit.rest + activation, MOST)
 
 
 def _nearest(activation: Values, recruitment: Recruitment, step_s: float) -> tuple[Values, Values]:
@@ -142,7 +142,7 @@ STEPS, HALVINGS = 60, 20
 NEARLY = 1e-7  # of the largest moment
 
 
-def share(wanted: Values, capacity: Values, habit: Values, least: Values, dear: Values) -> Values:
+def share(moments: Values, capacity: Values, habit: Values, least: Values, dear: Values) -> Values:
     """Activations (phase, muscle) nearest to `habit` that give moments (phase, joint); `dear` is each muscle's cost.
 
     Static optimisation around a habit, for all phases of a stride at once. At every phase the activations a minimise
@@ -152,22 +152,22 @@ def share(wanted: Values, capacity: Values, habit: Values, least: Values, dear: 
     steps, because the equations are linear between changes of the set of muscles that stand at a bound.
     """
     soft = SOFTNESS * float(np.mean(np.sum(capacity**2, axis=1)))
-    small = NEARLY * (1.0 + np.abs(wanted).max())
-    multiplier, found = np.zeros_like(wanted), np.clip(habit, least, 1.0)
-    unsolved = np.arange(len(wanted))  # phases whose equations do not hold yet
+    small = NEARLY * (1.0 + np.abs(moments).max())
+    multiplier, activation = np.zeros_like(moments), np.clip(habit, least, 1.0)
+    unsolved = np.arange(len(moments))  # phases whose equations do not hold yet
     for _ in range(STEPS):
-        task = wanted[unsolved], capacity[unsolved], habit[unsolved], least[unsolved], dear, soft
-        found[unsolved], missing = _at(multiplier[unsolved], *task)
+        task = moments[unsolved], capacity[unsolved], habit[unsolved], least[unsolved], dear, soft
+        activation[unsolved], missing = _at(multiplier[unsolved], *task)
         keep = np.abs(missing).max(axis=1) > small
         unsolved, missing, task = unsolved[keep], missing[keep], (*(part[keep] for part in task[:4]), dear, soft)
         if not len(unsolved):
             break
-        free = (found[unsolved] > task[3]) & (found[unsolved] < 1.0)
+        free = (activation[unsolved] > task[3]) & (activation[unsolved] < 1.0)
         slope = np.matmul((task[1] * (free / dear)[:, :, None]).transpose(0, 2, 1), task[1]) + soft * np.eye(3)
         multiplier[unsolved] += _step(
             np.linalg.solve(slope, missing[:, :, None])[:, :, 0], multiplier[unsolved], missing, task
         )
-    return found
+    return activation
 
 
 def _step(step, multiplier, missing, task):
@@ -181,7 +181,7 @@ def _step(step, multiplier, missing, task):
     return step
 
 
-def _at(multiplier, wanted, capacity, habit, least, dear, soft):
+def _at(multiplier, moments, capacity, habit, least, dear, soft):
     """Activations of the multipliers, and what is left of the equations."""
-    found = np.clip(habit + np.matmul(capacity, multiplier[:, :, None])[:, :, 0] / dear, least, 1.0)
-    return found, wanted - np.matmul(found[:, None], capacity)[:, 0] - soft * multiplier
+    activation = np.clip(habit + np.matmul(capacity, multiplier[:, :, None])[:, :, 0] / dear, least, 1.0)
+    return activation, moments - np.matmul(activation[:, None], capacity)[:, 0] - soft * multiplier

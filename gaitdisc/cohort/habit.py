@@ -60,13 +60,13 @@ class Curve:
 
         phase , any shape [share of a stride]: 0 at contact
         """
-        own = np.mod(phase, 1.0)
+        wrapped = np.mod(phase, 1.0)
         if self.basis == "fourier":
-            turn = 2 * np.pi * own
+            turn = 2 * np.pi * wrapped
             pairs = zip(self.terms[::2], self.terms[1::2], strict=True)
             waves = [a * np.cos(k * turn) + b * np.sin(k * turn) for k, (a, b) in enumerate(pairs, 1)]
             return self.mean + np.sum(waves, axis=0)
-        share = own / STANCE
+        share = wrapped / STANCE
         waves = np.sum([b * np.sin(k * np.pi * share) for k, b in enumerate(self.terms, 1)], axis=0)
         return np.where(share < 1.0, waves, 0.0)
 
@@ -100,9 +100,9 @@ def activity(muscle: str, phase: Values, speed: float, delay: Values, weight: Va
 
 @cache
 def _rows() -> dict[str, list[tuple[float, Curve]]]:
-    found: dict[str, list[tuple[float, Curve]]] = {}
+    curves: dict[str, list[tuple[float, Curve]]] = {}
     with TABLE.open(encoding="utf-8", newline="") as file:
         for row in csv.reader(line for line in file if not line.startswith("curve,")):
             terms = tuple(float(cell) for cell in row[4:])
-            found.setdefault(row[0], []).append((float(row[1]), Curve(row[2], float(row[3]), terms)))
-    return found
+            curves.setdefault(row[0], []).append((float(row[1]), Curve(row[2], float(row[3]), terms)))
+    return curves

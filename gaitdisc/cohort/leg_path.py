@@ -122,10 +122,10 @@ def habit_angles(person: Person, side: int, phase: Values, drifted: float = 0.0)
     if person.learnt is not None:
         waves = waves + person.learnt.stiffness / STIFFNESS * person.adaptation.habit_deg[side]
     turn = 2 * np.pi * np.outer(phase, np.arange(1, HARMONICS + 1))
-    own = np.cos(turn) @ waves[:, :, 0].T + np.sin(turn) @ waves[:, :, 1].T
-    for bump in (one for one in style.bumps if one.side == side):
-        own[:, bump.joint] += bump.at(phase)
-    return mean + (curves - mean) * style.size + own
+    deviation = np.cos(turn) @ waves[:, :, 0].T + np.sin(turn) @ waves[:, :, 1].T
+    for bump in (bump for bump in style.bumps if bump.side == side):
+        deviation[:, bump.joint] += bump.at(phase)
+    return mean + (curves - mean) * style.size + deviation
 
 
 def thigh_shank_foot(angles: Values) -> Values:
@@ -178,12 +178,12 @@ def belt_held(person: Person, leg: Leg, psi: Values, hip_rate: Values) -> Values
     weight = np.clip((1.0 - np.abs(share)) / HELD_EDGE, 0.0, 1.0) / (person.speed_m_per_s * person.stride_s)
     reluctance = np.tile(np.r_[order, order] ** (2 * RELUCTANCE), 3) * len(psi) / 2
     pressure = pressure_centre(stage, leg.sole_m)
-    wanted = -person.stride_s * (hip_rate + np.array([person.speed_m_per_s, 0.0]))
-    moved, found = np.zeros(6 * CORRECTED), psi
+    target = -person.stride_s * (hip_rate + np.array([person.speed_m_per_s, 0.0]))
+    moved, angles = np.zeros(6 * CORRECTED), psi
     for _ in range(4):
-        slip, rate = contact_path(leg, found, pressure) - wanted, by_phase(found)
-        lever = pressure_point(leg, found[:, 2], pressure)
-        c, s = np.cos(found), np.sin(found)
+        slip, rate = contact_path(leg, angles, pressure) - target, by_phase(angles)
+        lever = pressure_point(leg, angles[:, 2], pressure)
+        c, s = np.cos(angles), np.sin(angles)
         l1, l2 = leg.thigh_m, leg.shank_m
         along = [l1 * c[:, 0], l2 * c[:, 1], -lever[:, 1]], [l1 * s[:, 0], l2 * s[:, 1], lever[:, 0]]
         bend = [-l1 * s[:, 0], -l2 * s[:, 1], -lever[:, 0]], [l1 * c[:, 0], l2 * c[:, 1], -lever[:, 1]]
@@ -194,8 +194,8 @@ def belt_held(person: Person, leg: Leg, psi: Values, hip_rate: Values) -> Values
             left += gain.T @ gain
             right -= gain.T @ (firm * weight * slip[:, axis])
         moved = moved + np.linalg.solve(left, right)  # normal equations: the reluctance keeps them well conditioned
-        found = psi + waves @ moved.reshape(3, -1).T
-    return found
+        angles = psi + waves @ moved.reshape(3, -1).T
+    return angles
 
 
 def contact_path(leg: Leg, psi: Values, pressure: Values) -> Values:

@@ -112,9 +112,9 @@ def _pelvis(walk: TrueWalk, leg: Leg) -> Values:
     path = 0.5 * (path + np.roll(path, -PHASES // 2, axis=0))
     path -= path.mean(axis=0)
     phase = walk.phase[:: round(QUICK_HZ / SLOW_HZ)] % 1.0
-    own = [np.interp(phase, grid, column, period=1.0) for column in path.T]
+    hip_path = [np.interp(phase, grid, column, period=1.0) for column in path.T]
     sway = SWAY_M * np.cos(2 * np.pi * (phase - SWAY_AT))
-    moved = np.column_stack([own[0] + walk.pelvis[:, 0], own[1] + walk.pelvis[:, 1], sway])
+    moved = np.column_stack([hip_path[0] + walk.pelvis[:, 0], hip_path[1] + walk.pelvis[:, 1], sway])
     stands = (phase > 0.15) & (phase < 0.40)
     moved[:, 1] -= np.mean(moved[stands, 1] + _pressure_from_hip(walk, leg, 0)[stands, 1])
     return moved
@@ -131,20 +131,20 @@ def _pressure_from_hip(walk: TrueWalk, leg: Leg, side: int) -> Values:
 def _segments(person: Person, leg: Leg, angles: Values, hips: Values) -> Segments:
     """Origin (time, 3) and rotation (time, 3, 3) of each segment, in forwards, up, right."""
     pelvis = np.repeat(make_rotation(np.array([[-_tilt(person), 0.0, 0.0]])), len(angles), axis=0)
-    found = {"pelvis": (hips - pelvis @ _hip(person, 0.0), pelvis)}
+    segments = {"pelvis": (hips - pelvis @ _hip(person, 0.0), pelvis)}
     for column, (side, sign) in enumerate(SIDES):
-        own = angles[:, column]
-        above, place = pelvis, found["pelvis"][0] + pelvis @ _hip(person, sign)
-        flat = np.zeros(len(own))
+        leg_angles = angles[:, column]
+        above, place = pelvis, segments["pelvis"][0] + pelvis @ _hip(person, sign)
+        flat = np.zeros(len(leg_angles))
         for part, turns, length in (
-            ("thigh", (own[:, 0], sign * own[:, 1], sign * own[:, 2]), leg.thigh_m),
-            ("shank", (-own[:, 3], flat, flat), leg.shank_m),
-            ("foot", (own[:, 4], flat, flat), 0.0),
+            ("thigh", (leg_angles[:, 0], sign * leg_angles[:, 1], sign * leg_angles[:, 2]), leg.thigh_m),
+            ("shank", (-leg_angles[:, 3], flat, flat), leg.shank_m),
+            ("foot", (leg_angles[:, 4], flat, flat), 0.0),
         ):
             above = above @ make_rotation(np.column_stack(turns))
-            found[f"{part}_{side}"] = (place, above)
+            segments[f"{part}_{side}"] = (place, above)
             place = place + above @ np.array([0.0, -length, 0.0])
-    return found
+    return segments
 
 
 def _hip(person: Person, sign: float) -> Values:
@@ -206,7 +206,7 @@ def _forces(walk: TrueWalk, leg: Leg, segments: Segments, rng: np.random.Generat
         at = _pressure_from_hip(walk, leg, column) + hips[:, :2]
         foot = segments[f"foot_{side}"][0][:, 2]
         slow = np.column_stack([at[:, 0], np.zeros(len(at)), foot]) @ TO_LABORATORY.T
-        point = np.column_stack([np.interp(walk.quick_s, walk.slow_s, one) for one in slow.T])
+        point = np.column_stack([np.interp(walk.quick_s, walk.slow_s, coordinate) for coordinate in slow.T])
         along, up = walk.force[:, column].T
         force = np.column_stack([along, up, -sign * INWARDS * up]) @ TO_LABORATORY.T
         moment = np.cross(point - belt.corners.mean(axis=0), force)
@@ -234,9 +234,9 @@ def overground(belts: Trial, start_s: float, stride_s: float, speed_m_per_s: flo
     by `plate_2`; other steps fall beside the plates.
     """
     end_s = start_s + STRIDES * stride_s
-    parts = {key: one.between(start_s, end_s) for key, one in belts.streams.items()}
-    right = _step(parts["forces"], "plate_1", start_s + BEFORE * stride_s)
-    left = _step(parts["forces"], "plate_2", right.start_s)
+    stretches = {key: recording.between(start_s, end_s) for key, recording in belts.streams.items()}
+    right = _step(stretches["forces"], "plate_1", start_s + BEFORE * stride_s)
+    left = _step(stretches["forces"], "plate_2", right.start_s)
     length = min(PLATE_M[0], 0.9 * 0.5 * stride_s * speed_m_per_s)
     plates, columns = [], []
     rng = np.random.default_rng([round(1000 * start_s), 47])
@@ -247,16 +247,16 @@ def overground(belts: Trial, start_s: float, stride_s: float, speed_m_per_s: flo
         corners = np.array([[front, -half, 0.0], [back, -half, 0.0], [back, half, 0.0], [front, half, 0.0]])
         plate = Surface(belt.name, corners + middle * along)
         apart = belt.corners.mean(axis=0) - plate.corners.mean(axis=0)
-        apart = apart + (speed_m_per_s * (parts["forces"].time - start_s))[:, None] * along
+        apart = apart + (speed_m_per_s * (stretches["forces"].time - start_s))[:, None] * along
         moment = step.moment + np.cross(apart, step.force)  # about the middle of the plate
         columns.append(step.force + rng.normal(0.0, FORCE_N, step.force.shape))
         columns.append(moment + rng.normal(0.0, MOMENT_NM, moment.shape))
         plates.append(plate)
-    walked = np.zeros_like(parts["markers"].values)
-    walked[:, 0::3] = speed_m_per_s * (parts["markers"].time - start_s)[:, None]
-    parts["markers"] = parts["markers"].with_values(parts["markers"].values + walked)
-    parts["forces"] = parts["forces"].with_values(np.hstack(columns))
-    streams = {key: replace(one, time=one.time - one.time[0]) for key, one in parts.items()}
+    walked = np.zeros_like(stretches["markers"].values)
+    walked[:, 0::3] = speed_m_per_s * (stretches["markers"].time - start_s)[:, None]
+    stretches["markers"] = stretches["markers"].with_values(stretches["markers"].values + walked)
+    stretches["forces"] = stretches["forces"].with_values(np.hstack(columns))
+    streams = {key: replace(recording, time=recording.time - recording.time[0]) for key, recording in stretches.items()}
     return Trial(name, streams, subject=belts.subject, condition=belts.condition, surfaces=tuple(plates))
 
 

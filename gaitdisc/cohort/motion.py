@@ -89,7 +89,7 @@ def integrate(leg, strength, belt, loop, worn, tables, noise):  # noqa: PLR0912,
     standing = np.zeros(2, np.bool_)
     pelvis, pelvis_rate, pelvis_speedup, pelvis_push = np.zeros(2), np.zeros(2), np.zeros(2), np.zeros(2)
     row, rattle = np.empty((2, COLUMNS.width)), np.empty(NOISE)
-    joint, joint_rate, moments, kept = np.empty(3), np.empty(3), np.empty(3), np.empty((2, 3))
+    joint, joint_rate, moments, leg_moments = np.empty(3), np.empty(3), np.empty(3), np.empty((2, 3))
     m, b, q, force, arm = np.empty((3, 3)), np.empty(3), np.empty(3), np.empty((2, 2)), np.empty(2)
     phase, pace = 0.0, 1.0 / worn.stride_s
     for step in range(steps):
@@ -169,7 +169,7 @@ def integrate(leg, strength, belt, loop, worn, tables, noise):  # noqa: PLR0912,
                 want = row[s, COLUMNS.others + j] + (1.0 - taken) * reflex[s, j]
                 others[s, j] += (want - others[s, j]) * STEP_S / LAG_S
                 moments[j] += others[s, j]
-                kept[s, j] = moments[j]
+                leg_moments[s, j] = moments[j]
             over = psi[s, 2] - psi[s, 1] - worn.engaged
             spring[s] = -worn.stiffness * over if over > 0.0 else 0.0
             # the belt: the habitual force, and what holds the foot on it
@@ -243,7 +243,7 @@ def integrate(leg, strength, belt, loop, worn, tables, noise):  # noqa: PLR0912,
             for s in range(2):
                 for j in range(3):
                     slow[n, 1 + 3 * s + j] = psi[s, j]
-                    slow[n, 11 + 3 * s + j] = kept[s, j]
+                    slow[n, 11 + 3 * s + j] = leg_moments[s, j]
                     slow[n, 23 + 3 * s + j] = speedup[s, j]
                 for j in range(2):
                     slow[n, 7 + 2 * s + j] = side[s, j]

@@ -123,28 +123,28 @@ def muscle_moments(strength, activation, joint, joint_rate, moments):
 def capacities(strength, joint, joint_rate):
     """Moment of each muscle at full activation along a motion: (time, muscle, joint) [N m]."""
     count, muscles = len(joint), strength.reach.shape[0]
-    found = np.zeros((count, muscles, 3))
+    moments = np.zeros((count, muscles, 3))
     alone = np.zeros(muscles)
     for sample in range(count):
         for muscle in range(muscles):
             alone[:] = 0.0
             alone[muscle] = 1.0
-            muscle_moments(strength, alone, joint[sample], joint_rate[sample], found[sample, muscle])
-    return found
+            muscle_moments(strength, alone, joint[sample], joint_rate[sample], moments[sample, muscle])
+    return moments
 
 
 @compiled
 def cycle_activation(excitation, step_s, turns):
     """Periodic activation (phase, muscle) of a periodic excitation, after some turns of the cycle."""
     count, muscles = excitation.shape
-    found = excitation.copy()
+    activation = excitation.copy()
     for muscle in range(muscles):
         level = excitation[0, muscle]
         for _ in range(turns):
             for sample in range(count):
-                found[sample, muscle] = level
+                activation[sample, muscle] = level
                 level = activate(excitation[sample, muscle], level, step_s)
-    return found
+    return activation
 
 
 def cycle_excitation(activation: Values, rest: Values, step_s: float) -> Values:

@@ -210,6 +210,6 @@ def _waves(rng: np.random.Generator, both: float, side: float) -> Values:
     """Harmonics that fall with their order, most of them common to both sides [deg]."""
     fall = 1.0 / np.arange(1.0, HARMONICS + 1)[:, None]
     shape = (len(JOINTS), HARMONICS, 2)
-    each = np.array([1.0, 0.5, 0.7, 1.2, 1.0])[:, None, None]
+    scale = np.array([1.0, 0.5, 0.7, 1.2, 1.0])[:, None, None]
     common = both * rng.normal(size=shape)
-    return np.stack([(common + side * rng.normal(size=shape)) * fall * each for _ in range(2)])
+    return np.stack([(common + side * rng.normal(size=shape)) * fall * scale for _ in range(2)])

@@ -74,8 +74,8 @@ class TrueWalk:
 
     def contacts(self, side: int = 0) -> Values:
         """Times at which a foot meets the belt, from the phase itself [s]."""
-        own = self.phase + 0.5 * side
-        return np.interp(np.arange(np.ceil(own[0]), np.floor(own[-1]) + 1), own, self.quick_s)
+        phase = self.phase + 0.5 * side
+        return np.interp(np.arange(np.ceil(phase[0]), np.floor(phase[-1]) + 1), phase, self.quick_s)
 
     def strides(self, values: Values, side: int = 0) -> Values:
         """Each stride on 101 points of its true phase.
@@ -84,11 +84,11 @@ class TrueWalk:
         returns (stride, 101, ...)
         """
         quick = len(values) == len(self.quick_s)
-        own = (self.phase if quick else self.phase[:: round(QUICK_HZ / SLOW_HZ)]) + 0.5 * side
-        first, last = int(np.ceil(own[0])), int(np.floor(own[-1]))
+        phase = (self.phase if quick else self.phase[:: round(QUICK_HZ / SLOW_HZ)]) + 0.5 * side
+        first, last = int(np.ceil(phase[0])), int(np.floor(phase[-1]))
         grid = (np.arange(first, last)[:, None] + np.linspace(0.0, 1.0, 101)).ravel()
         flat = values.reshape(len(values), -1)
-        columns = [np.interp(grid, own, column) for column in flat.T]
+        columns = [np.interp(grid, phase, column) for column in flat.T]
         return np.column_stack(columns).reshape(last - first, 101, *values.shape[1:])
 
 
@@ -157,23 +157,23 @@ def _noise(person: Person, device: Spring, duration_s: float, seed: int) -> Valu
     count = round(duration_s / step_s) + 1
     colours = np.empty(NOISE)
     for side in range(2):
-        own = colours[side * PER_LEG_NOISE : (side + 1) * PER_LEG_NOISE]
-        own[:5] = MOMENT_NOISE_S
-        own[5:SLOW_MUSCLES], own[SLOW_MUSCLES:] = MUSCLE_NOISE_S
+        leg_colours = colours[side * PER_LEG_NOISE : (side + 1) * PER_LEG_NOISE]
+        leg_colours[:5] = MOMENT_NOISE_S
+        leg_colours[5:SLOW_MUSCLES], leg_colours[SLOW_MUSCLES:] = MUSCLE_NOISE_S
     colours[PACE_NOISE : PACE_NOISE + 2] = PACE_NOISE_S
     colours[WANDER] = DRIFT_S
-    found = np.empty((count, NOISE))
+    noise = np.empty((count, NOISE))
     for channel, colour in enumerate(colours):
         keep = np.exp(-step_s / colour)
         shocks = rng.normal(size=count) * np.sqrt(1 - keep**2)
         shocks[0] = rng.normal()
-        found[:, channel] = lfilter([1.0], [1.0, -keep], shocks)
-    found[:, WANDER] = np.clip(found[:, WANDER], -2.5, 2.5)
+        noise[:, channel] = lfilter([1.0], [1.0, -keep], shocks)
+    noise[:, WANDER] = np.clip(noise[:, WANDER], -2.5, 2.5)
     if device.stiffness > 0:
         time = np.arange(count) * step_s - WARM_UP_S
-        found[:, WANDER] += CHANGE_SIZE * np.clip((time - person.change_s) / CHANGE_S, 0.0, 1.0)
-    found[:, WANDER] /= CHANGE_SIZE
-    return found
+        noise[:, WANDER] += CHANGE_SIZE * np.clip((time - person.change_s) / CHANGE_S, 0.0, 1.0)
+    noise[:, WANDER] /= CHANGE_SIZE
+    return noise
 
 
 def _keep_walk(person: Person, device: Spring, seed: int, quick: Values, slow: Values) -> TrueWalk:

@@ -42,7 +42,7 @@ def angles(
     walk = read_trial(trial)
     seen = [*walk.findings]
     if static is None and "segments" in walk.streams:
-        found, made = segment_angles(walk.stream("segments"))
+        recording, made = segment_angles(walk.stream("segments"))
     else:
         stood = read_trial(static) if static is not None else None
         measures = read_body_measures(static) if static is not None else BodyMeasures()
@@ -51,9 +51,9 @@ def angles(
             measures = replace(measures, knee_width_m=knees, ankle_width_m=ankles)
         standing = stood.stream("markers") if stood is not None else None
         moved = move_body(walk.stream("markers"), standing, marker_set or None, measures, forward, joints or None)
-        found, made = moved.angles, moved.findings
+        recording, made = moved.angles, moved.findings
         seen = [*(stood.findings if stood is not None else ()), *seen]
-    write_recording(found, out)
+    write_recording(recording, out)
     for finding in dict.fromkeys((*seen, *made)):
         typer.echo(finding.line())
-    typer.echo(f"{out}: {len(found.names)} channels, {len(found.time)} samples")
+    typer.echo(f"{out}: {len(recording.names)} channels, {len(recording.time)} samples")

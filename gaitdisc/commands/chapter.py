@@ -29,26 +29,26 @@ def chapter(
     from gaitdisc.run.chapter_run import find_lack, run_part
 
     parts = list_parts(number, part)
-    lacks = {one: find_lack(one, data) for one in parts}
-    possible = [one for one in parts if part or lacks[one] is None]
-    seconds = {one: 60 * (one.quick_minutes if quick else one.minutes) for one in possible}
-    left = sum(seconds.values())
+    lacks = {p: find_lack(p, data) for p in parts}
+    possible = [p for p in parts if part or lacks[p] is None]
+    seconds = {p: 60 * (p.quick_minutes if quick else p.minutes) for p in possible}
+    remaining_s = sum(seconds.values())
     with stoppable_bar(quiet) as bar:
-        task = bar.add_task("", total=left)
-        for place, one in enumerate(possible, 1):
-            before, words = sum(seconds.values()) - left, f"{one.name}, {place} of {len(possible)}"
+        task = bar.add_task("", total=remaining_s)
+        for place, current in enumerate(possible, 1):
+            before, words = sum(seconds.values()) - remaining_s, f"{current.name}, {place} of {len(possible)}"
             if not quiet:
-                LOG.info(f"{words}: about {left / 60:.1f} min on one core remain in total")
-            left -= seconds[one]
+                LOG.info(f"{words}: about {remaining_s / 60:.1f} min on one core remain in total")
+            remaining_s -= seconds[current]
 
-            def ticked(spent: float, one: Part = one, before: float = before, words: str = words) -> None:
-                bar.update(task, completed=before + min(spent, NEARLY * seconds[one]), description=words)
+            def ticked(spent: float, current: Part = current, before: float = before, words: str = words) -> None:
+                bar.update(task, completed=before + min(spent, NEARLY * seconds[current]), description=words)
 
-            made = run_part(one, out, quick, data, ticked)
-            typer.echo(f"{one.name}: {'kept as it stands' if made.kept else 'done'}: {made.folder}")
-    for one in parts:
-        if one not in possible:
-            LOG.info(f"left out: {lacks[one]}")
+            made = run_part(current, out, quick, data, ticked)
+            typer.echo(f"{current.name}: {'kept as it stands' if made.kept else 'done'}: {made.folder}")
+    for current in parts:
+        if current not in possible:
+            LOG.info(f"left out: {lacks[current]}")
     if len(possible) < len(parts):
         raise typer.Exit(SOME_REFUSED)
 

@@ -84,9 +84,9 @@ def _print_inspections(seen: list[Inspection], notes: bool) -> None:
         table.add_row(plain(inspection.light, LIGHTS[inspection.light]), *map(plain, cells))
     console.print(table)
     for inspection in seen:
-        if said := inspection.refusal:
+        if refusal := inspection.refusal:
             who = inspection.name or inspection.participant
-            console.print(plain(f"refused: {said if said.startswith(who) else f'{who}: {said}'}"))
+            console.print(plain(f"refused: {refusal if refusal.startswith(who) else f'{who}: {refusal}'}"))
         for line in inspection.grouped(notes):
             console.print(plain(line))
 

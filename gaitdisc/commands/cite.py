@@ -17,7 +17,7 @@ def cite(
     from gaitdisc.whole_file import write_whole
 
     cited = list_citations(folder)
-    text = "\n\n".join(f"% {'; '.join(one.methods)}\n{one.entry}" for one in cited) + "\n"
+    text = "\n\n".join(f"% {'; '.join(citation.methods)}\n{citation.entry}" for citation in cited) + "\n"
     if out is None:
         typer.echo(text, nl=False)
     else:

@@ -65,16 +65,16 @@ def _clinic(folder: Path, jobs: int) -> None:
     from gaitdisc.run.workers import Workers
     from gaitdisc.saved.study_run import claim_run
 
-    parts = ("controls", "week")
-    files = [f"{part}/study.toml" for part in parts]
-    claim_folder(folder, "planted.json", "reference", *parts, *files, "week/clinic.toml")
-    for part in parts:
+    studies = ("controls", "week")
+    files = [f"{part}/study.toml" for part in studies]
+    claim_folder(folder, "planted.json", "reference", *studies, *files, "week/clinic.toml")
+    for part in studies:
         claim_run(folder / part / "run")
     typer.echo("Simulating 20 controls and 8 patients (one of them a child), 16 s each.")
     controls, week, planted = write_week(folder, progress=lambda who: LOG.info(f"  {who}"))
     workers = Workers(jobs)
-    own = run_study(controls, controls.folder / "run", workers)
-    save_reference(make_reference(own.cycles, own.title, own.provenance), folder / "reference")
+    control_run = run_study(controls, controls.folder / "run", workers)
+    save_reference(make_reference(control_run.cycles, control_run.title, control_run.provenance), folder / "reference")
     run_folder = week.folder / "run"
     keep_reference(folder / "reference", run_folder)
     index = write_people(run_study(week, run_folder, workers), run_folder)

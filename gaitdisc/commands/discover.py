@@ -75,25 +75,25 @@ def discover(  # noqa: PLR0913, PLR0917 these are the options of a command
             LOG.info("%6.1f s  %s", time.perf_counter() - began, step)
 
     def write(
-        found: Discovery, models: Callable[[Path], list[str]], notes: Sequence[str] = (), folder: Path = out
+        result: Discovery, models: Callable[[Path], list[str]], notes: Sequence[str] = (), folder: Path = out
     ) -> Discovery:
         """Write what was found together with the augmented model, and say it."""
         with write_together():
-            place = save_discovery(found, folder, models(folder))
+            place = save_discovery(result, folder, models(folder))
         if draw:
             from gaitdisc.discovery.page import write_discovery_report
 
             say("drawing the report")
-            place = write_discovery_report(found, folder)
-        typer.echo("\n".join([found.public.sentence, *notes] if found.twins is None else [found.twins.sentence]))
-        for finding in found.public.findings if found.twins is None else ():
+            place = write_discovery_report(result, folder)
+        typer.echo("\n".join([result.public.sentence, *notes] if result.twins is None else [result.twins.sentence]))
+        for finding in result.public.findings if result.twins is None else ():
             if finding.severity != "note":
                 LOG.info(finding.line())
         typer.echo(f"{'report' if draw else 'found'}: {place}")
-        return found
+        return result
 
-    def with_model(found: Discovery, augmented: Simulation, folder: Path = out) -> Discovery:
-        return write(found, lambda to: [write_simulation(augmented, to / "augmented.toml").name], folder=folder)
+    def with_model(discovery: Discovery, augmented: Simulation, folder: Path = out) -> Discovery:
+        return write(discovery, lambda to: [write_simulation(augmented, to / "augmented.toml").name], folder=folder)
 
     with stoppable(f"the same command{' without --overwrite' * anew}"):
         from gaitdisc.discovery.catalogue import Request
@@ -105,9 +105,9 @@ def discover(  # noqa: PLR0913, PLR0917 these are the options of a command
         from gaitdisc.simulation.writing import write_simulation
         from gaitdisc.whole_file import write_together
 
-        given = tuple(one.strip() for one in effects.split(",") if one.strip())
+        named = tuple(name.strip() for name in effects.split(",") if name.strip())
         with kept_work(out, say, anew) as work:
-            request = Request.read(catalogue, given, alpha, work.progress, twins)
+            request = Request.read(catalogue, named, alpha, work.progress, twins)
             if (twins or plan) and (measured is None or names_engine(simulation)):
                 refuse_twins(simulation.name)
             if measured is None:
@@ -128,9 +128,9 @@ def _plan(simulation: Path, measured: Path, request: Request, out: Path) -> None
     from gaitdisc.spreadsheet import write_csv
 
     model = read_simulation(simulation)
-    found = find_power(model, read_measured(measured, model), request)
-    write_csv(tabulate_power(found), out / "plan.csv", "%.6g")
-    typer.echo("\n".join([*(one.sentence for one in found), f"plan: {out / 'plan.csv'}"]))
+    powers = find_power(model, read_measured(measured, model), request)
+    write_csv(tabulate_power(powers), out / "plan.csv", "%.6g")
+    typer.echo("\n".join([*(power.sentence for power in powers), f"plan: {out / 'plan.csv'}"]))
 
 
 def _of_engine(model: Path, measured: Path, request: Request, write: Callable[..., Discovery]) -> None:
@@ -167,17 +167,17 @@ def _of_study(
             if place != out:  # which is held already
                 claim_folder(place, *FILES)
         answers = discover_study(path, person, request, joint or ANKLE)
-        for word, (found, augmented) in answers.items():
+        for word, (discovery, augmented) in answers.items():
             if others:
                 typer.echo(f"{word}:")
-            write(found, augmented, places[word])
-        for one in next(iter(answers.values()))[0].conditions:
-            if not one.verdict:
-                LOG.info(f"{one.condition}: refused: {one.sentence}")
-        return {word: found for word, (found, _) in answers.items()}
+            write(discovery, augmented, places[word])
+        for condition in next(iter(answers.values()))[0].conditions:
+            if not condition.verdict:
+                LOG.info(f"{condition.condition}: refused: {condition.sentence}")
+        return {word: discovery for word, (discovery, _) in answers.items()}
 
     if whose == EVERYONE:
-        _everyone([one.id for one in study.participants], out, discovered)
+        _everyone([person.id for person in study.participants], out, discovered)
     else:
         discovered(whose, out)
 
@@ -188,16 +188,16 @@ def _everyone(people: Sequence[str], out: Path, discovered: Callable[[str, Path]
     from gaitdisc.errors import GaitdiscError
     from gaitdisc.spreadsheet import write_csv
 
-    found: dict[str, dict[str, Discovery]] = {}
+    discoveries: dict[str, dict[str, Discovery]] = {}
     for person in people:
         typer.echo(f"{person}:")
         try:
-            found[person] = discovered(person, out / person)
+            discoveries[person] = discovered(person, out / person)
         except GaitdiscError as error:
             LOG.info(f"refused: {error}")
-    table = over_conditions(found)
+    table = over_conditions(discoveries)
     write_csv(table, out / "people.csv", "%.6g")
     for line in lines(table):
         typer.echo(line)
-    if len(found) < len(people):
-        raise typer.Exit(SOME_REFUSED if found else REFUSED)
+    if len(discoveries) < len(people):
+        raise typer.Exit(SOME_REFUSED if discoveries else REFUSED)

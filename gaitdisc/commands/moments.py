@@ -40,10 +40,10 @@ def moments(
     weighed = check_weight(weighed_n, person.kg, static.name)
     moved = move_body(walk.stream("markers"), standing, marker_set or None, measures)
     settings = KineticsSettings(force_cutoff_hz=force_hz)
-    found = trial_kinetics(walk, moved.poses, find_foot_paths(moved), person, settings)
-    write_recording(found.moments, out)
-    for finding in dict.fromkeys((*stood.findings, *weighed, *walk.findings, *moved.findings, *found.findings)):
+    kinetics = trial_kinetics(walk, moved.poses, find_foot_paths(moved), person, settings)
+    write_recording(kinetics.moments, out)
+    for finding in dict.fromkeys((*stood.findings, *weighed, *walk.findings, *moved.findings, *kinetics.findings)):
         typer.echo(finding.line())
-    for step in (one for one in found.steps if one.clean):
+    for step in (step for step in kinetics.steps if step.clean):
         typer.echo(f"foot {step.side} was alone on {step.platform} from {step.start:.2f} to {step.end:.2f} s")
-    typer.echo(f"{out}: {len(found.moments.names)} channels, {len(found.moments.time)} samples")
+    typer.echo(f"{out}: {len(kinetics.moments.names)} channels, {len(kinetics.moments.time)} samples")

@@ -72,7 +72,7 @@ def _write_mapping(file: Path, model: Path, degrees: bool) -> None:
 
     _claim_mapping(file, model)
     mapping = write_mapping(read_model(model), file, degrees)
-    columns = [name for name, _ in mapping.observations] + [one.name for one in mapping.inputs]
+    columns = [name for name, _ in mapping.observations] + [signal.name for signal in mapping.inputs]
     typer.echo(f"{file} written: columns {', '.join(columns)}. Read it, then run: gaitdisc discover {model} MEASURED")
     if model.suffix.lower() == ".osim":
         typer.echo("For a walk with recorded ground forces, add --external-loads, --forces and --actuators.")
@@ -86,9 +86,9 @@ def _write_tracked(file: Path, model: Path, loads: Path | None, forces: Path | N
     _claim_mapping(file, model)
     tracked, engine, columns = draft_tracked(model, loads, forces, actuators)
     write_tracked_mapping(tracked, file)
-    given = f"forces in {counted(len(columns), 'column')}" if tracked.forces else "no muscle forces"
+    stated = f"forces in {counted(len(columns), 'column')}" if tracked.forces else "no muscle forces"
     typer.echo(
-        f"{file} written: {engine.mass_kg:.1f} kg, {counted(len(engine.coordinates), 'free coordinate')}, {given}. "
+        f"{file} written: {engine.mass_kg:.1f} kg, {counted(len(engine.coordinates), 'free coordinate')}, {stated}. "
         f"Read it, then run: gaitdisc discover {file} KINEMATICS.mot"
     )
     if not tracked.forces:

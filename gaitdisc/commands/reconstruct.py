@@ -74,11 +74,11 @@ def reconstruct(  # noqa: PLR0913, PLR0917 these are the options of a command
         device=device,
     )
     names = [name for words in sensors or [] for name in words.replace(",", " ").split()]
-    found = search_study(loaded, search, settings) if search else None
-    if found is not None and not names:
-        names = str(found["names"].iloc[enough_sensors(found)]).split(", ")
+    searched = search_study(loaded, search, settings) if search else None
+    if searched is not None and not names:
+        names = str(searched["names"].iloc[enough_sensors(searched)]).split(", ")
     done, people = reconstruct_study(loaded, names, settings, lambda who, _: None if quiet else LOG.info(f"  {who}"))
-    done = replace(done, search=found)
+    done = replace(done, search=searched)
     done.save(folder)
     page = write_reconstruction_report(done, folder)
     places = file_names([person.participant for person in people])

@@ -43,22 +43,22 @@ def reference(
         )
     claim_folder(out, FILE)
     run = _find_run(controls, jobs)
-    cycles = tuple(one for one in run.of(CYCLES) if not group or one.group == group)
+    cycles = tuple(pooled for pooled in run.of(CYCLES) if not group or pooled.group == group)
     if not cycles:
-        groups = ", ".join(sorted({one.group or "no group" for one in run.of(CYCLES)})) or "no cycles"
+        groups = ", ".join(sorted({pooled.group or "no group" for pooled in run.of(CYCLES)})) or "no cycles"
         raise SchemaError(
             f"a reference must have controls{f' of group {group!r}' if group else ''} with pooled cycles",
             f"{controls} has {groups}",
             "Name a group of the study, or record walks of several trials.",
         )
-    found = make_reference(cycles, run.title, run.provenance)
-    path = save_reference(found, out)
-    for word in found.legs:
-        count = found.people(word)
+    norms = make_reference(cycles, run.title, run.provenance)
+    path = save_reference(norms, out)
+    for word in norms.legs:
+        count = norms.people(word)
         few = f"; fewer than {FEWEST} people: bands are drawn, but no deviation is reported" if count < FEWEST else ""
-        typer.echo(f"  {word}: {count} people, {len(found.of(word))} legs{few}")
-        for own in list_groups(found.of(word)):
-            typer.echo(f"    group: {described(own)}")
+        typer.echo(f"  {word}: {count} people, {len(norms.of(word))} legs{few}")
+        for members in list_groups(norms.of(word)):
+            typer.echo(f"    group: {described(members)}")
     typer.echo(f"reference: {path}")
 
 

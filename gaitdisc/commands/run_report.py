@@ -153,19 +153,19 @@ def say_new_recordings(study: Study) -> None:
     from gaitdisc.ingest.people_table import is_people_table
 
     people = study.participants
-    owners = {study.path_of(file).resolve(): one.id for one in people for t in one.trials for file in t.files}
+    owners = {study.path_of(file).resolve(): person.id for person in people for t in person.trials for file in t.files}
     folders = {path.parent: who for path, who in owners.items()}
     above = Path(os.path.commonpath(folders)) if len(set(folders.values())) > 1 else Path()
     inside = above.parts[2:] and not study.folder.resolve().is_relative_to(above)
     endings = {path.suffix.lower() for path in owners}
-    found: dict[str, int] = {}
-    each = above.rglob("*") if inside else (path for one in folders if one.is_dir() for path in one.iterdir())
-    for path in each:
+    counts: dict[str, int] = {}
+    paths = above.rglob("*") if inside else (path for folder in folders if folder.is_dir() for path in folder.iterdir())
+    for path in paths:
         if path.suffix.lower() in endings and path.resolve() not in owners and not is_people_table(path):
             who = next((folders[folder] for folder in path.parents if folder in folders), "")
             beside = f"in the folder of {who}" if who else "in another folder"
-            found[beside] = found.get(beside, 0) + 1
-    new = ", ".join(f"{count} {beside}" for beside, count in sorted(found.items()))
+            counts[beside] = counts.get(beside, 0) + 1
+    new = ", ".join(f"{count} {beside}" for beside, count in sorted(counts.items()))
     if new:
         words = "New recordings are not in the study file: {}. Add them: gaitdisc watch STUDY --from RECORDINGS."
         typer.echo(words.format(new), err=True)

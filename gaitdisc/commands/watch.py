@@ -36,7 +36,7 @@ def watch(
         raise ReadError("the path must be a folder of recordings", f"{recordings} is not a folder", "Create it.")
     file = study if study.suffix == ".toml" else study / "study.toml"
     looked: Looked = {}
-    said: set[str] = set()
+    printed: set[str] = set()
     code = 0
     LOG.info(f"Watching {recordings}; press Ctrl-C to end.")
     try:
@@ -45,10 +45,10 @@ def watch(
                 continue
             try:
                 notes = _grow_study(file, recordings, files, looked)
-                for note in (one for one in notes if one not in said):
+                for note in (note for note in notes if note not in printed):
                     typer.echo(f"  {note}")
-                said.update(notes)
-                with guard("gaitdisc run", [file, *(recordings / one for one in files)], overwrite):
+                printed.update(notes)
+                with guard("gaitdisc run", [file, *(recordings / path for path in files)], overwrite):
                     run(file, out=None, participant=None, jobs=jobs, cluster="", reference=reference, quiet=quiet)
                 code = 0
             except typer.Exit as ended:

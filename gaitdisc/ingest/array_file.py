@@ -58,33 +58,33 @@ class ArrayFile:
             the path does not choose from
         returns: as stored, or one column
         """
-        whole = path.replace("*", part) if part else path
-        columns = _COLUMN.search(whole)
-        steps = whole[: columns.start()] if columns else whole
+        full = path.replace("*", part) if part else path
+        columns = _COLUMN.search(full)
+        steps = full[: columns.start()] if columns else full
         top = max((n for n in self.names if steps == n or steps.startswith((f"{n}.", f"{n}{{", f"{n}("))), key=len,
                   default="")  # fmt: skip
         if not top:
             hint = hint_nearest(re.split(r"[.({]", steps)[0], self.names)
-            found = f"it has {list_names(self.names, _SHOWN)}{hint}"
-            raise self._refuse(whole, found, "Correct the path in [channels].")
+            fault = f"it has {list_names(self.names, _SHOWN)}{hint}"
+            raise self._refuse(full, fault, "Correct the path in [channels].")
         rest = steps[len(top) :]
-        if "".join(found[0] for found in _STEP.finditer(rest)) != rest:
-            raise self._refuse(whole, f"{rest!r} is not a path", _REMEDY)
+        if "".join(step[0] for step in _STEP.finditer(rest)) != rest:
+            raise self._refuse(full, f"{rest!r} is not a path", _REMEDY)
         node = self.opened(top)
         for field, cell, place in _STEP.findall(rest):
-            node = self._field(node, field, whole, part) if field else self._element(node, int(cell or place), whole)
-        return self._column(self._chosen(node, whole, part), columns, whole)
+            node = self._field(node, field, full, part) if field else self._element(node, int(cell or place), full)
+        return self._column(self._chosen(node, full, part), columns, full)
 
-    def _refuse(self, path: str, found: str, remedy: str) -> ReadError:
-        return ReadError(f"{self.raw.name}: {path!r} must name a variable of numbers", found, remedy)
+    def _refuse(self, path: str, fault: str, remedy: str) -> ReadError:
+        return ReadError(f"{self.raw.name}: {path!r} must name a variable of numbers", fault, remedy)
 
     def _field(self, node: Any, field: str, path: str, part: str) -> Any:
         node = self._chosen(node, path, part)
         if not isinstance(node, Mapping):
             raise self._refuse(path, f"{field!r} follows {_what(node)}, which is not a struct", _REMEDY)
         if field not in node:
-            found = f"the struct has {list_names(tuple(node), _SHOWN)}{hint_nearest(field, node)}"
-            raise self._refuse(path, found, "Correct the path in [channels].")
+            fault = f"the struct has {list_names(tuple(node), _SHOWN)}{hint_nearest(field, node)}"
+            raise self._refuse(path, fault, "Correct the path in [channels].")
         held = node[field]
         return held() if callable(held) else held
 
@@ -94,8 +94,8 @@ class ArrayFile:
         if not isinstance(node, Cells):
             raise self._refuse(path, f"element {number} follows {_what(node)}", _REMEDY)
         if not 1 <= number <= len(node.held):
-            found = f"it has no element {number} (number of elements: {len(node.held)})"
-            raise self._refuse(path, found, f"Give a number from 1 to {len(node.held)}.")
+            fault = f"it has no element {number} (number of elements: {len(node.held)})"
+            raise self._refuse(path, fault, f"Give a number from 1 to {len(node.held)}.")
         return node.held[number - 1]
 
     def _chosen(self, node: Any, path: str, part: str) -> Any:
@@ -114,17 +114,17 @@ class ArrayFile:
             raise self._refuse(path, f"it is {_what(node)}", "Name another variable, or save it as a numeric array.")
         values = np.array(node, float)
         if not values.size or np.isinf(values).any():
-            found = "it is empty" if not values.size else f"it contains {int(np.isinf(values).sum())} infinite numbers"
-            raise self._refuse(path, found, "Save it again, with NaN for missing values.")
+            fault = "it is empty" if not values.size else f"it contains {int(np.isinf(values).sum())} infinite numbers"
+            raise self._refuse(path, fault, "Save it again, with NaN for missing values.")
         if columns is None:
             return values
-        wanted = [one.strip() for one in columns[1].split(",")]
-        fits = len(wanted) == values.ndim and wanted.count(":") == 1
-        fits = fits and all(w == ":" or 1 <= int(w) <= n for w, n in zip(wanted, values.shape, strict=True))
+        indices = [index.strip() for index in columns[1].split(",")]
+        fits = len(indices) == values.ndim and indices.count(":") == 1
+        fits = fits and all(w == ":" or 1 <= int(w) <= n for w, n in zip(indices, values.shape, strict=True))
         if not fits:
             remedy = "Give a column, counted from 1, and ':' for the time, as in (:,2)."
             raise self._refuse(path, f"it is {_shape(values)}", remedy)
-        return values[tuple(slice(None) if one == ":" else int(one) - 1 for one in wanted)]
+        return values[tuple(slice(None) if index == ":" else int(index) - 1 for index in indices)]
 
 
 def open_arrays(path: Path | str, process: ReaderProcess | None = None) -> ArrayFile:
@@ -140,19 +140,19 @@ def open_arrays(path: Path | str, process: ReaderProcess | None = None) -> Array
     most = min(_UNPACKED[0] + _UNPACKED[1] * len(raw.content), LARGEST_BYTES)
 
     def answered(name: str) -> tuple[dict[str, Any], Arrays]:
-        wanted = ReadRequest.of_size(str(path), "arrays", (name,), len(raw.content))
-        answer, arrays = process.read(replace(wanted, cap_bytes=wanted.cap_bytes + 3 * most))  # packed, read, as float
-        said = answer.get("said", "").replace(str(path), path.name)
-        if "allow_pickle" in said:
+        request = ReadRequest.of_size(str(path), "arrays", (name,), len(raw.content))
+        answer, arrays = process.read(replace(request, cap_bytes=request.cap_bytes + 3 * most))  # packed, read, floats
+        reason = answer.get("said", "").replace(str(path), path.name)
+        if "allow_pickle" in reason:
             raise ReadError(
                 f"{raw.name}: {name!r} must be an array of numbers",
                 "it contains Python objects, which are never unpickled, because unpickling can run any program",
                 "Save it as numeric arrays: numpy.savez without objects.",
             )
-        if said:
+        if reason:
             needed = f"{raw.name} cannot be read as {'an .npz' if is_npz else 'a .mat'} file"
-            found = f"the reader reports: {' '.join(said.split())[:160].rstrip('.')}"
-            raise ReadError(needed, found, "Save it again. It may be incomplete or of another type.")
+            fault = f"the reader reports: {' '.join(reason.split())[:160].rstrip('.')}"
+            raise ReadError(needed, fault, "Save it again. It may be incomplete or of another type.")
         return answer, arrays
 
     claims = answered("")[0]["claims"]
@@ -178,15 +178,15 @@ def _node(tree: Any, arrays: Arrays) -> Any:
     if not isinstance(tree, dict):
         return tree
     if "cells" in tree:
-        return Cells(tuple(_node(one, arrays) for one in tree["cells"]))
-    return {name: _node(one, arrays) for name, one in tree["fields"].items()}
+        return Cells(tuple(_node(cell, arrays) for cell in tree["cells"]))
+    return {name: _node(member, arrays) for name, member in tree["fields"].items()}
 
 
 def _of_hdf5(path: Path, name: str, number: int | None = None) -> Any:
     """Node of a v7.3 file, or an element of it: structs are groups, cells references, arrays stand transposed."""
     with hdf5_file(path) as file:
-        found = _hdf5_node(file, name, path)
-    return found.held[number] if number is not None and isinstance(found, Cells) else found
+        node = _hdf5_node(file, name, path)
+    return node.held[number] if number is not None and isinstance(node, Cells) else node
 
 
 def _hdf5_node(file: Any, name: str, path: Path) -> Any:
@@ -199,12 +199,12 @@ def _hdf5_node(file: Any, name: str, path: Path) -> Any:
         if h5py.check_ref_dtype(held.dtype) is not None:
             if held.size > 10**6:
                 return f"a cell array of {held.size} elements"
-            return Cells(tuple(_hdf5_node(file, file[one].name, path) for one in held[()].ravel()))
+            return Cells(tuple(_hdf5_node(file, file[reference].name, path) for reference in held[()].ravel()))
     except GaitdiscError:
         raise
     except Exception as error:  # its errors have no common ancestor
-        said = " ".join(str(error).split())[:160] or type(error).__name__
-        raise ReadError(f"{path.name} must be a .mat file", f"{name!r} fails: {said}", "Save it again.") from error
+        reason = " ".join(str(error).split())[:160] or type(error).__name__
+        raise ReadError(f"{path.name} must be a .mat file", f"{name!r} fails: {reason}", "Save it again.") from error
     marks = attributes(file, name, path, ("MATLAB_class", "MATLAB_empty"))
     kind = marks.get("MATLAB_class", b"")
     word = kind.decode("ascii", "replace") if isinstance(kind, bytes) else str(kind)
@@ -258,17 +258,17 @@ def read_arrays(
     returns: streams as far as the study names their channels, each on its own clock
     """
     file = open_arrays(path, process)
-    wanted = {label: said for label, said in (channels or {}).items() if find_clock(said)}
-    if not wanted:
+    mapped = {label: entry for label, entry in (channels or {}).items() if find_clock(entry)}
+    if not mapped:
         raise ReadError(
             f"the study's [channels] must state the channel, unit and rate of each variable of {file.raw.name}",
             f"no variable is mapped (the file contains {list_names(file.names, _SHOWN)})",
             'Write for example "knee(:,1)" = "knee_angle_r [deg] @ 100 Hz"; see docs/sessions.md.',
         )
     bases: list[tuple[Values, list[Values], list[Column]]] = []
-    for label, said in wanted.items():
-        columns, values = _columns(file, label, said, part)
-        time = _time(file, label, find_clock(said), len(values), part)
+    for label, entry in mapped.items():
+        columns, values = _columns(file, label, entry, part)
+        time = _time(file, label, find_clock(entry), len(values), part)
         base = next((b for b in bases if len(b[0]) == len(time) and np.allclose(b[0], time, rtol=0, atol=1e-9)), None)
         if base is None:
             base = (time, [], [])
@@ -276,7 +276,7 @@ def read_arrays(
         base[1].append(values)
         base[2].extend(columns)
     source = file.raw.source(file.raw.name.rpartition(".")[2].lower())
-    trials = [check_trial(source, time, np.hstack(parts), columns) for time, parts, columns in bases]
+    trials = [check_trial(source, time, np.hstack(arrays), columns) for time, arrays, columns in bases]
     streams: dict[str, Recording] = {}
     findings: list[Finding] = []
     for trial in trials:
@@ -294,13 +294,13 @@ def read_arrays(
     return Trial(trials[0].name, streams, findings=tuple(findings))
 
 
-def _columns(file: ArrayFile, label: str, said: str, part: str) -> tuple[list[Column], Values]:
+def _columns(file: ArrayFile, label: str, entry: str, part: str) -> tuple[list[Column], Values]:
     """Channel of one column, or the three of a marker."""
     values = file.numbers(label, part)
     flat = values.squeeze()
     if flat.ndim <= 1:
-        return [find_column(label, file.raw.name, {label: said})], flat.reshape(-1, 1)
-    name, unit = split_unit(said)
+        return [find_column(label, file.raw.name, {label: entry})], flat.reshape(-1, 1)
+    name, unit = split_unit(entry)
     if flat.ndim == 2 and flat.shape[1] in (3, 4) and name_channel(name).quantity == "signal":  # 4: with a residual
         if unit is None:
             needed = f"{file.raw.name}: the marker {name!r} of {label!r} must have a unit"
@@ -321,16 +321,16 @@ def _time(file: ArrayFile, label: str, clock: str, samples: int, part: str) -> V
     try:
         rate_hz = float(number)
     except ValueError:
-        found = file.numbers(text, part).squeeze()
-        if found.ndim == 1 and found.size > 1:
-            if found.size != samples:
+        stated = file.numbers(text, part).squeeze()
+        if stated.ndim == 1 and stated.size > 1:
+            if stated.size != samples:
                 raise SamplingError(
                     f"{file.raw.name}: {label!r} must have one time for each sample",
-                    f"{label!r} has {samples} samples, but {text!r} has {found.size} times",
+                    f"{label!r} has {samples} samples, but {text!r} has {stated.size} times",
                     f"Name a variable of {samples} times, or another column.",
                 ) from None
-            return even_time(found * (1e-3 if unit == "ms" else 1.0), 0.0, file.raw.name)
-        rate_hz = float(found.ravel()[0])
+            return even_time(stated * (1e-3 if unit == "ms" else 1.0), 0.0, file.raw.name)
+        rate_hz = float(stated.ravel()[0])
     if not 0.01 < rate_hz < 1e6 or samples < 2:
         raise SamplingError(
             f"{file.raw.name}: {label!r} must have a rate between 0.01 Hz and 1 MHz, and at least two samples",

@@ -109,8 +109,8 @@ def _by_plates(values: Values, channels: tuple[Channel, ...], plates_n: Values) 
     return None
 
 
-def _by_size(values: Values, channels: tuple[Channel, ...], wanted: re.Pattern[str], quantity: str) -> Evidence:
-    columns = [i for i, c in enumerate(channels) if wanted.fullmatch(c.name) and c.unit in _PER_KG]
+def _by_size(values: Values, channels: tuple[Channel, ...], pattern: re.Pattern[str], quantity: str) -> Evidence:
+    columns = [i for i, c in enumerate(channels) if pattern.fullmatch(c.name) and c.unit in _PER_KG]
     sizes = finite_values(np.abs(values[:, columns]))
     most = float(np.quantile(sizes, 0.995)) if sizes.size else 0.0
     if most == 0:

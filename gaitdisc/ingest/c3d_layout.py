@@ -144,11 +144,11 @@ def _distinct(*values):
 
 def _refuse_impossible(layout: C3DLayout, header: C3DHeader) -> None:
     if layout.end > header.size:
-        whole = max((header.size - (layout.data_block - 1) * BLOCK) // max(layout.frame_bytes, 1), 0)
+        n_complete = max((header.size - (layout.data_block - 1) * BLOCK) // max(layout.frame_bytes, 1), 0)
         raise ReadError(
             f"a C3D file of {layout.frames} frames, {layout.points} points and {layout.channels} analog channels must "
             f"have {layout.end} bytes",
-            f"{header.file} has {header.size} bytes and ends within frame {whole + 1}: it is truncated",
+            f"{header.file} has {header.size} bytes and ends within frame {n_complete + 1}: it is truncated",
             "Copy it again from the recording computer. Do not use this incomplete copy.",
         )
     if layout.data_block != header.data_block:

@@ -133,8 +133,8 @@ def _first_bytes(path: Path) -> tuple[bytes, int]:
         with path.open("rb") as file:
             head = file.read(256 * BLOCK)
     except FileNotFoundError:
-        needed, found = "the path must lead to a C3D file", f"{path.name} does not exist"
-        raise MissingFileError(needed, found, "Check the path.") from None
+        needed, fault = "the path must lead to a C3D file", f"{path.name} does not exist"
+        raise MissingFileError(needed, fault, "Check the path.") from None
     except OSError as error:
         raise ReadError(
             "the path must lead to a C3D file",
@@ -167,13 +167,13 @@ class C3DParameters:
 
     def texts(self, group: str, name: str) -> tuple[str, ...]:
         """Texts of a parameter, with those of `NAME2`, `NAME3`, ... that carry on where 255 are not enough."""
-        found: list[str] = []
+        texts: list[str] = []
         for number in ("", *range(2, 100)):
             value = self.values.get((group, f"{name}{number}"))
             if not isinstance(value, tuple):
                 break
-            found.extend(value)
-        return tuple(found)
+            texts.extend(value)
+        return tuple(texts)
 
     def text(self, group: str, name: str) -> str:
         """First text of a parameter, empty where there is none."""
@@ -276,10 +276,10 @@ def _value(name: str, body: bytes, header: C3DHeader) -> Value:
     return decoded(raw, width, header.processor).reshape(dimensions or (1,), order="F")
 
 
-def _broken(header: C3DHeader, found: str) -> ReadError:
+def _broken(header: C3DHeader, fault: str) -> ReadError:
     return ReadError(
         "the parameter section of a C3D file must be complete and consistent",
-        f"{header.file}: {found}",
+        f"{header.file}: {fault}",
         "Export the trial again, or repair it in the software that wrote it.",
     )
 
@@ -302,12 +302,12 @@ def read_body_measures(path: Path | str) -> BodyMeasures:
 
 def find_body_measures(parameters: C3DParameters) -> BodyMeasures:
     """Measures in PROCESSING, SUBJECTS or SUBJECT."""
-    whole = {name: _length(parameters, name, keys) for name, keys in OF_THE_BODY.items()}
+    unsided = {name: _length(parameters, name, keys) for name, keys in OF_THE_BODY.items()}
     sided = {}
     for name, keys in OF_A_SIDE.items():
         lengths = {side: _length(parameters, name, [f"{side.upper()}{key}" for key in keys]) for side in "lr"}
         sided[name] = {side: length for side, length in lengths.items() if length is not None}
-    return BodyMeasures(body_mass(parameters), **whole, **sided)
+    return BodyMeasures(body_mass(parameters), **unsided, **sided)
 
 
 def _length(parameters: C3DParameters, name: str, keys: Sequence[str]) -> float | None:

@@ -73,8 +73,8 @@ def write_c3d(recordings: Sequence[Recording], path: Path | str, surfaces: Seque
     for (group, name), value in settings.items():
         file.add_parameter(group, name, value)
         if name in WHOLE:  # ezc3d makes floats of them, which other programs refuse
-            kept = file["parameters"][group][name]
-            kept["type"], kept["value"] = ezc3d.ezc3d.INT, np.asarray(kept["value"]).astype(int)
+            parameter = file["parameters"][group][name]
+            parameter["type"], parameter["value"] = ezc3d.ezc3d.INT, np.asarray(parameter["value"]).astype(int)
     file["data"]["points"] = np.empty((4, 0, frames))
     if markers is not None:  # (4, marker, frame) [m]; one that lacks a coordinate is written as not seen
         points = markers.values[:frames].reshape(frames, -1, 3).copy()
@@ -91,19 +91,19 @@ def _apart(
     recordings: Sequence[Recording], surfaces: Sequence[Surface], file: str
 ) -> tuple[Recording | None, list[Recording]]:
     """Markers, and the analog recordings without the centres of pressure, which follow from force and moment."""
-    markers = [one for one in recordings if all(channel.quantity == "marker" for channel in one.channels)]
-    if len(markers) > 1 or any(abs(one.time[0]) > 1e-9 for one in markers):
-        found = f"number of recordings: {len(markers)}; start of the first: {markers[0].time[0]:g} s"
-        raise SamplingError(f"markers of {file} must be one recording from 0 s on", found, "Join or shift the parts.")
+    markers = [r for r in recordings if all(channel.quantity == "marker" for channel in r.channels)]
+    if len(markers) > 1 or any(abs(marker.time[0]) > 1e-9 for marker in markers):
+        fault = f"number of recordings: {len(markers)}; start of the first: {markers[0].time[0]:g} s"
+        raise SamplingError(f"markers of {file} must be one recording from 0 s on", fault, "Join or shift the parts.")
     names = {channel.name for recording in recordings for channel in recording.channels}
     absent = [name for surface in surfaces for name in _plate_channels(surface) if name not in names]
     if absent:
-        found = f"{absent[0]!r} is missing"
-        raise ChannelError(f"a plate of {file} must have its force and moment", found, "Add it, or remove the plate.")
+        fault = f"{absent[0]!r} is missing"
+        raise ChannelError(f"a plate of {file} must have its force and moment", fault, "Add it, or remove the plate.")
     pressure = {f"{surface.name}_p{axis}" for surface in surfaces for axis in "xyz"}
-    others = [one for one in recordings if one not in markers]
+    others = [r for r in recordings if r not in markers]
     return markers[0] if markers else None, [
-        one.selected([name for name in one.names if name not in pressure]) for one in others
+        r.selected([name for name in r.names if name not in pressure]) for r in others
     ]
 
 
@@ -134,11 +134,11 @@ def _samples_per_frame(recordings: Sequence[Recording], frame_hz: float, file: s
     first = recordings[0]
     for other in recordings[1:]:
         if not np.array_equal(other.time, first.time):
-            found = f"{first.names[0]} has {len(first.time)} samples at {first.rate_hz:g} Hz, and {other.names[0]} has "
-            found += f"{len(other.time)} at {other.rate_hz:g} Hz"
-            raise SamplingError(needed, found, "Resample the channels to one time base.")
+            fault = f"{first.names[0]} has {len(first.time)} samples at {first.rate_hz:g} Hz, and {other.names[0]} has "
+            fault += f"{len(other.time)} at {other.rate_hz:g} Hz"
+            raise SamplingError(needed, fault, "Resample the channels to one time base.")
     samples = round(first.rate_hz / frame_hz)
     if samples < 1 or abs(samples * frame_hz - first.rate_hz) > 1e-6 * first.rate_hz or abs(first.time[0]) > 1e-9:
-        found = f"{first.names[0]} begins at {first.time[0]:g} s and has {first.rate_hz:g} Hz"
-        raise SamplingError(needed, found, "Resample the channels, or write a table.")
+        fault = f"{first.names[0]} begins at {first.time[0]:g} s and has {first.rate_hz:g} Hz"
+        raise SamplingError(needed, fault, "Resample the channels, or write a table.")
     return samples

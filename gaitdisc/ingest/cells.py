@@ -160,9 +160,9 @@ def printed_digit(texts: Iterable[str]) -> float:
     """
     finest = 0
     for text in texts:
-        found = _NUMBER.fullmatch(text.strip())
-        if found:
-            finest = max(finest, len((found[1] or "").rstrip("0")) - int(found[2] or 0))
+        match = _NUMBER.fullmatch(text.strip())
+        if match:
+            finest = max(finest, len((match[1] or "").rstrip("0")) - int(match[2] or 0))
     return float(10.0 ** -min(finest, 300))
 
 
@@ -218,5 +218,5 @@ def even_time(time: Values, digit_s: float, file: str, lines: NDArray[np.intp] |
         )
     # a whole number of samples a second where the digits allow one, else from first to last time
     rate = round(mean_rate(time))
-    whole = time[0] + np.arange(len(time)) / rate if rate > 0 else even
-    return whole if np.abs(time - whole).max() <= 1.01 * digit_s else even
+    rounded = time[0] + np.arange(len(time)) / rate if rate > 0 else even
+    return rounded if np.abs(time - rounded).max() <= 1.01 * digit_s else even

@@ -61,17 +61,17 @@ def split_unit(text: str) -> tuple[str, str | None]:
     (('emg_sol_r', 'mV'), ('knee_angle_r', None))
     """
     bare = text.partition(_CLOCK)[0]
-    found = re.fullmatch(r"\s*(.*?)\s*\[([^\[\]]*)\]\s*", bare, re.DOTALL)
-    return (found[1], found[2].strip()) if found else (bare.strip(), None)
+    match = re.fullmatch(r"\s*(.*?)\s*\[([^\[\]]*)\]\s*", bare, re.DOTALL)
+    return (match[1], match[2].strip()) if match else (bare.strip(), None)
 
 
-def find_clock(said: str) -> str:
+def find_clock(entry: str) -> str:
     """What follows `@` in `name [unit] @ clock`: a rate, or a variable of times; empty without one.
 
     >>> find_clock("knee_angle_r [deg] @ 100 Hz"), find_clock("knee_angle_r [deg]")
     ('100 Hz', '')
     """
-    return said.partition(_CLOCK)[2].strip()
+    return entry.partition(_CLOCK)[2].strip()
 
 
 def map_label(label: str, channels: Mapping[str, str] | None) -> str | None:
@@ -93,10 +93,10 @@ def map_label(label: str, channels: Mapping[str, str] | None) -> str | None:
 def read_label(label: str, channels: Mapping[str, str] | None) -> tuple[str, str | None, bool]:
     """Name and unit of a column, by the study's `[channels]` or else by its label; whether the study names it."""
     plain, unit = split_unit(label)
-    said = map_label(label, channels) or map_label(plain, channels)
-    if not said:
+    entry = map_label(label, channels) or map_label(plain, channels)
+    if not entry:
         return plain, unit, False
-    name, said_unit = split_unit(said)
+    name, said_unit = split_unit(entry)
     return name, said_unit or unit, True
 
 
@@ -167,10 +167,10 @@ def column_in_unit(label: str, channel: Channel, unit_text: str, file: str) -> C
 def find_column(label: str, file: str, channels: Mapping[str, str] | None) -> Column:
     """Column of a label, by the study's `[channels]` or the vocabulary."""
     plain = split_unit(label)[0]
-    name, unit, said = read_label(label, channels)
-    if said and name == IGNORE:
+    name, unit, is_mapped = read_label(label, channels)
+    if is_mapped and name == IGNORE:
         return Column(label, name_channel(name), "1")
-    alias = None if said else vocabulary().named(plain)
+    alias = None if is_mapped else vocabulary().named(plain)
     channel = alias or name_channel(name)
     if unit is None and name not in vocabulary().by_name:
         seems = f"; the column seems to be {alias.name}" if alias else ""
@@ -216,7 +216,7 @@ def sort_trial(
         )
     _refuse_missing_force(time, values, channels, source.file)
     # too slow to show a step: mostly ms under the name of seconds
-    measured = next((one.name for one in channels if one.quantity not in ("signal", "translation")), None)
+    measured = next((channel.name for channel in channels if channel.quantity not in ("signal", "translation")), None)
     step_s = float(time[1] - time[0]) if len(time) >= FEW else 0.0
     if measured and step_s > SLOWEST_S:
         raise SamplingError(
@@ -229,8 +229,8 @@ def sort_trial(
     for i, channel in enumerate(channels):
         places.setdefault(find_stream(channel), []).append(i)
     streams = {
-        key: Recording(time, np.column_stack([inside[i] for i in own]), tuple(channels[i] for i in own), source=source)
-        for key, own in places.items()
+        key: Recording(time, np.column_stack([inside[i] for i in at]), tuple(channels[i] for i in at), source=source)
+        for key, at in places.items()
     }
     name = source.file.rpartition(".")[0] or source.file
     return Trial(name, streams, findings=tuple(findings))

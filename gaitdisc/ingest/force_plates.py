@@ -113,14 +113,14 @@ def force_plates(
     plates, findings, file = [], [], parameters.file
     for place in range(min(used, 64)):
         kind = int(kinds[place]) if place < len(kinds) and np.isfinite(kinds[place]) else 0
-        wanted = _CHANNELS_OF_TYPE.get(kind, 0)
-        own = columns[place][:wanted] if place < len(columns) else np.empty(0)
+        count = _CHANNELS_OF_TYPE.get(kind, 0)
+        numbers = columns[place][:count] if place < len(columns) else np.empty(0)
         why = ""
-        if not wanted:
+        if not count:
             why = f"is of type {kind}, but only types 1 to 4 are known"
-        elif len(own) < wanted or not np.all((own >= 1) & (own <= channels)):
-            why = f"names channels {', '.join(format(one, 'g') for one in own)}, but the file has {channels} channels"
-        elif any(int(one) - 1 in unscaled for one in own):
+        elif len(numbers) < count or not np.all((numbers >= 1) & (numbers <= channels)):
+            why = f"names channels {', '.join(format(n, 'g') for n in numbers)}, but the file has {channels} channels"
+        elif any(int(n) - 1 in unscaled for n in numbers):
             why = "has a channel without a scale"
         elif (
             place >= len(corners) or corners[place].shape != (3, 4) or place >= len(origins) or origins[place].size != 3
@@ -136,7 +136,7 @@ def force_plates(
                 origin = -origin
             matrix = matrices[place] if kind == 4 else np.empty((0, 0))
             at = np.asarray(convert(corners[place].T, length_unit, "m"), float)
-            plate = ForcePlate(place + 1, kind, tuple(int(one) - 1 for one in own), at, origin, matrix)
+            plate = ForcePlate(place + 1, kind, tuple(int(n) - 1 for n in numbers), at, origin, matrix)
             why = "" if np.isfinite(origin).all() else "has an origin that is not finite"
             why = why if np.isfinite(plate.axes).all() else "has corners that span no surface"
             if not why:
@@ -194,12 +194,12 @@ def plate_streams(
         clear = vertical[np.abs(vertical) > CLEAR_LOAD_N]
         up.append(float(np.sign(np.sum(clear * np.abs(clear)))))
     most = float(np.sign(sum(up)))
-    parts, channels = [], []
+    blocks, channels = [], []
     for (plate, force, moment), sense in zip(wrenches, up, strict=True):
         sign = sense or most or 1.0
         pressure = centre_of_pressure(force, moment)
         axes = plate.axes.T
-        parts.append(np.hstack([sign * force @ axes, sign * moment @ axes, plate.surface.centre + pressure @ axes]))
+        blocks.append(np.hstack([sign * force @ axes, sign * moment @ axes, plate.surface.centre + pressure @ axes]))
         forces = ["vertical_force" if place == plate.vertical else "force" for place in range(3)]
         kinds = (("f", forces, "N"), ("m", ["moment"] * 3, "N m"), ("p", ["pressure_centre"] * 3, "m"))
         channels += [
@@ -214,7 +214,7 @@ def plate_streams(
     if up and not any(up):
         what = f"no plate was loaded with more than {CLEAR_LOAD_N:g} N, so the sign of the forces could not be checked"
         findings.append(Finding("note", "force sign", file, what, "nothing, because nobody stepped on a plate"))
-    streams: Streams = {"forces": (np.hstack(parts), tuple(channels))} if parts else {}
+    streams: Streams = {"forces": (np.hstack(blocks), tuple(channels))} if blocks else {}
     return streams, {column for plate, _, _ in wrenches for column in plate.columns}, findings
 
 
@@ -242,7 +242,7 @@ def _units(plate: ForcePlate, parameters: C3DParameters, length_unit: str) -> tu
     if plate.kind == 4:
         return usual, []
     texts = [*parameters.texts("ANALOG", "UNITS"), *[""] * (max(plate.columns) + 1)]
-    found, file = [], parameters.file
+    units, file = [], parameters.file
     for column, expected in zip(plate.columns, usual, strict=True):
         text = texts[column].strip()
         unit = parse_unit(text) if text else expected
@@ -250,11 +250,11 @@ def _units(plate: ForcePlate, parameters: C3DParameters, length_unit: str) -> tu
             what = f"force plate {plate.number} has channel #{column + 1} in {text!r} instead of {expected}; "
             what += "the plate is not used"
             return (), [Finding("warning", "force plate", file, what, "the plate's forces; correct ANALOG:UNITS")]
-        found.append(unit)
+        units.append(unit)
     if not any(texts[column].strip() for column in plate.columns):
         what = f"force plate {plate.number} states no units; {usual[0]} and {usual[-1]} are assumed"
-        return tuple(found), [Finding("warning", "unit", file, what, "the forces if this is wrong; set ANALOG:UNITS")]
-    return tuple(found), []
+        return tuple(units), [Finding("warning", "unit", file, what, "the forces if this is wrong; set ANALOG:UNITS")]
+    return tuple(units), []
 
 
 def _zero(
@@ -293,14 +293,14 @@ def _with_origin(
 def _report_exchanged(measured: Sequence[tuple[ForcePlate, Values, tuple[str, ...]]], file: str) -> list[Finding]:
     """Say which two plates bear each other's channels: with these exchanged each has its centre of pressure on it."""
     findings = []
-    for (one, own, units), (other, others, their_units) in itertools.combinations(measured, 2):
-        astray = min(_beside(one, own, units), _beside(other, others, their_units))
-        if one.kind != other.kind or astray < STRAY:
+    for (plate, values, units), (other, other_values, other_units) in itertools.combinations(measured, 2):
+        astray = min(_beside(plate, values, units), _beside(other, other_values, other_units))
+        if plate.kind != other.kind or astray < STRAY:
             continue
-        if max(_beside_either(one, others, their_units), _beside_either(other, own, units)) < STRAY:
+        if max(_beside_either(plate, other_values, other_units), _beside_either(other, values, units)) < STRAY:
             what = (
-                f"the channels of force plates {one.number} and {other.number} are swapped: the centre of pressure is "
-                f"outside each plate in {100 * astray:.0f} % of the loaded samples, but on it after an exchange"
+                f"the channels of force plates {plate.number} and {other.number} are swapped: the centre of pressure "
+                f"is outside each plate in {100 * astray:.0f} % of the loaded samples, but on it after an exchange"
             )
             spoils = "the assignment of feet to plates, moments and powers; correct FORCE_PLATFORM:CHANNEL"
             findings.append(Finding("warning", "swapped plates", file, what, spoils))
@@ -310,7 +310,7 @@ def _report_exchanged(measured: Sequence[tuple[ForcePlate, Values, tuple[str, ..
 def _beside_either(plate: ForcePlate, values: Values, units: tuple[str, ...]) -> float:
     """As `_beside`, whichever way the origin points."""
     turned = replace(plate, origin=-plate.origin)
-    return min(_beside(one, values, units) for one in (plate, turned))
+    return min(_beside(candidate, values, units) for candidate in (plate, turned))
 
 
 def _beside(plate: ForcePlate, values: Values, units: tuple[str, ...]) -> float:

@@ -37,10 +37,10 @@ def hdf5_file(path: Path) -> Iterator[Any]:
     except GaitdiscError:
         raise
     except Exception as error:  # its errors have no common ancestor
-        said = " ".join(str(error).split())[:200] or type(error).__name__
+        reason = " ".join(str(error).split())[:200] or type(error).__name__
         raise ReadError(
             f"{path.name} must be an HDF5 file",
-            f"it cannot be read: {said}",
+            f"it cannot be read: {reason}",
             "Download or copy the file again. It may be incomplete.",
         ) from error
 
@@ -64,26 +64,26 @@ def data_set(file: Any, name: str, path: Path) -> NDArray[Any]:
     return np.asarray(held[()])
 
 
-def attributes(file: Any, name: str, path: Path, wanted: Collection[str]) -> dict[str, Any]:
+def attributes(file: Any, name: str, path: Path, keys: Collection[str]) -> dict[str, Any]:
     """Attributes of one data set, as far as it has them.
 
     A text of variable length is read by another process under a time limit: where its heap is damaged the library
     runs in a circle, and nothing can stop it from within.
     """
-    found = {}
+    values = {}
     held = file[name].attrs
-    for one in (one for one in wanted if one in held):
-        if held.get_id(one).dtype.kind != "O":
-            found[one] = held[one]
+    for key in (key for key in keys if key in held):
+        if held.get_id(key).dtype.kind != "O":
+            values[key] = held[key]
             continue
-        request = ReadRequest.of_size(str(path), "hdf5 text", (name, one), check_regular(path))
+        request = ReadRequest.of_size(str(path), "hdf5 text", (name, key), check_regular(path))
         with closing(ReaderProcess()) as process:
             answer, _ = process.read(replace(request, limit_s=TEXT_LIMIT_S))
         if "text" not in answer:
             raise ReadError(
                 f"{path.name} must be an HDF5 file",
-                f"attribute {one!r} of {name!r} cannot be read: {answer['said']}",
+                f"attribute {key!r} of {name!r} cannot be read: {answer['said']}",
                 "Download or copy the file again. It is damaged.",
             )
-        found[one] = str(answer["text"])
-    return found
+        values[key] = str(answer["text"])
+    return values

@@ -102,8 +102,8 @@ def draft_study(
     tables = [path for path in files if is_people_table(path)]
     measured = read_people(folder, tables, notes)
     others = [path for path in files if path not in tables]
-    found = _read_drafts(folder, others, notes, {} if looked is None else looked, progress)
-    if not found:
+    trials = _read_drafts(folder, others, notes, {} if looked is None else looked, progress)
+    if not trials:
         left_out = f"; {notes[-1].removesuffix('.')}" if notes else ""
         raise ReadError(
             f"{folder.name} must contain recordings (files that end in {', '.join(ENDINGS)})",
@@ -111,15 +111,15 @@ def draft_study(
             "Name the folder that contains the recordings.",
         )
     groups: dict[str, set[str]] = {}
-    for trial in found:
+    for trial in trials:
         groups.setdefault(trial.person, set()).update({trial.group} - {""})
-    alone = {person: next(iter(own)) for person, own in groups.items() if len(own) == 1}
-    found = [replace(trial, group=trial.group or alone.get(trial.person, "")) for trial in found]  # the only one
-    conditions, called = name_conditions(found, notes)
-    sessions = _sessions(found)
+    alone = {person: next(iter(named)) for person, named in groups.items() if len(named) == 1}
+    trials = [replace(trial, group=trial.group or alone.get(trial.person, "")) for trial in trials]  # the only one
+    conditions, called = name_conditions(trials, notes)
+    sessions = _sessions(trials)
     home = Path(home) if home is not None else folder
     way = Path(os.path.relpath(folder.resolve(), home.resolve()))
-    people = _people(found, notes)
+    people = _people(trials, notes)
     bodies = _bodies(people, measured, tables, notes)
     participants = tuple(
         Participant(
@@ -132,7 +132,7 @@ def draft_study(
                     session=sessions.get((who, trial.session)),
                     files=tuple((way / file).as_posix() for file in trial.files),
                 )
-                for trial in found
+                for trial in trials
                 if (trial.group, trial.person) == who
             ),
         )
@@ -140,7 +140,7 @@ def draft_study(
     )
     words = tuple(dict.fromkeys(sessions.values()))
     title = " against ".join(conditions.words) if conditions.device else ", ".join(conditions.words)
-    walks = [trial for trial in found if trial.walked] or found
+    walks = [trial for trial in trials if trial.walked] or trials
     study = Study(
         title=title, sessions=words, conditions=conditions, models=_models(walks, notes), participants=participants
     ).placed(home)
@@ -178,14 +178,14 @@ def _bodies(
     files = ", ".join(table.as_posix() for table in tables)
     absent = [people[who] for who, key in keys.items() if measured and (key not in measured or named[key] > 1)]
     _note(notes, f"not in {files}: ", absent)
-    found = {who: measured.get(key, Measured()) if named[key] == 1 else Measured() for who, key in keys.items()}
+    bodies = {who: measured.get(key, Measured()) if named[key] == 1 else Measured() for who, key in keys.items()}
     counts = {
-        what: sum(bool(getattr(one, name)) for one in found.values())
+        what: sum(bool(getattr(body, name)) for body in bodies.values())
         for name, what in (("mass_kg", "body mass"), ("sex", "sex"), ("height_m", "stature"), ("age_years", "age"))
     }
-    said = [f"{what} {count} of {len(found)}" for what, count in counts.items() if count]
-    _note(notes, "", said, f" people from {files}")
-    return found
+    stated = [f"{what} {count} of {len(bodies)}" for what, count in counts.items() if count]
+    _note(notes, "", stated, f" people from {files}")
+    return bodies
 
 
 def _read_drafts(
@@ -198,34 +198,34 @@ def _read_drafts(
     """Every walk, read one after the other; what a draft needs of it is kept, its samples are not."""
     from gaitdisc.ingest.c3d import C3DReader
 
-    found, groups = [], _walks(files)
+    drafts, groups = [], _walks(files)
     with C3DReader() as reader:
         for number, group in enumerate(groups, 1):
             progress(number, len(groups))
             stamp = tuple((file.as_posix(), *read_stamp(folder / file)) for file in group)
             if stamp not in looked:
-                said: list[str] = []
-                read, trial = _readable(folder, group, reader, said)
-                looked[stamp] = (_describe_trial(tuple(read), trial) if trial is not None else None, said)
-            one, said = looked[stamp]
-            found += [one] if one is not None else []
-            notes += said
+                added: list[str] = []
+                read, trial = _readable(folder, group, reader, added)
+                looked[stamp] = (_describe_trial(tuple(read), trial) if trial is not None else None, added)
+            described, added = looked[stamp]
+            drafts += [described] if described is not None else []
+            notes += added
     for kind, words in (
         (STATIC, f"standing trials, assigned the condition {STATIC!r}: "),
         (FUNCTIONAL, f"trials of circling legs, according to the file names, assigned the condition {FUNCTIONAL!r}: "),
     ):
-        _note(notes, words, (each.files[0].as_posix() for each in found if each.which == kind))
+        _note(notes, words, (draft.files[0].as_posix() for draft in drafts if draft.which == kind))
     order = ("nominal", "device", "", STATIC, FUNCTIONAL, "other")
-    return sorted(found, key=lambda each: order.index(each.which))
+    return sorted(drafts, key=lambda draft: order.index(draft.which))
 
 
 def read_stamp(path: Path) -> tuple[int, int]:
     """Size and time of a file; zero of one that is not there."""
     try:
-        said = path.stat()
+        status = path.stat()
     except OSError:
         return 0, 0
-    return said.st_size, said.st_mtime_ns
+    return status.st_size, status.st_mtime_ns
 
 
 def _describe_trial(files: tuple[Path, ...], trial: Trial) -> FoundTrial:
@@ -264,8 +264,8 @@ def stands(trial: Trial) -> bool:
     seen = np.isfinite(markers.values).any(axis=0) & np.any(np.nan_to_num(markers.values), axis=0)
     ranges: dict[str, float] = {}
     for name, column in zip(np.array(markers.names)[seen], markers.values.T[seen], strict=True):
-        whole = name.rpartition(".")[0] or name  # a marker moves as far as along the axis on which it moves farthest
-        ranges[whole] = max(ranges.get(whole, 0.0), float(np.nanmax(column) - np.nanmin(column)))
+        marker = name.rpartition(".")[0] or name  # a marker moves as far as along the axis on which it moves farthest
+        ranges[marker] = max(ranges.get(marker, 0.0), float(np.nanmax(column) - np.nanmin(column)))
     return bool(ranges) and float(np.median([*ranges.values()])) < limit
 
 
@@ -284,7 +284,7 @@ def _readable(
         trial = None
         for file in group:
             try:
-                trial = read_trial([folder / each for each in (*read, file)], reader=reader)
+                trial = read_trial([folder / path for path in (*read, file)], reader=reader)
                 read.append(file)
             except GaitdiscError as error:
                 notes.append(f"left out: {file.as_posix()}: {error}")
@@ -303,9 +303,9 @@ def _walks(files: Sequence[Path]) -> list[list[Path]]:
     return list(groups.values())
 
 
-def name_conditions(found: Sequence[FoundTrial], notes: list[str]) -> tuple[Conditions, dict[str, str]]:
+def name_conditions(trials: Sequence[FoundTrial], notes: list[str]) -> tuple[Conditions, dict[str, str]]:
     """Conditions of a draft, and the condition of each word that was found."""
-    walks = [trial for trial in found if trial.walked]
+    walks = [trial for trial in trials if trial.walked]
     recognised: dict[str, str] = {}
     for which in ("nominal", "device"):
         there = list(dict.fromkeys(trial.word for trial in walks if trial.which == which))
@@ -333,29 +333,29 @@ def name_conditions(found: Sequence[FoundTrial], notes: list[str]) -> tuple[Cond
     _note(
         notes,
         "trials of unknown condition, which are listed but not used: ",
-        (trial.files[0].as_posix() for trial in found if called[trial.word] == UNKNOWN),
+        (trial.files[0].as_posix() for trial in trials if called[trial.word] == UNKNOWN),
         f'. To set the condition of all of them, write in [conditions]: unnamed = "{reference}"',
     )
     return Conditions(nominal=reference, device=device, others=rest), called
 
 
-def _sessions(found: Sequence[FoundTrial]) -> dict[tuple[Who, str], str]:
+def _sessions(trials: Sequence[FoundTrial]) -> dict[tuple[Who, str], str]:
     """Session of each person and place in order; a date becomes its number, since dates show who a person is."""
-    words = {trial.session: session_word(trial.files[0])[0] for trial in found if trial.session}
+    words = {trial.session: session_word(trial.files[0])[0] for trial in trials if trial.session}
     if not words:
         return {}
     sessions: dict[tuple[Who, str], str] = {}
-    for who in {(trial.group, trial.person) for trial in found}:
-        own = sorted({trial.session for trial in found if (trial.group, trial.person) == who and trial.session})
-        dated = [order for order in own if not words[order]]
-        sessions |= {(who, order): words[order] or f"session {dated.index(order) + 1}" for order in own}
+    for who in {(trial.group, trial.person) for trial in trials}:
+        orders = sorted({trial.session for trial in trials if (trial.group, trial.person) == who and trial.session})
+        dated = [order for order in orders if not words[order]]
+        sessions |= {(who, order): words[order] or f"session {dated.index(order) + 1}" for order in orders}
     order = {word: place for (_, place), word in sessions.items()}
     return dict(sorted(sessions.items(), key=lambda item: (item[1].startswith("session"), order[item[1]])))
 
 
-def _people(found: Sequence[FoundTrial], notes: list[str]) -> dict[Who, str]:
+def _people(trials: Sequence[FoundTrial], notes: list[str]) -> dict[Who, str]:
     """Group and word of each person -> pseudonym."""
-    people = sorted({(trial.group, trial.person) for trial in found}, key=lambda who: (who[1], who[0]))
+    people = sorted({(trial.group, trial.person) for trial in trials}, key=lambda who: (who[1], who[0]))
     named = Counter(word.lower() for _, word in people)
     taken = {word for _, word in people if PSEUDONYM.fullmatch(word) and named[word.lower()] == 1}
     free = (f"P{number:02d}" for number in range(1, 10_000) if f"P{number:02d}" not in taken)
@@ -364,19 +364,19 @@ def _people(found: Sequence[FoundTrial], notes: list[str]) -> dict[Who, str]:
     _note(notes, "folder names that are not pseudonyms were replaced by ", renamed, "; paths still contain them")
     twice = [f"{new} ({group or 'no group'})" for (group, old), new in ids.items() if named[old.lower()] > 1]
     _note(notes, "names that occur in several groups, taken as different people: ", twice)
-    kept = [word for _, word in people if word in taken]
-    _note(notes, "names used unchanged as pseudonyms: ", kept, "; change any that identifies a person")
+    unchanged = [word for _, word in people if word in taken]
+    _note(notes, "names used unchanged as pseudonyms: ", unchanged, "; change any that identifies a person")
     nobody = [new for (_, old), new in ids.items() if not old]
     _note(notes, "files whose path names no person were assigned to ", nobody)
     return ids
 
 
-def _models(found: Sequence[FoundTrial], notes: list[str]) -> Models:
-    varying = [trial.varying for trial in found if trial.varying is not None]
+def _models(trials: Sequence[FoundTrial], notes: list[str]) -> Models:
+    varying = [trial.varying for trial in trials if trial.varying is not None]
     if not varying:
         notes.append("no file contains joint angles; the draft names the usual angles, which are computed from markers")
         return Models()
-    first = next(trial.angles for trial in found if trial.angles is not None)
+    first = next(trial.angles for trial in trials if trial.angles is not None)
     shared = [name for name in varying[0] if all(name in names for names in varying)]
     _note(notes, "angles excluded because they are constant or copies: ", sorted(set(first) - set(varying[0])))
     angles = tuple(name for name in ANGLES if name in shared) or tuple(shared)
@@ -390,7 +390,7 @@ def _models(found: Sequence[FoundTrial], notes: list[str]) -> Models:
         notes.append("the trials share no joint angle that varies; the draft names the usual angles")
         return Models()
     outputs = tuple(name for name in OUTPUTS if name in angles) or angles[:1]
-    emg = _find_shared_emg(found, notes)
+    emg = _find_shared_emg(trials, notes)
     of_side = tuple(
         name for name in emg if name.split("_")[1][:3] in ("ham", "rf", "vas", "gas", "sol") and name.endswith("_r")
     )
@@ -402,12 +402,12 @@ def _varies(recording: Recording, name: str) -> bool:
     return bool(column.size and np.ptp(column) > CONSTANT_DEG and not name.endswith("_beta"))
 
 
-def _find_shared_emg(found: Sequence[FoundTrial], notes: list[str]) -> tuple[str, ...]:
-    streams = [trial.emg for trial in found if trial.emg is not None]
+def _find_shared_emg(trials: Sequence[FoundTrial], notes: list[str]) -> tuple[str, ...]:
+    streams = [trial.emg for trial in trials if trial.emg is not None]
     if not streams:
         return ()
-    if len(streams) < len(found):
-        notes.append(f"EMG is not among the inputs; trials with EMG: {len(streams)} of {len(found)}")
+    if len(streams) < len(trials):
+        notes.append(f"EMG is not among the inputs; trials with EMG: {len(streams)} of {len(trials)}")
         return ()
     known = vocabulary().by_name
     shared = tuple(n for n in streams[0] if all(n in other for other in streams) and n in known)

@@ -79,18 +79,18 @@ def is_people_table(path: Path) -> bool:
 
 def read_people(folder: Path, files: Iterable[Path], notes: list[str]) -> dict[str, Measured]:
     """Mass, sex, stature, age by a person's folded word, from tables of people; what was taken is added to `notes`."""
-    found: dict[str, Measured] = {}
+    people: dict[str, Measured] = {}
     for file in sorted(files):
         try:
             read = _read(read_raw(folder / file, LARGEST_BYTES).lines(), file.as_posix(), notes)
         except (GaitdiscError, csv.Error) as error:
             notes.append(f"left out: {file.as_posix()}: {error}")
             continue
-        for word, one in read.items():
-            before = found.setdefault(word, one)
-            if before != one:
+        for word, measures in read.items():
+            before = people.setdefault(word, measures)
+            if before != measures:
                 notes.append(f"{file.as_posix()}: another table states other values for {word!r}, which are used")
-    return found
+    return people
 
 
 def person_key(word: str) -> str:
@@ -119,18 +119,18 @@ def _read(lines: Sequence[str], file: str, notes: list[str]) -> dict[str, Measur
         )
         return {}
     stature = labels[at["height"]] if at["height"] is not None else ""
-    found: dict[str, list[Measured]] = {}
+    people: dict[str, list[Measured]] = {}
     for number, row in enumerate(rows[1:], 2):
         cells = {key: row[i].strip() if i is not None and i < len(row) else "" for key, i in at.items()}
         if cells["id"]:
-            said: list[str] = []
-            found.setdefault(person_key(unquote(cells["id"])), []).append(_read_measures(cells, stature, said))
-            notes += [f"{file}, line {number}: {words}" for words in said]
+            added: list[str] = []
+            people.setdefault(person_key(unquote(cells["id"])), []).append(_read_measures(cells, stature, added))
+            notes += [f"{file}, line {number}: {words}" for words in added]
     agreed = {}  # what all rows of a person say; where two differ nothing is taken
-    for word, measures in found.items():
+    for word, measures in people.items():
         values: dict[str, Any] = {}
         for name, empty in vars(Measured()).items():
-            stated = list(dict.fromkeys(getattr(one, name) for one in measures if getattr(one, name) != empty))
+            stated = list(dict.fromkeys(getattr(row, name) for row in measures if getattr(row, name) != empty))
             values[name] = stated[0] if len(stated) == 1 else empty
             if len(stated) > 1:
                 notes.append(f"{file}: {name} of {word!r} differs by row ({stated[0]}, {stated[1]}); no value is used")
@@ -152,7 +152,7 @@ def _read_measures(cells: Mapping[str, str], stature_label: str, notes: list[str
 
 
 def _within(
-    text: str, what: str, limits: Limits, notes: list[str], factors: Sequence[float] = (1.0,), given: str = ""
+    text: str, what: str, limits: Limits, notes: list[str], factors: Sequence[float] = (1.0,), written: str = ""
 ) -> float | None:
     """Number of a cell times the first factor that brings it within the limits; None, and a note, of another."""
     if text.lower() in _MISSING:
@@ -169,7 +169,7 @@ def _within(
     else:
         article = "an" if what[0] in "ae" else "a"
         possible = f"{limits.least:g} and {limits.most:g} {limits.unit}"
-        notes.append(f"{article} {what} of {value:g}{given} is not between {possible} and is not used")
+        notes.append(f"{article} {what} of {value:g}{written} is not between {possible} and is not used")
     return None
 
 
@@ -179,8 +179,8 @@ def words_in(name: str) -> list[str]:
     >>> words_in("c3d_Trimmed_running_exotendon3")
     ['c3d', 'trimmed', 'running', 'exotendon']
     """
-    parts = re.split(r"[^A-Za-z0-9]+|(?<=[a-z])(?=[A-Z])", name)
-    return [re.sub(r"\d+$", "", part).lower() or part for part in parts if part]
+    words = re.split(r"[^A-Za-z0-9]+|(?<=[a-z])(?=[A-Z])", name)
+    return [re.sub(r"\d+$", "", part).lower() or part for part in words if part]
 
 
 def condition_word(path: Path) -> tuple[str, str]:
@@ -204,8 +204,8 @@ def condition_word(path: Path) -> tuple[str, str]:
 
 def walk_key(path: Path) -> str:
     """What is left of a file's name when the words for its kind are taken away: files of one walk share it."""
-    parts = re.split(r"[^A-Za-z0-9]+", path.stem)
-    return "_".join(part for part in parts if part and part.lower() not in WORDS["content"])
+    words = re.split(r"[^A-Za-z0-9]+", path.stem)
+    return "_".join(part for part in words if part and part.lower() not in WORDS["content"])
 
 
 def walk_place(path: Path) -> tuple[str, ...]:
@@ -284,11 +284,11 @@ def walk_word(path: Path) -> str:
 
 def _own_folders(path: Path) -> list[str]:
     """Folders that name neither group, session, condition nor kind: the first is a person's."""
-    own = []
+    folders = []
     for place, folder in enumerate(path.parent.parts):
         alone = Path(folder, "x")
         beneath = place + 1 < len(path.parent.parts) or _person_in(path.stem)
-        if folder.lower() in WORDS["group"] and beneath and not own:
+        if folder.lower() in WORDS["group"] and beneath and not folders:
             continue
         if folder.lower() in (*WORDS["nothing"], *WORDS["content"]) or kind_of_trial(alone) or condition_word(alone)[1]:
             continue
@@ -296,5 +296,5 @@ def _own_folders(path: Path) -> list[str]:
             continue
         undated = _DATE.sub("", folder).strip("-_. ")  # `P01_2024-03-01` and `P01_2024-06-01` are one person
         if undated and (undated != folder or not session_word(alone)[1]):
-            own.append(undated)
-    return own
+            folders.append(undated)
+    return folders

@@ -71,13 +71,13 @@ def without_impossible(
     begin_s: time of the file's first frame of each stream, where the streams are a part of the file [s]
     returns findings: one for each channel, with the first such frame, its number and its unit
     """
-    kept: dict[str, Recording] = {}
+    cleaned: dict[str, Recording] = {}
     findings: list[Finding] = []
     for key, recording in streams.items():
         beyond = np.zeros(recording.values.shape, bool)
         ranges = {}
         for place, channel in enumerate(recording.channels):
-            limits = next((one for one in plausible_ranges() if one.covers(channel)), None)
+            limits = next((limit for limit in plausible_ranges() if limit.covers(channel)), None)
             if limits is not None:
                 values, ranges[place] = recording.values[:, place], limits
                 beyond[:, place] = (values < limits.low) | (values > limits.high)  # NaN is neither
@@ -94,7 +94,7 @@ def without_impossible(
             beyond[:, counted] = False
         before_s = recording.time[0] - (begin_s or {}).get(key, recording.time[0]) if len(recording.time) else 0.0
         frames = round(before_s * recording.rate_hz) if before_s else 0
-        plates = [found[0] if (found := _PLATE.match(channel.name)) else "" for channel in recording.channels]
+        plates = [match[0] if (match := _PLATE.match(channel.name)) else "" for channel in recording.channels]
         lost: set[str] = set()
         for place in np.flatnonzero(beyond.any(axis=0)).tolist():
             lost |= {plates[place]} - {""}
@@ -102,8 +102,8 @@ def without_impossible(
             findings.append(_finding(recording, place, ranges[place], beyond[:, place], frames, others))
         known = recording.with_values(np.where(beyond, np.nan, recording.values)) if beyond.any() else recording
         rest = [channel.name for channel, plate in zip(known.channels, plates, strict=True) if plate not in lost]
-        kept[key] = known.selected(rest) if lost else known
-    return kept, findings
+        cleaned[key] = known.selected(rest) if lost else known
+    return cleaned, findings
 
 
 def without_frozen(streams: Mapping[str, Recording]) -> tuple[dict[str, Recording], list[Finding]]:
@@ -116,7 +116,7 @@ def without_frozen(streams: Mapping[str, Recording]) -> tuple[dict[str, Recordin
 
     returns findings: one for each channel or marker, with its first such stretch
     """
-    kept: dict[str, Recording] = {}
+    cleaned: dict[str, Recording] = {}
     findings: list[Finding] = []
     for key, recording in streams.items():
         still = np.zeros(recording.values.shape, bool)
@@ -141,8 +141,8 @@ def without_frozen(streams: Mapping[str, Recording]) -> tuple[dict[str, Recordin
                 name, file = channel.name.removesuffix(".x") if marker else channel.name, recording.source.file
                 spoils = "these frames; fill the gap"
                 findings.append(Finding("warning", "frozen", file, what, spoils, name, spans=spans))
-        kept[key] = recording.with_values(np.where(still, np.nan, recording.values)) if still.any() else recording
-    return kept, findings
+        cleaned[key] = recording.with_values(np.where(still, np.nan, recording.values)) if still.any() else recording
+    return cleaned, findings
 
 
 def _frozen(x: Values) -> NDArray[np.bool_]:
@@ -250,9 +250,9 @@ def with_flexion_positive(streams: Mapping[str, Recording]) -> tuple[dict[str, R
         what = f"{name} {spans[name]}{why}; its sign was reversed, so that flexion is positive{also}"
         findings.append(Finding("note", "knee sign", file, what, "", name))
     if proven == {1, -1}:
-        kept, other = (", ".join(name for name, sense in senses.items() if sense == way) for way in (1, -1))
+        same, other = (", ".join(name for name, sense in senses.items() if sense == way) for way in (1, -1))
         what = (
-            f"flexion is positive in {kept} and negative in {other} of this file; only the sign of {other} was reversed"
+            f"flexion is positive in {same} and negative in {other} of this file; only the sign of {other} was reversed"
         )
         findings.append(Finding("warning", "knee sign", file, what, "knee angles if this is wrong; correct the file"))
     return {key: recording for key, (recording, _) in moved.items()}, findings
@@ -268,8 +268,8 @@ def _sense(low: float, high: float) -> int | None:
 
 
 def _of_knee(name: str) -> str:
-    found = _MOVES.fullmatch(name)
-    return found[1] if found else name
+    match = _MOVES.fullmatch(name)
+    return match[1] if match else name
 
 
 def _turn(recording: Recording, knees: list[str]) -> tuple[Recording, list[str]]:

@@ -48,8 +48,8 @@ class PublicWords:
         >>> PublicWords(files={"Erika.mot": "the recording"}).said("Erika.mot has no unit")
         'the recording has no unit'
         """
-        said = self._called(text)
-        return f"{said} {WHERE}" if HIDDEN in said and HIDDEN not in text else said
+        public = self._called(text)
+        return f"{public} {WHERE}" if HIDDEN in public and HIDDEN not in text else public
 
     def finding(self, finding: Finding) -> Finding:
         """Finding without a word of the recordings."""
@@ -63,10 +63,10 @@ class PublicWords:
 
     def error(self, error: GaitdiscError) -> GaitdiscError:
         """Error of the same kind without a word of the recordings."""
-        parts = [self._called(part) for part in (error.needed, error.found, error.remedy)]
-        if any(HIDDEN in part for part in parts):
-            parts[2] = f"{parts[2]} {WHERE}"
-        return type(error)(*parts)
+        texts = [self._called(part) for part in (error.needed, error.found, error.remedy)]
+        if any(HIDDEN in part for part in texts):
+            texts[2] = f"{texts[2]} {WHERE}"
+        return type(error)(*texts)
 
     def trial(self, trial: Trial) -> Trial:
         """Trial whose files are called by what they may be called, and whose findings hold public words."""
@@ -82,18 +82,18 @@ class PublicWords:
 
     def keep_known_channels(self, trial: Trial, streams: Iterable[str]) -> Trial:
         """Trial without the channels whose labels are no public words, and a finding that says how many there are."""
-        kept, left_out = dict(trial.streams), 0
-        for key in set(streams) & set(kept):
-            names = [name for name in kept[key].names if self._called(name) == name]
-            left_out += len(kept[key].names) - len(names)
-            kept[key] = kept[key].selected(names)
+        streams_left, left_out = dict(trial.streams), 0
+        for key in set(streams) & set(streams_left):
+            names = [name for name in streams_left[key].names if self._called(name) == name]
+            left_out += len(streams_left[key].names) - len(names)
+            streams_left[key] = streams_left[key].selected(names)
         if not left_out:
             return trial
         what = f"channels left out because their labels are not in the vocabulary: {left_out}"
         spoils = "these channels; map them in the study's [channels], or rename them"
-        kept = {key: recording for key, recording in kept.items() if recording.names}
+        streams_left = {key: recording for key, recording in streams_left.items() if recording.names}
         finding = Finding("note", "left out", trial.name, what, spoils)
-        return replace(trial, streams=kept, findings=(*trial.findings, finding))
+        return replace(trial, streams=streams_left, findings=(*trial.findings, finding))
 
     def _recording(self, recording: Recording) -> Recording:
         source = recording.source
@@ -103,8 +103,8 @@ class PublicWords:
     def _called(self, text: str) -> str:
         """Files by what they are called, and each word that is not public hidden."""
         names = (re.escape(name) for name in sorted(self.files, key=len, reverse=True) if name)
-        parts = "|".join((*(rf"(?<!\w){name}(?!\w)" for name in names), _WORD.pattern))
-        hidden = re.sub(parts, lambda found: self.files.get(found[0]) or self._or_hidden(found[0]), text)
+        pattern = "|".join((*(rf"(?<!\w){name}(?!\w)" for name in names), _WORD.pattern))
+        hidden = re.sub(pattern, lambda match: self.files.get(match[0]) or self._or_hidden(match[0]), text)
         return re.sub(rf"{HIDDEN}(?:[\s._/\\:-]*{HIDDEN})+", HIDDEN, hidden)
 
     def _or_hidden(self, word: str) -> str:
@@ -116,14 +116,14 @@ class PublicWords:
 
 def list_words(study: Study, participant: Participant, named: Iterable[str] = ()) -> PublicWords:
     """Public words of one participant's recordings, of the study and of channels that the user named."""
-    said = [study.title, *study.sessions, *study.conditions.words, participant.group, participant.excluded, *named]
-    said += [each.id for each in study.participants]
-    said += [trial.leave_out for trial in participant.trials]
-    said += [trial.condition for each in study.participants for trial in each.trials]
-    said += [*study.models.angles, *study.models.emg, *study.models.outputs]
-    said += [split_unit(name)[0] for name in study.channels.values()]
-    words = frozenset(word for text in said for word in _WORD.findall(text))
-    files = {name: said for trial in participant.trials for name, said in _files(participant, trial).items()}
+    texts = [study.title, *study.sessions, *study.conditions.words, participant.group, participant.excluded, *named]
+    texts += [person.id for person in study.participants]
+    texts += [trial.leave_out for trial in participant.trials]
+    texts += [trial.condition for person in study.participants for trial in person.trials]
+    texts += [*study.models.angles, *study.models.emg, *study.models.outputs]
+    texts += [split_unit(name)[0] for name in study.channels.values()]
+    words = frozenset(word for text in texts for word in _WORD.findall(text))
+    files = {name: public for trial in participant.trials for name, public in _files(participant, trial).items()}
     return PublicWords(words, files)
 
 
@@ -151,15 +151,15 @@ def package_words() -> frozenset[str]:
     literals: list[str] = [os.strerror(number) for number in errno.errorcode]
     for path in Path(__file__).parents[1].rglob("*.py"):
         code = _TEXT.sub("", path.read_text(encoding="utf-8"))
-        literals += (one or other for one, other in _LITERAL.findall(code))
+        literals += (double or single for double, single in _LITERAL.findall(code))
     with (schema_folder() / "channels.csv").open(newline="", encoding="utf-8") as file:
         literals += (row[column] for row in csv.DictReader(file) for column in ("name", "quantity", "unit", "aliases"))
     for path in (schema_folder() / "marker_sets").glob("*.toml"):
         # labels, landmarks and title, without the people it cites
         lines = _TEXT.sub("", path.read_text(encoding="utf-8")).splitlines()
         cited = {word for line in lines if line.startswith("citation") for word in _WORD.findall(line)}
-        said = {one or other for line in lines for one, other in _LITERAL.findall(line)}
-        both = {text.replace("{S}", side).replace("{s}", side.lower()) for text in said for side in "LR"}
+        texts = {double or single for line in lines for double, single in _LITERAL.findall(line)}
+        both = {text.replace("{S}", side).replace("{s}", side.lower()) for text in texts for side in "LR"}
         literals += [path.stem.replace("_", " "), *({word for text in both for word in _WORD.findall(text)} - cited)]
     return frozenset(word for text in literals for word in _WORD.findall(text))
 
@@ -168,7 +168,7 @@ def _files(participant: Participant, planned: PlannedTrial) -> dict[str, str]:
     """What the files of a trial are called; a name without its ending counts where it can be no word of a sentence."""
     called: dict[str, str] = {}
     for number, file in enumerate(planned.files, 1):
-        said, path = f"{participant.trial_name(planned)}, file {number}", Path(file)
-        called |= {path.stem: said} if len(path.stem) > 3 and re.search(r"\d", path.stem) else {}
-        called |= {path.name: said}
+        public, path = f"{participant.trial_name(planned)}, file {number}", Path(file)
+        called |= {path.stem: public} if len(path.stem) > 3 and re.search(r"\d", path.stem) else {}
+        called |= {path.name: public}
     return called

@@ -89,11 +89,11 @@ def read_trial(
     files = list(paths) if isinstance(paths, list | tuple) else [paths]
     if not files:
         raise ReadError("a trial must have at least one file", "none is named", "Name its files in the study.")
-    parts = [_read(file, channels, reader, part) for file in files]
+    trials = [_read(file, channels, reader, part) for file in files]
     streams: dict[str, Recording] = {}
-    findings = [finding for one in parts for finding in one.findings]
-    for one in parts:
-        for key, recording in one.streams.items():
+    findings = [finding for t in trials for finding in t.findings]
+    for file_trial in trials:
+        for key, recording in file_trial.streams.items():
             if key not in streams:
                 streams[key] = recording
             elif key == "signals" and not _one_base(streams[key], recording):
@@ -102,19 +102,19 @@ def read_trial(
             else:
                 streams[key] = _join(streams[key], recording, key)
     named = {key: replace(r, subject=subject, condition=condition) for key, r in streams.items()}
-    events = tuple(sorted((event for one in parts for event in one.events), key=lambda event: event.time))
+    events = tuple(sorted((event for t in trials for event in t.events), key=lambda event: event.time))
     if not any(str(file).lower().endswith(".c3d") for file in files):  # that reader reports unused labels itself
-        findings += _list_unused(channels, named, parts[0].name)
-    _refuse_events_outside(files, parts, named)
-    surfaces = tuple(surface for one in parts for surface in one.surfaces)
-    trial = Trial(parts[0].name, named, events, tuple(findings), subject, condition=condition, surfaces=surfaces)
+        findings += _list_unused(channels, named, trials[0].name)
+    _refuse_events_outside(files, trials, named)
+    surfaces = tuple(surface for t in trials for surface in t.surfaces)
+    trial = Trial(trials[0].name, named, events, tuple(findings), subject, condition=condition, surfaces=surfaces)
     begin_s = {key: float(recording.time[0]) for key, recording in trial.streams.items() if len(recording.time)}
     trial = trial if crop_s is None else _crop(trial, *crop_s)  # only what a crop leaves is checked
-    kept, turned = with_flexion_positive(trial.streams)
-    kept, still = without_frozen(kept)
-    kept, beyond = without_impossible(kept, begin_s)
-    found = (*trial.findings, *turned, *still, *beyond, *per_kg_findings(trial.streams))
-    return replace(trial, streams=kept, findings=found)
+    cleaned, turned = with_flexion_positive(trial.streams)
+    cleaned, still = without_frozen(cleaned)
+    cleaned, beyond = without_impossible(cleaned, begin_s)
+    all_findings = (*trial.findings, *turned, *still, *beyond, *per_kg_findings(trial.streams))
+    return replace(trial, streams=cleaned, findings=all_findings)
 
 
 def read_planned_trial(
@@ -130,18 +130,18 @@ def read_planned_trial(
     return replace(trial, name=participant.trial_name(planned))
 
 
-def _read(given: object, channels: Mapping[str, str] | None, reader: C3DReader | None, part: str) -> Trial:
-    if not isinstance(given, Path | str):
+def _read(source: object, channels: Mapping[str, str] | None, reader: C3DReader | None, part: str) -> Trial:
+    if not isinstance(source, Path | str):
         import pandas as pd
 
-        if isinstance(given, pd.DataFrame):
-            return read_frame(given, channels)
+        if isinstance(source, pd.DataFrame):
+            return read_frame(source, channels)
         raise ReadError(
             "a walk must be given as a file or a DataFrame",
-            f"found {type(given).__name__}",
+            f"found {type(source).__name__}",
             "Give a path, or a DataFrame with a column 'time' [s] and one column per channel.",
         )
-    path = Path(given)
+    path = Path(source)
     ending = path.suffix.lower()
     if ending in ARRAYS:
         from gaitdisc.ingest.array_file import read_arrays
@@ -160,50 +160,50 @@ def _read(given: object, channels: Mapping[str, str] | None, reader: C3DReader |
     return READERS[ending](path, channels)
 
 
-def _one_base(one: Recording, other: Recording) -> bool:
-    if len(one.time) != len(other.time):
+def _one_base(first: Recording, second: Recording) -> bool:
+    if len(first.time) != len(second.time):
         return False
-    return bool(np.abs(one.time - other.time).max() <= 1e-3 / one.rate_hz)
+    return bool(np.abs(first.time - second.time).max() <= 1e-3 / first.rate_hz)
 
 
-def _join(one: Recording, other: Recording, key: str) -> Recording:
-    files = f"{one.source.file} and {other.source.file}"
-    if not _one_base(one, other):
+def _join(recording: Recording, other: Recording, key: str) -> Recording:
+    files = f"{recording.source.file} and {other.source.file}"
+    if not _one_base(recording, other):
         raise SamplingError(
             f"two files that contain {key} must have one time base",
-            f"{files} have {len(one.time)} samples from {one.time[0]:.4g} s at {one.rate_hz:g} Hz and "
-            f"{len(other.time)} from {other.time[0]:.4g} s at {other.rate_hz:g} Hz",
+            f"{files} have {len(recording.time)} samples from {recording.time[0]:.4g} s at {recording.rate_hz:g} Hz "
+            f"and {len(other.time)} from {other.time[0]:.4g} s at {other.rate_hz:g} Hz",
             f"Use one file with all {key}, or list the files as two trials.",
         )
-    doubled = sorted(set(one.names) & set(other.names))
+    doubled = sorted(set(recording.names) & set(other.names))
     if doubled:
         raise ChannelError(
             f"two files of one trial must not contain the same channel of {key}",
             f"{files} both contain {doubled[0]!r} ({len(doubled)} in all)",
             "Remove one file, or list the files as two trials.",
         )
-    first, second = one.source, other.source
+    first, second = recording.source, other.source
     names, readers = f"{first.file} + {second.file}", f"{first.reader} + {second.reader}"
     source = Source(names, f"{first.sha256}+{second.sha256}", readers)
     return Recording(
-        one.time,
-        np.hstack([one.values, other.values]),
-        one.channels + other.channels,
+        recording.time,
+        np.hstack([recording.values, other.values]),
+        recording.channels + other.channels,
         source=source,
-        suspect=np.hstack([one.suspect, other.suspect]),
+        suspect=np.hstack([recording.suspect, other.suspect]),
     )
 
 
-def _refuse_events_outside(files: Sequence[object], parts: Sequence[Trial], streams: Mapping[str, Recording]) -> None:
+def _refuse_events_outside(files: Sequence[object], trials: Sequence[Trial], streams: Mapping[str, Recording]) -> None:
     """Refuse events of a table beside a recording that has another clock."""
     ends = [time for recording in streams.values() for time in (recording.time[0], recording.time[-1])]
     start, end = min(ends, default=0.0), max(ends, default=float("inf"))
-    for file, one in zip(files, parts, strict=True):
-        far = [event.time for event in one.events if not start - EDGE_S <= event.time <= end + EDGE_S]
-        if far and not one.streams:
+    for file, trial in zip(files, trials, strict=True):
+        far = [event.time for event in trial.events if not start - EDGE_S <= event.time <= end + EDGE_S]
+        if far and not trial.streams:
             raise SamplingError(
                 f"{Path(str(file)).name}: events must lie within the recording, from {start:.2f} to {end:.2f} s",
-                f"events outside: {len(far)} of {len(one.events)} (first: {far[0]:.2f} s)",
+                f"events outside: {len(far)} of {len(trial.events)} (first: {far[0]:.2f} s)",
                 "Write times on the recording's clock; in a C3D file its first frame is at 0 s.",
             )
 
@@ -211,7 +211,7 @@ def _refuse_events_outside(files: Sequence[object], parts: Sequence[Trial], stre
 def _list_unused(channels: Mapping[str, str] | None, streams: Mapping[str, Recording], name: str) -> list[Finding]:
     there = {channel.rpartition(".")[0] or channel for r in streams.values() for channel in r.names}
     there |= {channel for r in streams.values() for channel in r.names} | {"time", IGNORE}
-    absent = [label for label, said in (channels or {}).items() if split_unit(said)[0] not in there]
+    absent = [label for label, entry in (channels or {}).items() if split_unit(entry)[0] not in there]
     if not absent:
         return []
     what = f"in [channels], but in no file of this trial: {', '.join(map(repr, absent[:4]))}"
@@ -222,10 +222,10 @@ def _crop(trial: Trial, start_s: float, end_s: float) -> Trial:
     streams = {key: recording.between(start_s, end_s) for key, recording in trial.streams.items()}
     for key, recording in streams.items():
         if len(recording.time) < 2:
-            whole = trial.streams[key]
+            uncropped = trial.streams[key]
             raise SamplingError(
                 f"{trial.name}: the crop from {start_s:g} to {end_s:g} s must lie inside the stream {key!r}",
-                f"this stream lasts from {whole.time[0]:.4g} to {whole.time[-1]:.4g} s on the file's clock",
+                f"this stream lasts from {uncropped.time[0]:.4g} to {uncropped.time[-1]:.4g} s on the file's clock",
                 "Correct crop_s in the study.",
             )
     events = tuple(event for event in trial.events if start_s <= event.time < end_s)

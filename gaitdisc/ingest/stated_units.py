@@ -89,7 +89,7 @@ def find_copied_unit(name: str, values: Values, angles: dict[str, Values]) -> st
         return None
     values, knee = values[both], knee[both]
     apart = {unit: np.abs(values * factor - knee).mean() for unit, factor in (("deg", 1.0), ("rad", 180 / math.pi))}
-    unit = min(apart, key=lambda each: apart[each])
+    unit = min(apart, key=lambda u: apart[u])
     return unit if apart[unit] <= 0.05 * np.abs(knee).mean() + 1e-6 else None
 
 
@@ -125,7 +125,7 @@ def refuse_other_unit(unit: str, far: float, file: str, where: str) -> None:
 
 def per_kg_findings(streams: Mapping[str, Recording]) -> list[Finding]:
     """Say that ground forces or joint moments stated in N or N m are per kg of body mass."""
-    found = []
+    findings = []
     steps = "hundreds of N are usual in steps"
     legs = "tens of N m are usual for the largest moment of the legs in walking"
     stated = ("forces", "vertical_force", "N", FORCE_N, steps), ("moments", "moment", "N m", MOMENT_NM, legs)
@@ -147,5 +147,5 @@ def per_kg_findings(streams: Mapping[str, Recording]) -> list[Finding]:
         if most and low <= peaks[most] <= high and walks:
             what = f"peaks at {peaks[most]:.3g} {unit}, but {like}: the unit seems to be {unit} per kg of body mass"
             spoils = f"contacts from force, moments and powers; state {unit}/kg, or multiply by body mass"
-            found.append(Finding("warning", "per body mass", recording.source.file, what, spoils, most))
-    return found
+            findings.append(Finding("warning", "per body mass", recording.source.file, what, spoils, most))
+    return findings

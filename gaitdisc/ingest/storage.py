@@ -132,9 +132,9 @@ def _in_true_unit(
     in_degrees = {columns[i].channel.name: columns[i].convert(values[:, i]) for i in angles}
     copies = []
     for i in angles:
-        own = find_copied_unit(columns[i].channel.name, values[:, i], in_degrees)
-        if own and own != unit:
-            columns[i] = replace(columns[i], unit=own)
+        copied = find_copied_unit(columns[i].channel.name, values[:, i], in_degrees)
+        if copied and copied != unit:
+            columns[i] = replace(columns[i], unit=copied)
             copies.append(columns[i].channel.name)
     if copies:
         what = f"the values of {', '.join(copies)} were converted from {'deg' if unit == 'rad' else 'rad'} to {unit}"
@@ -183,7 +183,7 @@ def parse_header(lines: Sequence[str], file: str) -> StorageHeader:
         blank = f"label {names.index('') + 1} is blank" if "" in names else "time is the only column"
         needed = f"{file}: time and every other column must have a label"
         raise ReadError(needed, f"line {at + 1}: {blank}", "Name every column.")
-    own = (_OWN_COLUMN.fullmatch(line.strip()) for line in lines[:end])
+    matches = (_OWN_COLUMN.fullmatch(line.strip()) for line in lines[:end])
     return StorageHeader(
         title=next((line.strip() for line in lines[:end] if line.strip()), ""),
         labels=tuple(labels),
@@ -191,7 +191,7 @@ def parse_header(lines: Sequence[str], file: str) -> StorageHeader:
         degrees=next((bool(value) for key, value in keys if key == "indegrees"), None),
         rows=tuple(int(value) for key, value in keys if key in _ROWS),
         columns=tuple(int(value) for key, value in keys if key in _COLUMNS),
-        own={int(m[1]): (m[2], m[3], m[4].lower()) for m in own if m},
+        own={int(m[1]): (m[2], m[3], m[4].lower()) for m in matches if m},
         separator=separator,
     )
 
@@ -262,8 +262,8 @@ def naming_findings(columns: Sequence[Column], file: str) -> list[Finding]:
     if sides == {"r"} and any(column.label.startswith("1_ground_force_v") for column in columns):
         what = "ground_force_ is read as the right foot and 1_ground_force_ as the left foot, as in OpenSim's examples"
         findings.append(Finding("note", "guessed", file, what, "the sides if this is wrong; map them in [channels]"))
-    forces = [one for one in columns if "ground_force" in one.label.lower() and one.channel.name != IGNORE]
-    if sideless := [one.label for one in forces if not one.channel.side]:
+    forces = [column for column in columns if "ground_force" in column.label.lower() and column.channel.name != IGNORE]
+    if sideless := [force.label for force in forces if not force.channel.side]:
         what = f"{list_names(sideless)}: no foot is named, so these forces are not used"
         such_as = f'"{sideless[0]}" = "ground_force_r_{sideless[0][-2:]} [N]"'
         remedy = f"contacts and forces; name the foot in [channels], such as {such_as}"

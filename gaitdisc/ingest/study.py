@@ -95,10 +95,10 @@ class PlannedTrial(StudyPart):
 
     @model_validator(mode="after")
     def _check(self) -> PlannedTrial:
-        for i, said in enumerate(self.leave_out_cycles):
-            if not LEFT_OUT_CYCLE.fullmatch(said):
+        for i, cycle in enumerate(self.leave_out_cycles):
+            if not LEFT_OUT_CYCLE.fullmatch(cycle):
                 remedy = 'Write for example "left 2.31 stumbled"; cycles.csv lists start_s of each cycle.'
-                refuse(("leave_out_cycles", i), "give a side and a start [s]", f"found {said!r}", remedy)
+                refuse(("leave_out_cycles", i), "give a side and a start [s]", f"found {cycle!r}", remedy)
         if self.crop_s and self.crop_s[0] >= self.crop_s[1]:
             refuse(("crop_s",), "have a start before its end", f"found {list(self.crop_s)}", "Write [start, end] in s.")
         return self
@@ -233,36 +233,36 @@ class Study(StudyPart):
         if word is None:
             return self
         named, people = {"condition": word}, []
-        for one in self.participants:
-            trials = (trial.model_copy(update=named) if trial.condition == UNKNOWN else trial for trial in one.trials)
-            people.append(one.model_copy(update={"trials": tuple(trials)}))
+        for participant in self.participants:
+            trials = (t.model_copy(update=named) if t.condition == UNKNOWN else t for t in participant.trials)
+            people.append(participant.model_copy(update={"trials": tuple(trials)}))
         return self.model_copy(update={"participants": tuple(people)}).placed(self.folder)
 
     def participant(self, subject: str) -> Participant:
         """Return a participant."""
-        found = next((each for each in self.participants if each.id == subject), None)
-        if found is None:
-            ids = ", ".join(each.id for each in self.participants)
+        person = next((p for p in self.participants if p.id == subject), None)
+        if person is None:
+            ids = ", ".join(p.id for p in self.participants)
             raise SchemaError("the participant must be in the study", f"{subject!r} is not", f"Use one of: {ids}.")
-        return found
+        return person
 
     def one_condition_only(self) -> tuple[str, ...]:
         """Pseudonyms of those who lack a trial of one of the two conditions; none where no device is compared."""
         if self.conditions.device is None:
             return ()
         both = self.conditions.both
-        return tuple(each.id for each in self.participants if not all(each.trials_of(word) for word in both))
+        return tuple(p.id for p in self.participants if not all(p.trials_of(word) for word in both))
 
 
 def check_conditions(conditions: Conditions) -> None:
     """Refuse conditions of which two share a word, and a word for unnamed trials that is no condition."""
     words = conditions.words
     if len(set(words)) < len(words) or UNKNOWN in words:
-        found = f"found {' and '.join(map(repr, words))}"
-        refuse(("conditions",), f"be different words, none of them {UNKNOWN!r}", found, "Name each condition once.")
+        fault = f"found {' and '.join(map(repr, words))}"
+        refuse(("conditions",), f"be different words, none of them {UNKNOWN!r}", fault, "Name each condition once.")
     if conditions.unnamed is not None and conditions.unnamed not in words:
-        found = f"found {conditions.unnamed!r}"
-        refuse(("conditions", "unnamed"), f"be one of {', '.join(map(repr, words))}", found, "Use one of these words.")
+        fault = f"found {conditions.unnamed!r}"
+        refuse(("conditions", "unnamed"), f"be one of {', '.join(map(repr, words))}", fault, "Use one of these words.")
 
 
 def check_sessions(study: Study) -> None:
@@ -286,12 +286,12 @@ def check_participants(study: Study) -> None:
     """Refuse conditions that no trial can have, pseudonyms that occur twice, and names that no file can have."""
     words = study.conditions.words
     known = (*words, UNKNOWN, STATIC, FUNCTIONAL)
-    ids = Counter(each.id.lower() for each in study.participants)
+    ids = Counter(person.id.lower() for person in study.participants)
     for i, participant in enumerate(study.participants):
         if ids[participant.id.lower()] > 1:
-            found = f"{participant.id!r} occurs {ids[participant.id.lower()]} times"
+            fault = f"{participant.id!r} occurs {ids[participant.id.lower()]} times"
             place = ("participants", i, "id")
-            refuse(place, "be used for one person only", found, "List all trials of a person together.")
+            refuse(place, "be used for one person only", fault, "List all trials of a person together.")
         for j, trial in enumerate(participant.trials):
             if trial.condition not in known:
                 remedy = did_you_mean(trial.condition, known, f"Use one of these words, or {UNKNOWN!r}.")

@@ -105,7 +105,7 @@ def write_study(study: Study, path: Path | str) -> Path:
 
 def study_text(study: Study, folder: Path | None = None) -> str:
     """Text of a study file in a folder, its own by default."""
-    parts = [_TOP + _pair(study, "title") + _pair(study, "sessions")]
+    tables = [_TOP + _pair(study, "title") + _pair(study, "sessions")]
     for key in (
         "conditions", "treadmill", "channels", "filters", "kinematics", "strides", "models", "held_out", "quality",
     ):  # fmt: skip
@@ -113,7 +113,7 @@ def study_text(study: Study, folder: Path | None = None) -> str:
         if isinstance(value, Kinematics) and value.marker_set.endswith(".toml"):
             value = value.model_copy(update={"marker_set": _relocate(value.marker_set, study.folder, folder)})
         if value is None:
-            parts.append(UNSET[key])
+            tables.append(UNSET[key])
             continue
         if isinstance(value, BaseModel):
             about = (type(value).__doc__ or "").split("\n")[0]
@@ -121,7 +121,7 @@ def study_text(study: Study, folder: Path | None = None) -> str:
         else:
             about = type(study).model_fields[key].description
             pairs = "".join(f"{quote(label)} = {quote(name)}\n" for label, name in value.items())
-        parts.append(f"# {about}\n[{key}]\n{pairs}")
+        tables.append(f"# {about}\n[{key}]\n{pairs}")
     explained = False  # each key is explained where it stands first
     for participant in study.participants:
         measured = tuple(name for name in MEASURES if getattr(participant, name))
@@ -131,8 +131,8 @@ def study_text(study: Study, folder: Path | None = None) -> str:
             moved = trial.model_copy(update={"files": files})
             text += f"\n[[participants.trials]]\n{_pairs(moved, tuple(type(moved).model_fields), explained)}"
             explained = True
-        parts.append(text)
-    return "\n".join(parts)
+        tables.append(text)
+    return "\n".join(tables)
 
 
 def _pairs(part: BaseModel, names: tuple[str, ...], explained: bool) -> str:
@@ -174,19 +174,19 @@ def grow_study(study: Study, draft: Study) -> Study:
     Whoever is in the study keeps the pseudonym, also where the draft has another one for the same files; each trial
     keeps its condition and session. Files that belong to a trial of the study are added to it.
     """
-    owner = {_place(study, file): one.id for one in study.participants for trial in one.trials for file in trial.files}
-    people = {one.id: one for one in study.participants}
+    owner = {_place(study, file): p.id for p in study.participants for trial in p.trials for file in trial.files}
+    people = {p.id: p for p in study.participants}
     for drafted in draft.participants:
-        own = [
+        names = [
             owner[place] for trial in drafted.trials for file in trial.files if (place := _place(draft, file)) in owner
         ]
         # the pseudonym of a draft, or the next that nobody has
         free = (name for name in (drafted.id, *(f"P{k:02d}" for k in range(1, 10_000))) if name not in people)
-        name = own[0] if own else next(free)
+        name = names[0] if names else next(free)
         new = [trial for trial in drafted.trials if any(_place(draft, file) not in owner for file in trial.files)]
         if new:
             people[name] = _grow(people.get(name) or Participant(id=name), drafted, new, study)
-    trials = [trial for one in people.values() for trial in one.trials]
+    trials = [trial for person in people.values() for trial in person.trials]
     kinds = (*study.conditions.words, STATIC, FUNCTIONAL, UNKNOWN)
     others = dict.fromkeys(trial.condition for trial in trials if trial.condition not in kinds)
     sessions = dict.fromkeys(
@@ -205,7 +205,7 @@ def _grow(person: Participant, drafted: Participant, new: list[PlannedTrial], st
     trials = list(person.trials)
     for trial in new:
         files = {_place(study, file): file for file in trial.files}
-        place = next((k for k, one in enumerate(trials) if any(_place(study, f) in files for f in one.files)), None)
+        place = next((k for k, t in enumerate(trials) if any(_place(study, f) in files for f in t.files)), None)
         if place is None:
             trials.append(trial)
             continue
@@ -223,18 +223,18 @@ def _place(study: Study, file: str) -> Path:
 def schema_error(error: ValidationError, model: type[BaseModel], text: str, file: str) -> SchemaError:
     """Sentence for the first of pydantic's findings, with the count of the others."""
     findings = [
-        each
-        for each in error.errors(include_url=False)  # a list is called too short, too, when an entry of it was refused
-        if each["type"] != "too_short" or each.get("ctx", {})["actual_length"] >= len(each["input"])
+        finding
+        for finding in error.errors(include_url=False)  # a list is called too short when an entry of it was refused
+        if finding["type"] != "too_short" or finding.get("ctx", {})["actual_length"] >= len(finding["input"])
     ]
-    first = min(findings, key=lambda each: (each["type"] != "extra_forbidden", find_line(text, _place_in(each)) or 0))
+    first = min(findings, key=lambda f: (f["type"] != "extra_forbidden", find_line(text, _place_in(f)) or 0))
     place = _place_in(first)
     line = find_line(text, place)
     where = file if line is None else f"{file}, line {line}"
-    needed, found, remedy = _sentence(first, place, model)
+    needed, fault, remedy = _sentence(first, place, model)
     if len(findings) > 1:
         remedy += f" (Further settings to correct: {len(findings) - 1}.)"
-    return SchemaError(f"{where}: {needed}", found, remedy)
+    return SchemaError(f"{where}: {needed}", fault, remedy)
 
 
 def _place_in(finding: Mapping[str, Any]) -> Place:
@@ -242,7 +242,7 @@ def _place_in(finding: Mapping[str, Any]) -> Place:
 
 
 def _sentence(finding: Mapping[str, Any], place: Place, model: type[BaseModel]) -> tuple[str, str, str]:
-    kind, given, context = finding["type"], finding.get("input"), finding.get("ctx", {})
+    kind, value, context = finding["type"], finding.get("input"), finding.get("ctx", {})
     if kind == "extra_forbidden":
         owner = _part(place[:-1], model)
         keys = list(owner.model_fields) if owner else []
@@ -255,18 +255,18 @@ def _sentence(finding: Mapping[str, Any], place: Place, model: type[BaseModel]) 
         return f"{_table(place[:-1])} must have {place[-1]!r}", "it is missing", remedy
     if kind == "gaitdisc":
         return f"{_name(place)} must {context['needed']}", context["found"], context["remedy"]
-    found = f"found {given!r}"
-    if isinstance(given, list | tuple):
-        found = f"found a list of {len(given)}"
-    elif given is None or isinstance(given, dict):
-        found = "found nothing" if given is None else "found a table"
-    wanted, remedy = _state_need(kind, given, context)
-    if kind == "tuple_type" and isinstance(given, dict):
+    fault = f"found {value!r}"
+    if isinstance(value, list | tuple):
+        fault = f"found a list of {len(value)}"
+    elif value is None or isinstance(value, dict):
+        fault = "found nothing" if value is None else "found a table"
+    words, remedy = _state_need(kind, value, context)
+    if kind == "tuple_type" and isinstance(value, dict):
         remedy = f"Write its header in two pairs of brackets: [[{place[-1]}]]."
-    return f"{_name(place)} must {wanted or finding['msg']}", found, remedy
+    return f"{_name(place)} must {words or finding['msg']}", fault, remedy
 
 
-def _state_need(kind: str, given: Any, context: Mapping[str, Any]) -> tuple[str, str]:
+def _state_need(kind: str, value: Any, context: Mapping[str, Any]) -> tuple[str, str]:
     """What a value must be, and what to do about it."""
     if kind in _LIMITS:
         word, key = _LIMITS[kind]
@@ -274,7 +274,7 @@ def _state_need(kind: str, given: Any, context: Mapping[str, Any]) -> tuple[str,
     if kind == "literal_error":
         words = str(context["expected"])
         listed = [word.strip(" '") for word in words.replace(" or ", ",").split(",")]
-        return f"be one of {words}", did_you_mean(str(given), listed, "Choose one of them.")
+        return f"be one of {words}", did_you_mean(str(value), listed, "Choose one of them.")
     return next((words for key, words in _KINDS.items() if kind.startswith(key)), ("", "Correct it."))
 
 
@@ -318,7 +318,7 @@ def _part(place: Place, model: type[BaseModel]) -> type[BaseModel] | None:
 def _model_in(annotation: Any) -> type[BaseModel] | None:
     if isinstance(annotation, type) and issubclass(annotation, BaseModel):
         return annotation
-    return next((found for inner in typing.get_args(annotation) if (found := _model_in(inner))), None)
+    return next((model for inner in typing.get_args(annotation) if (model := _model_in(inner))), None)
 
 
 def find_line(text: str, place: Place) -> int | None:

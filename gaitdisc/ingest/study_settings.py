@@ -93,8 +93,8 @@ class StrideRules(StudyPart):
     @model_validator(mode="after")
     def _check(self) -> StrideRules:
         if self.min_s >= self.max_s:
-            found = f"min_s is {self.min_s:g}, max_s {self.max_s:g}"
-            refuse(("min_s",), "be shorter than max_s", found, "Exchange the two numbers, or widen the range.")
+            fault = f"min_s is {self.min_s:g}, max_s {self.max_s:g}"
+            refuse(("min_s",), "be shorter than max_s", fault, "Exchange the two numbers, or widen the range.")
         return self
 
 
@@ -121,8 +121,8 @@ class HeldOut(StudyPart):
     def _check(self) -> HeldOut:
         both = self.seconds is not None and self.share is not None and "share" in self.model_fields_set
         if both or (self.seconds is None and self.share is None):
-            found = f"{'both are' if both else 'neither is'} given"
-            refuse(("seconds",), "be given instead of 'share'", found, "Give either seconds or share.")
+            fault = f"{'both are' if both else 'neither is'} given"
+            refuse(("seconds",), "be given instead of 'share'", fault, "Give either seconds or share.")
         return self
 
 
@@ -143,27 +143,27 @@ class Quality(StudyPart):
 def check_channels(channels: Mapping[str, str]) -> None:
     """Refuse a map (label -> `name` or `name [unit]`) with an unknown unit, a misspelt name, or a name twice."""
     owners: dict[str, str] = {}
-    for label, said in channels.items():
-        name, unit = split_unit(said)
+    for label, entry in channels.items():
+        name, unit = split_unit(entry)
         place = ("channels", label)
         if name == IGNORE:
             continue
         if not name:
-            refuse(place, "be the name of a channel", f"found {said!r}", 'Write for example "emg_sol_r [V]".')
+            refuse(place, "be the name of a channel", f"found {entry!r}", 'Write for example "emg_sol_r [V]".')
         if unit is not None and parse_unit(unit) is None:
-            found = f"found {unit!r}" + (offset_words(unit) or hint_nearest(unit, list_units()))
-            refuse(place, "be in the list of units", found, f"Use one of: {', '.join(list_units())}.")
+            fault = f"found {unit!r}" + (offset_words(unit) or hint_nearest(unit, list_units()))
+            refuse(place, "be in the list of units", fault, f"Use one of: {', '.join(list_units())}.")
         if unit is None:
             _check_spelling(place, name)
         if name in owners:
-            found = f"{owners[name]!r} and {label!r} both name {name!r}"
-            refuse(place, "name a channel that no other label names", found, "Use two names, or remove one label.")
+            fault = f"{owners[name]!r} and {label!r} both name {name!r}"
+            refuse(place, "name a channel that no other label names", fault, "Use two names, or remove one label.")
         owners[name] = label
 
 
 def check_variables(models: Models, channels: Mapping[str, str]) -> None:
     """Refuse misspelt or doubled variables, outputs not among inputs; names of the study's channels are known too."""
-    mapped = {split_unit(said)[0] for said in channels.values()}
+    mapped = {split_unit(entry)[0] for entry in channels.values()}
     inputs = (*models.angles, *models.emg)
     for key in ("angles", "emg", "outputs"):
         names: tuple[str, ...] = getattr(models, key)
@@ -171,9 +171,9 @@ def check_variables(models: Models, channels: Mapping[str, str]) -> None:
             if names.count(name) > 1:
                 refuse(("models", key), "list each name once", f"{name!r} occurs twice", "Remove one of them.")
             if key == "outputs" and name not in inputs:
-                found = f"{name!r} is not{hint_nearest(name, inputs)}"
+                fault = f"{name!r} is not{hint_nearest(name, inputs)}"
                 remedy = "Add it to angles or emg, or remove it from outputs."
-                refuse(("models", key), "be among the inputs (angles and emg)", found, remedy)
+                refuse(("models", key), "be among the inputs (angles and emg)", fault, remedy)
             if name not in mapped:
                 _check_spelling(("models", key, i), name)
     both = sorted(set(models.angles) & set(models.emg))

@@ -55,10 +55,10 @@ def read_table(path: Path | str, channels: Mapping[str, str] | None = None) -> T
         try:
             frame = pq.read_table(io.BytesIO(raw.content)).to_pandas(ignore_metadata=True)
         except (pa.ArrowException, OSError, ValueError, TypeError, KeyError) as error:
-            said = str(error).splitlines()[0][:120] if str(error) else type(error).__name__
+            reason = str(error).splitlines()[0][:120] if str(error) else type(error).__name__
             raise ReadError(
                 f"{raw.name} must be a Parquet table",
-                f"it cannot be read as one: {said}",
+                f"it cannot be read as one: {reason}",
                 "Write it again, or correct its ending.",
             ) from error
         labels, values = _of_frame(frame, raw.name, channels)
@@ -204,10 +204,10 @@ def _check_labels(labels: Sequence[str], where: str) -> None:
         raise ReadError(f"{where}: a table must have channels", "time is its only column", "Export the channels.")
 
 
-def _no_time(file: str, found: str) -> ReadError:
+def _no_time(file: str, fault: str) -> ReadError:
     return ReadError(
         f"{file} must have a column 'time [s]' (or time, time_s, time [ms])",
-        found,
+        fault,
         'Rename the column, or map it in the study\'s [channels]: "Frame time" = "time [s]".',
     )
 
@@ -264,14 +264,14 @@ def read_events(lines: Sequence[str], file: str) -> tuple[Event, ...]:
             labels = [re.sub(r"\s+", " ", cell).strip().lower() for cell in header]
             rows = enumerate(csv.reader(lines[top + 1 :], delimiter=separator), top + 2)
             kinds = [event_kind(label, "") for label in labels]
-            named, aside = (next((i for i, one in enumerate(labels) if one in words), -1) for words in (_KIND, _SIDE))
+            named, aside = (next((i for i, text in enumerate(labels) if text in words), -1) for words in (_KIND, _SIDE))
             timed = next((i for i, label in enumerate(labels) if _TIME.fullmatch(label)), -1)
             cells: list[tuple[int, str, str, str]] = []  # line, kind, side and time of each event
             if all(kind in STEPS for kind, _ in kinds):
                 cells = [(n, *kind, cell) for n, row in rows for kind, cell in zip(kinds, row, strict=False)]
             elif min(named, timed) >= 0:
-                whole = ((n, row) for n, row in rows if len(row) >= len(labels))
-                cells = [(n, *event_kind(row[named], row[aside] if aside >= 0 else ""), row[timed]) for n, row in whole]
+                full = ((n, row) for n, row in rows if len(row) >= len(labels))
+                cells = [(n, *event_kind(row[named], row[aside] if aside >= 0 else ""), row[timed]) for n, row in full]
             if named >= 0 > timed and any(label.startswith("frame") for label in labels):
                 needed = f"{file}: events must have a column of times, such as 'time [s]'"
                 remedy = "Write times [s]: the frame minus the file's first frame, divided by the frame rate."

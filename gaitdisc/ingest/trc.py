@@ -72,8 +72,8 @@ def read_trc(path: Path | str, channels: Mapping[str, str] | None = None) -> Tri
     findings += find_equal_labels(plain, raw.name)
     unlike = make_unique(plain, "marker")
     pairs = zip(header.labels, unlike, strict=True)
-    said = [map_label(label, channels) or map_label(short, channels) for label, short in pairs]
-    names = [split_unit(name)[0] if name else short for name, short in zip(said, unlike, strict=True)]
+    mapped = [map_label(label, channels) or map_label(short, channels) for label, short in pairs]
+    names = [split_unit(name)[0] if name else short for name, short in zip(mapped, unlike, strict=True)]
     if plain != list(header.labels):
         findings.append(Finding("note", "identifier", raw.name, "the part of the labels before ':' was removed", ""))
     columns = [Column(name, Channel(f"{name}.{axis}", "marker", "m"), header.unit) for name in names for axis in "xyz"]

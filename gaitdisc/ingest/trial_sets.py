@@ -41,20 +41,20 @@ def is_walk(study: Study, planned: PlannedTrial) -> bool:
 
 def trial_sets(study: Study, participant: Participant) -> tuple[TrialSet, ...]:
     """Walks of a participant by session and condition, in the study's order of both."""
-    found = []
+    sets = []
     for session in (None, *study.sessions):
         for word in study.conditions.words:
             trials = tuple(t for t in participant.trials_of(word) if t.session == session and is_walk(study, t))
             if trials:
-                found.append(TrialSet(session or "", word, trials))
-    return tuple(found)
+                sets.append(TrialSet(session or "", word, trials))
+    return tuple(sets)
 
 
 def calibration_trial(study: Study, participant: Participant, session: str, word: str) -> PlannedTrial | None:
     """Trial of the session in which a participant stands (static) or circles the legs (functional), or the only one."""
     trials = [trial for trial in participant.trials if trial.condition == word and is_calibration(study, trial)]
-    own = [trial for trial in trials if (trial.session or "") == session]
-    return own[0] if own else trials[0] if len(trials) == 1 else None
+    in_session = [trial for trial in trials if (trial.session or "") == session]
+    return in_session[0] if in_session else trials[0] if len(trials) == 1 else None
 
 
 def why_refused(study: Study, participant: Participant) -> str:
@@ -74,17 +74,17 @@ def why_refused(study: Study, participant: Participant) -> str:
             return f"{_one_walk_each(study, participant)} Correct the conditions in [[participants.trials]]."
     elif not trial_sets(study, participant):
         words = " or ".join(map(repr, study.conditions.words))
-        found = f"{participant.id} has none (trials of other conditions: {len(participant.trials)})"
-        return f"each person must have a trial of {words}; {found}. Correct the conditions in [[participants.trials]]."
+        fault = f"{participant.id} has none (trials of other conditions: {len(participant.trials)})"
+        return f"each person must have a trial of {words}; {fault}. Correct the conditions in [[participants.trials]]."
     return ""
 
 
-def same_recording(study: Study, one: PlannedTrial, other: PlannedTrial) -> bool:
+def same_recording(study: Study, trial: PlannedTrial, other: PlannedTrial) -> bool:
     """Whether two trials use one stretch of files that have the same bytes."""
-    (start, end), (later, last) = one.crop_s or ALWAYS, other.crop_s or ALWAYS
-    if one.part != other.part or max(start, later) >= min(end, last):
+    (start, end), (later, last) = trial.crop_s or ALWAYS, other.crop_s or ALWAYS
+    if trial.part != other.part or max(start, later) >= min(end, last):
         return False
-    for pair in itertools.product(one.files, other.files):
+    for pair in itertools.product(trial.files, other.files):
         first, second = map(study.path_of, pair)
         with suppress(OSError, GaitdiscError):  # reading says why
             if first.stat().st_size == second.stat().st_size and file_sha256(first) == file_sha256(second):
@@ -95,22 +95,22 @@ def same_recording(study: Study, one: PlannedTrial, other: PlannedTrial) -> bool
 def report_shared_recording(study: Study, participant: Participant) -> str:
     """Say that a recording of a participant is also one of another participant, session or condition; or empty."""
     people = [person for person in study.participants if not person.excluded]
-    used = [(one, t) for one in people for t in one.trials if t.condition != UNKNOWN and not t.leave_out]
-    for own, (other, trial) in itertools.product((t for one, t in used if one is participant), used):
-        alike = other is participant and own.condition == trial.condition  # counted once, or standing for two sessions
-        if alike and (own.session == trial.session or not is_walk(study, own)):
+    used = [(person, t) for person in people for t in person.trials if t.condition != UNKNOWN and not t.leave_out]
+    for planned, (other, trial) in itertools.product((t for person, t in used if person is participant), used):
+        alike = other is participant and planned.condition == trial.condition  # counted once, or for two sessions
+        if alike and (planned.session == trial.session or not is_walk(study, planned)):
             continue
-        if same_recording(study, own, trial):
-            names = f"{participant.trial_name(own)} and {other.trial_name(trial)}"
-            said = f"{names} are the same recording: their files have the same SHA-256. A recording must belong to one"
-            return f"{said} person, session and condition. Remove one of the two from [[participants.trials]]."
+        if same_recording(study, planned, trial):
+            names = f"{participant.trial_name(planned)} and {other.trial_name(trial)}"
+            reason = f"{names} are the same recording: their files have the same SHA-256. A recording must belong to "
+            return f"{reason}one person, session and condition. Remove one of the two from [[participants.trials]]."
     return ""
 
 
 def differing_body(study: Study, participant: Participant) -> str:
     """Say which measure differs between files of a session by more than one body does; the study's own go first."""
-    found: dict[tuple[str | None, str], dict[float, str]] = {}
-    for trial in (one for one in participant.trials if one.condition != UNKNOWN and not one.leave_out):
+    stated: dict[tuple[str | None, str], dict[float, str]] = {}
+    for trial in (t for t in participant.trials if t.condition != UNKNOWN and not t.leave_out):
         for file in trial.files:
             with suppress(OSError, GaitdiscError):  # reading says why
                 body = read_body_measures(study.path_of(file))
@@ -118,14 +118,14 @@ def differing_body(study: Study, participant: Participant) -> str:
                 measures |= {"body mass": None if participant.mass_kg else body.mass_kg}
                 measures |= {"stature": None if participant.height_m else body.height_m}
                 for name, value in ((name, value) for name, value in measures.items() if value):
-                    found.setdefault((trial.session, name), {})[value] = participant.trial_name(trial)
-    for (_, name), values in found.items():
+                    stated.setdefault((trial.session, name), {})[value] = participant.trial_name(trial)
+    for (_, name), values in stated.items():
         low, high = min(values), max(values)
         most, unit = (MOST_KG, "kg") if name == "body mass" else (MOST_M, "m")
         if high - low > most:
-            said = f"{name} is {low:.4g} {unit} in {values[low]} and {high:.4g} {unit} in {values[high]}; files of one "
-            said += f"person and session may differ by at most {most:g} {unit}"
-            return f"{said}. Give each person or session its own files, or correct the value."
+            reason = f"{name} is {low:.4g} {unit} in {values[low]} and {high:.4g} {unit} in {values[high]}; files of "
+            reason += f"one person and session may differ by at most {most:g} {unit}"
+            return f"{reason}. Give each person or session its own files, or correct the value."
     return ""
 
 
@@ -144,8 +144,8 @@ def not_compared(study: Study, participant: Participant) -> str:
 def _one_walk_each(study: Study, participant: Participant) -> str:
     both = study.conditions.both
     counts = {word: len(participant.trials_of(word)) for word in both}
-    found = ", ".join(f"{count or 'none'} of {word!r}" for word, count in counts.items())
+    counted = ", ".join(f"{count or 'none'} of {word!r}" for word, count in counts.items())
     others = sum(trial.condition not in both for trial in participant.trials)
     unused = f"; trials of other conditions: {others}" if others else ""
     needed = f"a comparison requires one trial of {both[0]!r} and one of {both[1]!r}"
-    return f"{needed}; {participant.id} has {found}{unused}."
+    return f"{needed}; {participant.id} has {counted}{unused}."

@@ -199,34 +199,34 @@ def permutation_clusters(
     check_level(alpha, "alpha")
     if paired:
         first, second = in_one_order(first, second)
-    one, other = _curves(first), _curves(second)
-    names = several(channels) or tuple(range(one.shape[2]))
-    if one.shape[1:] != other.shape[1:] or len(names) != one.shape[2] or (paired and len(one) != len(other)):
+    x, y = _curves(first), _curves(second)
+    names = several(channels) or tuple(range(x.shape[2]))
+    if x.shape[1:] != y.shape[1:] or len(names) != x.shape[2] or (paired and len(x) != len(y)):
         raise ShapeError(
             "two sets of curves must have the same points and channels"
             + (", and the same number of rows for pairs" if paired else ""),
-            f"the shapes (unit, phase, channel) are {one.shape} and {other.shape}, with {len(names)} names of channels",
+            f"the shapes (unit, phase, channel) are {x.shape} and {y.shape}, with {len(names)} names of channels",
             "Cut both into strides of 101 points with the same channels.",
         )
     plan = PermutationPlan(alpha, permutations, seed)
-    test = one_sample_test(other - one, plan) if paired else two_sample_test(one, other, plan)
-    rows = [(names[each.channel], each.first, each.last, each.sign, each.mass, each.p) for each in test.clusters]
+    test = one_sample_test(y - x, plan) if paired else two_sample_test(x, y, plan)
+    rows = [(names[c.channel], c.first, c.last, c.sign, c.mass, c.p) for c in test.clusters]
     table = pd.DataFrame(rows, columns=pd.Index(COLUMNS))
     table.attrs.update(threshold=test.threshold, permutations=test.permutations, exact=test.exact)
     return table
 
 
-def _curves(given: Any) -> NDArray[np.float64]:
-    if isinstance(given, pd.DataFrame):
-        check_numbers(given, "points of the stride")
-        if pd.api.types.infer_dtype(given.columns) in ("mixed", "mixed-integer"):  # 0, 1, ..., 100, participant
-            name = next(label for label in given.columns if isinstance(label, str))
+def _curves(data: Any) -> NDArray[np.float64]:
+    if isinstance(data, pd.DataFrame):
+        check_numbers(data, "points of the stride")
+        if pd.api.types.infer_dtype(data.columns) in ("mixed", "mixed-integer"):  # 0, 1, ..., 100, participant
+            name = next(label for label in data.columns if isinstance(label, str))
             raise ShapeError(
                 "every column must be a point of the stride",
                 f"column {name!r} is not a number",
                 f"Make it the index: table.set_index({name!r}).",
             )
-    values = real_array(given)
+    values = real_array(data)
     if values.ndim not in (2, 3) or (len(values) == POINTS != values.shape[1]):
         raise ShapeError(
             "a set of curves must have shape (unit, phase) or (unit, phase, channel), with one row per person or "

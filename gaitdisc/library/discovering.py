@@ -130,12 +130,12 @@ def _measure(data: object, simulation: Simulation) -> tuple[Measured, dict[Path,
     if isinstance(data, Path | str):
         return read_measured(data, simulation), {Path(data): "measured table"}
     several: Any = data if isinstance(data, list | tuple) else [data]
-    if several and all(isinstance(one, Recording) for one in several):
+    if several and all(isinstance(entry, Recording) for entry in several):
         return gather_recordings(several, simulation), {}
     import pandas as pd
 
-    if isinstance(data, list | tuple) and data and all(isinstance(one, pd.DataFrame) for one in data):
-        trials = [_times(one).assign(trial=number) for number, one in enumerate(data, 1)]
+    if isinstance(data, list | tuple) and data and all(isinstance(table, pd.DataFrame) for table in data):
+        trials = [_times(table).assign(trial=number) for number, table in enumerate(data, 1)]
         return gather_table(pd.concat(trials), simulation, "the table"), {}
     if isinstance(data, pd.DataFrame):
         return gather_table(_times(data), simulation, "the table"), {}

@@ -220,9 +220,9 @@ def _in_its_form(
 ) -> Any:
     if hasattr(signal, "to_frame"):  # a column of a DataFrame
         return _in_its_form(signal.to_frame("signal"), rate_hz, done, kind)["signal"].rename(signal.name)
-    whole = issubclass(type(signal), Recording | Trial)
-    if whole or hasattr(signal, "columns"):
-        timed = whole or has_times(signal)
+    is_recorded = issubclass(type(signal), Recording | Trial)
+    if is_recorded or hasattr(signal, "columns"):
+        timed = is_recorded or has_times(signal)
         timed = signal if timed else signal.set_axis(_times(len(signal), rate_hz)).rename_axis("time")
         recording = make_recording(timed, kind)  # of a trial it says which stream to give
         if rate_hz is not None and not abs(_times(2, rate_hz)[1] * recording.rate_hz - 1) < 1e-3:
@@ -232,7 +232,7 @@ def _in_its_form(
                 "Omit rate_hz, or correct the times (they are in seconds).",
             )
         made = done(recording)
-        if whole:
+        if is_recorded:
             return made
         filtered = signal.copy()
         filtered[[label for label in signal.columns if str(label) in made.names]] = made.values  # without the times

@@ -61,8 +61,8 @@ def angles(
     """
     trial = make_trial(walk)
     standing, measures = _standing(static)
-    found = move_body(trial.stream("markers"), standing.stream("markers"), marker_set, measures, forward, joints).angles
-    return replace(found, subject=trial.subject, condition=trial.condition)
+    motion = move_body(trial.stream("markers"), standing.stream("markers"), marker_set, measures, forward, joints)
+    return replace(motion.angles, subject=trial.subject, condition=trial.condition)
 
 
 def moments(

@@ -106,8 +106,8 @@ def cycles(recording: Recording | pd.DataFrame, strides: Strides, channel: str, 
     from matplotlib.collections import LineCollection
 
     _refuse_other(strides, "Strides", "gaitdisc.cycles")
-    one = make_recording(recording).selected([channel])
-    every = finite_rows(strides.normalised(one)[:, :, 0])
+    signal = make_recording(recording).selected([channel])
+    every = finite_rows(strides.normalised(signal)[:, :, 0])
     axes = axes_or_new(ax)
     if len(every):
         colour, mean = SIDES[find_side(channel)].colour, every.mean(axis=0)
@@ -118,7 +118,7 @@ def cycles(recording: Recording | pd.DataFrame, strides: Strides, channel: str, 
             sd = every.std(axis=0, ddof=1)
             axes.fill_between(PERCENT, mean - sd, mean + sd, color=colour, alpha=0.18, linewidth=0, zorder=1)
         axes.plot(PERCENT, mean, color=colour, linewidth=1.2, zorder=2)
-    _stride_axis(axes, channel, one.channels[0].unit)
+    _stride_axis(axes, channel, signal.channels[0].unit)
     return axes
 
 
@@ -273,9 +273,9 @@ def mismatch(found: Mismatch, channel: str, gap: bool = False, ax: Axes | None =
     draw(axes, numbers, found.regions_of(channel), SIDES[find_side(channel)].colour)
     key = mismatch_key(found, "gap" if gap else "curves")
     if not gap:  # one channel has one side
-        own = key[1 if find_side(channel) == "l" else 2]
-        own.set_label(found.first)
-        key = [key[0], own, key[-1]]
+        line = key[1 if find_side(channel) == "l" else 2]
+        line.set_label(found.first)
+        key = [key[0], line, key[-1]]
     axes.legend(handles=key, frameon=False)
     _stride_axis(axes, channel, str(numbers["unit"].iloc[0]))
     return axes
@@ -371,11 +371,11 @@ def __dir__() -> list[str]:
     return __all__
 
 
-def _refuse_other(given: object, kind: str, made_by: str) -> None:
-    if type(given).__name__ != kind:
+def _refuse_other(result: object, kind: str, made_by: str) -> None:
+    if type(result).__name__ != kind:
         raise ShapeError(
             f"this plot must be given a {kind}, as {made_by} returns it",
-            f"found {type(given).__name__}",
+            f"found {type(result).__name__}",
             "Pass the result itself, or load it from its folder with gaitdisc.load.",
         )
 
@@ -388,7 +388,7 @@ def _stride_axis(axes: Axes, channel: str, unit: str) -> None:
 
 
 def _check_known(name: str, among: object) -> str:
-    names = list(dict.fromkeys(str(one) for one in among))  # type: ignore[attr-defined]
+    names = list(dict.fromkeys(str(entry) for entry in among))  # type: ignore[attr-defined]
     if name not in names:
         raise ChannelError(
             f"channel {name!r} cannot be drawn",

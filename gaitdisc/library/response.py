@@ -75,7 +75,7 @@ def fit_response(
     >>> run = gd.fit_response("nominal.c3d", "exo.c3d", emg=["emg_sol_r"])  # doctest: +SKIP
     >>> run.to_frame()  # doctest: +SKIP
     """
-    trials = {word: replace(make_trial(one), condition=word) for word, one in ((WITHOUT, nominal), (WITH, exo))}
+    trials = {word: replace(make_trial(walk), condition=word) for word, walk in ((WITHOUT, nominal), (WITH, exo))}
     if not 0 < held_out_share < 1:
         raise SamplingError("held_out_share must be between 0 and 1", f"it is {held_out_share!r}", "Use 0.1 for 10 %.")
     inputs = _angles(trials, several(outputs), None if angles is None else several(angles))
@@ -94,10 +94,10 @@ def fit_response(
     return ResponseRun(f"Response of {person}", WITHOUT, WITH, (), origin, units)
 
 
-def _angles(trials: Mapping[str, Trial], outputs: Sequence[str], given: Sequence[str] | None) -> tuple[str, ...]:
+def _angles(trials: Mapping[str, Trial], outputs: Sequence[str], stated: Sequence[str] | None) -> tuple[str, ...]:
     """Angles among the inputs: those given, or the usual ones that both walks have."""
     both = [set(trial.stream("kinematics").names) for trial in trials.values()]
-    chosen = tuple(given) if given is not None else tuple(name for name in ANGLES if name in both[0] & both[1])
+    chosen = tuple(stated) if stated is not None else tuple(name for name in ANGLES if name in both[0] & both[1])
     absent = [name for name in outputs if name not in chosen]
     if absent:
         raise ChannelError(

@@ -155,20 +155,20 @@ def _run_by(
 
 def _driven(simulation: Simulation, time: Values, inputs: Any) -> Values:
     """Inputs (time, input)."""
-    names = [each.name for each in simulation.inputs]
+    names = [signal.name for signal in simulation.inputs]
     if not names:
         return np.empty((len(time), 0))
-    given: Any = {} if inputs is None else inputs
-    if not isinstance(given, Recording | Mapping) and not hasattr(given, "columns"):
+    source: Any = {} if inputs is None else inputs
+    if not isinstance(source, Recording | Mapping) and not hasattr(source, "columns"):
         raise SimulationError(
             f"{simulation.title or 'the simulation'!r} must have the inputs {', '.join(names)}",
-            f"the inputs were given as {type(given).__name__} without names",
+            f"the inputs were given as {type(source).__name__} without names",
             f"Name the inputs: inputs={{{names[0]!r}: values}}, or use a DataFrame or Recording with these columns.",
         )
-    table: Any = given
+    table: Any = source
     if hasattr(table, "columns") and has_times(table):  # it is read at the simulation's times
-        given = make_recording(table.select_dtypes("number"))
-    known = given.names if isinstance(given, Recording) else [str(name) for name in given]
+        source = make_recording(table.select_dtypes("number"))
+    known = source.names if isinstance(source, Recording) else [str(name) for name in source]
     columns = []
     for name in names:
         if name not in known:
@@ -177,10 +177,10 @@ def _driven(simulation: Simulation, time: Values, inputs: Any) -> Values:
                 f"{name!r} is not among the given inputs ({', '.join(known) or 'none'})",
                 f"Add this input: inputs={{{name!r}: values}}.",
             )
-        if isinstance(given, Recording):
-            values = interpolate(given.time, given.selected([name]).values, time)[:, 0]
+        if isinstance(source, Recording):
+            values = interpolate(source.time, source.selected([name]).values, time)[:, 0]
         else:
-            values = np.asarray(given[name](time) if callable(given[name]) else given[name], float)
+            values = np.asarray(source[name](time) if callable(source[name]) else source[name], float)
             values = np.full(len(time), values) if values.ndim == 0 else values
         if values.shape != time.shape:
             raise ShapeError(

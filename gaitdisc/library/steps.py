@@ -121,18 +121,18 @@ def cycles(
     >>> strides.normalised(walk.stream("kinematics")).shape[1]
     101
     """
-    found = (
+    by_side = (
         choose_contacts(make_trial(trial), detector).contacts
         if contacts is None
         else _pick_given(contacts, side, trial)
     )
-    if side not in found:
+    if side not in by_side:
         raise StrideError(
             f"for cycles of side {side!r}, there must be initial contacts of this side",
-            f"contacts were found for side {', '.join(sorted(found)) or 'none'}",
+            f"contacts were found for side {', '.join(sorted(by_side)) or 'none'}",
             "Use the other side ('r' or 'l'), or another detector.",
         )
-    return cut_strides(found[side], None if recording is None else make_recording(recording), min_s, max_s)
+    return cut_strides(by_side[side], None if recording is None else make_recording(recording), min_s, max_s)
 
 
 def _pick_given(contacts: Any, side: str, trial: Walk) -> dict[str, Contacts]:
@@ -144,7 +144,7 @@ def _pick_given(contacts: Any, side: str, trial: Walk) -> dict[str, Contacts]:
     time = np.asarray(contacts, float)
     plain = hasattr(trial, "columns")  # a table in which nothing has to be found may have any names
     walk = Trial("the table", {"signals": make_recording(trial)}) if plain else make_trial(trial)  # type: ignore[arg-type]
-    latest = max((one.time[-1] for one in walk.streams.values()), default=np.inf)
+    latest = max((recording.time[-1] for recording in walk.streams.values()), default=np.inf)
     if time.size and np.nanmax(time) > latest:
         raise StrideError(
             "initial contacts must be times on the walk's clock [s]",

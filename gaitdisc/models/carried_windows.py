@@ -68,8 +68,8 @@ class CarriedWindows:
             if self._cell == "gru":
                 read = gru_step(read, states, of_input, of_state)
             else:
-                read, kept = lstm_step(read, states, cells, of_input, of_state)
-                cells[1:] = kept[:-1]
+                read, new_cells = lstm_step(read, states, cells, of_input, of_state)
+                cells[1:] = new_cells[:-1]
             states[1:] = read[:-1]
         if self._silent[self._phase] >= len(self._mean):
             read = np.full_like(read, np.nan)  # no reading at all: a state that nothing shows
@@ -117,7 +117,7 @@ def lstm_step(read: Values, states: Values, cells: Values, of_input: Linear, of_
     """
     nodes = states.shape[1]
     sums = np.dot(read, of_input.weights) + np.dot(states, of_state.weights)
-    after, kept = np.empty_like(states), np.empty_like(cells)
+    after, new_cells = np.empty_like(states), np.empty_like(cells)
     for window in range(len(states)):
         for k in range(nodes):
             gates = sums[window]
@@ -126,9 +126,9 @@ def lstm_step(read: Values, states: Values, cells: Values, of_input: Linear, of_
             keep = 1 / (1 + np.exp(-(gates[i] + of_input.offsets[i] + of_state.offsets[i])))
             candidate = np.tanh(gates[j] + of_input.offsets[j] + of_state.offsets[j])
             give = 1 / (1 + np.exp(-(gates[o] + of_input.offsets[o] + of_state.offsets[o])))
-            kept[window, k] = keep * cells[window, k] + take * candidate
-            after[window, k] = give * np.tanh(kept[window, k])
-    return after, kept
+            new_cells[window, k] = keep * cells[window, k] + take * candidate
+            after[window, k] = give * np.tanh(new_cells[window, k])
+    return after, new_cells
 
 
 @compiled(error_model="numpy")

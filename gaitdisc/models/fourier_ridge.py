@@ -36,9 +36,9 @@ class FourierRidge:
     def __call__(self, x: Values) -> Values:
         """Outputs (sample, output) for inputs (sample, input); NaN where an input is NaN."""
         scaled = self.x_scale.scaled(np.asarray(x, float))
-        parts = [scaled[row : row + ROWS_AT_ONCE] for row in range(0, max(len(scaled), 1), ROWS_AT_ONCE)]
-        found = [_columns(part, self.frequencies, self.phases) @ self.weights + self.offset for part in parts]
-        return self.y_scale.unscaled(np.vstack(found))
+        blocks = [scaled[row : row + ROWS_AT_ONCE] for row in range(0, max(len(scaled), 1), ROWS_AT_ONCE)]
+        outputs = [_columns(block, self.frequencies, self.phases) @ self.weights + self.offset for block in blocks]
+        return self.y_scale.unscaled(np.vstack(outputs))
 
 
 def fit_fourier_ridge(training: Samples, check: Samples, features: int = 0, seed: int = 0) -> FourierRidge:

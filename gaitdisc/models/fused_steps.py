@@ -165,15 +165,15 @@ def gradient(weights: Singles, into: Singles, x: Singles, y: Singles, hidden: Si
 def mean_squared_error(weights: Singles, x: Singles, y: Singles, nodes: int) -> float:
     """Mean squared error over samples and outputs."""
     hidden = np.empty((3, BLOCK, nodes), np.float32)
-    found = np.empty((BLOCK, y.shape[1]), np.float32)
+    outputs = np.empty((BLOCK, y.shape[1]), np.float32)
     offset = layers(weights, x.shape[1], nodes, y.shape[1])[5]
     total = 0.0
     for start in range(0, len(x), BLOCK):
-        wanted = y[start : start + BLOCK]
-        _forward(weights, x[start : start + BLOCK], hidden, found[: len(wanted)])
-        for row in range(wanted.shape[0]):
-            for output in range(wanted.shape[1]):
-                d = found[row, output] + offset[output] - wanted[row, output]
+        targets = y[start : start + BLOCK]
+        _forward(weights, x[start : start + BLOCK], hidden, outputs[: len(targets)])
+        for row in range(targets.shape[0]):
+            for output in range(targets.shape[1]):
+                d = outputs[row, output] + offset[output] - targets[row, output]
                 total += d * d  # d * d is float32 as in torch: what overflows there is infinite here
     return total / y.size
 
@@ -276,9 +276,9 @@ class FusedSteps:
         """Give the network weights that it had before, from `weights`."""
         self._weights[:] = weights
         parameters = matrices_then_offsets(self._network)
-        parts = torch.from_numpy(weights).split([p.numel() for p in parameters])
+        pieces = torch.from_numpy(weights).split([p.numel() for p in parameters])
         with torch.no_grad():
-            for parameter, values in zip(parameters, parts, strict=True):
+            for parameter, values in zip(parameters, pieces, strict=True):
                 parameter.copy_(values.reshape(parameter.shape))
 
 

@@ -66,11 +66,11 @@ def train(
     before.trainable(LEAST_BEFORE_INNER, settings.missing_inputs)
     device = choose_device(settings.device)
     x_scale, y_scale = fit_scale(before.x), fit_scale(before.y)
-    part, checked, whole = (_tensors(s, x_scale, y_scale, device) for s in (before, inner, samples))
+    part, checked, all_data = (_tensors(s, x_scale, y_scale, device) for s in (before, inner, samples))
     with pin_threads(settings.threads), torch.random.fork_rng():
         best = _best_candidate(build, part, checked, settings, progress)
         if settings.solved:
-            solve_readout(best.network, whole, best.penalty)
+            solve_readout(best.network, all_data, best.penalty)
     progress(1.0)
     network = TrainedNetwork(samples.inputs, samples.outputs, x_scale, y_scale, best.network.cpu())
     return Training(network, best.decay, best.losses, len(samples), len(inner))
@@ -80,10 +80,10 @@ def resolve(model: TrainedNetwork, samples: Samples) -> TrainedNetwork:
     """Return a network with the same hidden layers and its last layer solved for other samples."""
     before, inner = samples.last_block(INNER_SHARE, SEAM_S)
     scales = model.x_scale, model.y_scale
-    part, checked, whole = (_tensors(each, *scales, torch.device("cpu")) for each in (before, inner, samples))
+    part, checked, all_data = (_tensors(s, *scales, torch.device("cpu")) for s in (before, inner, samples))
     network = copy.deepcopy(model.network)
     with pin_threads(1):
-        solve_readout(network, whole, choose_penalty(network, part, checked)[0])
+        solve_readout(network, all_data, choose_penalty(network, part, checked)[0])
     return replace(model, network=network)
 
 
@@ -122,21 +122,21 @@ def _best_candidate(
     return best
 
 
-def choose_device(wanted: str) -> torch.device:
+def choose_device(device: str) -> torch.device:
     """Device to train on.
 
-    wanted: `cpu`, `cuda`, or `auto`: the GPU where there is one
+    device: `cpu`, `cuda`, or `auto`: the GPU where there is one
 
     >>> choose_device("cpu")
     device(type='cpu')
     """
     there = torch.cuda.is_available()
-    if wanted == "auto":
+    if device == "auto":
         return torch.device("cuda" if there else "cpu")
-    if wanted == "cpu" or (wanted == "cuda" and there):
-        return torch.device(wanted)
+    if device == "cpu" or (device == "cuda" and there):
+        return torch.device(device)
     raise TrainingError(
-        f"torch must find the requested device, {wanted!r}",
+        f"torch must find the requested device, {device!r}",
         "it finds " + ("a GPU and the CPU" if there else "no GPU, only the CPU"),
         "Use device 'auto', which uses a GPU if there is one.",
     )
@@ -144,7 +144,7 @@ def choose_device(wanted: str) -> torch.device:
 
 def _tensors(samples: Samples, x_scale: Scale, y_scale: Scale, device: torch.device) -> ScaledSamples:
     x, y = x_scale.scaled(samples.x), y_scale.scaled(samples.y)
-    return ScaledSamples(*(torch.from_numpy(one.astype(np.float32)).to(device) for one in (x, y)))
+    return ScaledSamples(*(torch.from_numpy(array.astype(np.float32)).to(device) for array in (x, y)))
 
 
 PENALTIES = (1e-5, 1e-4, 1e-3, 1e-2, 1e-1)

@@ -63,9 +63,9 @@ class TrainingSettings:
             _refuse_unless(value in among, f"{name} {' or '.join(map(repr, among))}", f"it is {value!r}")
 
 
-def _refuse_unless(holds: bool, needed: str, found: str) -> None:
+def _refuse_unless(holds: bool, needed: str, fault: str) -> None:
     if not holds:
-        raise TrainingError(f"the training settings must have {needed}", found, "Correct the training settings.")
+        raise TrainingError(f"the training settings must have {needed}", fault, "Correct the training settings.")
 
 
 LEAST_STEPS = 1000  # short recordings have few batches an epoch: they get more epochs

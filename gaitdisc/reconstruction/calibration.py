@@ -50,8 +50,8 @@ class FirstStrides:
 
 def first_strides(trials: Sequence[Samples], count: int, reach_s: float) -> FirstStrides:
     """Part a person's first strides from the rest, with a gap as long as a window (`reach_s`) and 0.3 s."""
-    kept = [each for each in trials if len(each)]
-    windows, stride = stacked(kept), stride_numbers(kept)
+    filled = [t for t in trials if len(t)]
+    windows, stride = stacked(filled), stride_numbers(filled)
     first, rest = (stride >= 0) & (stride < count), stride >= count
     if not first.any() or not rest.any():
         raise StrideError(
@@ -60,7 +60,7 @@ def first_strides(trials: Sequence[Samples], count: int, reach_s: float) -> Firs
             "Calibrate on fewer strides, or record longer.",
         )
     last = int(np.flatnonzero(first)[-1])
-    trial = np.repeat(np.arange(len(kept)), [len(each) for each in kept])
+    trial = np.repeat(np.arange(len(filled)), [len(t) for t in filled])
     near = (trial == trial[last]) & (windows.time < windows.time[last] + reach_s + SEAM_S - 1e-9)
     return FirstStrides(windows.rows(first), rest & ~near)
 
@@ -82,9 +82,9 @@ def rehearse(done: WindowModel, trials: Sequence[Samples], count: int) -> tuple[
     returns: the penalty, and the errors on that person's further strides (window, state) [each state's unit]
     """
     parted = first_strides(trials, count, done.sensing.reach_s)
-    rest = stacked([each for each in trials if len(each)]).rows(parted.rest)
-    missed = [each(rest) - rest.y for each in _calibrated(done, parted.strides, PENALTIES)]
-    best = int(np.argmin([np.mean((each / done.model.y_scale.sd) ** 2) for each in missed]))
+    rest = stacked([trial for trial in trials if len(trial)]).rows(parted.rest)
+    missed = [model(rest) - rest.y for model in _calibrated(done, parted.strides, PENALTIES)]
+    best = int(np.argmin([np.mean((error / done.model.y_scale.sd) ** 2) for error in missed]))
     return PENALTIES[best], missed[best]
 
 
@@ -97,8 +97,8 @@ def _calibrated(done: WindowModel, strides: Samples, penalties: Sequence[float])
     values, vectors = np.linalg.eigh(centred.T @ centred / len(centred))
     turned = vectors.T @ (centred.T @ (missed - offset) / len(centred))
     spread = np.maximum(values, 0.0)[:, None]
-    found = [Corrected(done.model, mean, vectors @ (turned / (spread + each)), offset) for each in penalties]
-    return [replace(done, model=model, n_fitted=len(strides)) for model in found]
+    models = [Corrected(done.model, mean, vectors @ (turned / (spread + penalty)), offset) for penalty in penalties]
+    return [replace(done, model=model, n_fitted=len(strides)) for model in models]
 
 
 def _columns(model: ScaledModel, x: Values, states: Values) -> Values:

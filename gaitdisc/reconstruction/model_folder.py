@@ -69,11 +69,11 @@ class SensingModel:
                 "Resample the recording to this rate.",
             )
         for channel in self.channels[: len(what.sensors)]:
-            found = recording.channels[recording.index(channel.name)]
-            if found.unit != channel.unit:
+            recorded = recording.channels[recording.index(channel.name)]
+            if recorded.unit != channel.unit:
                 raise UnitError(
                     f"{channel.name} must be in {channel.unit}, the unit of the model",
-                    f"{recording.source.file or 'the recording'} has it in {found.unit}",
+                    f"{recording.source.file or 'the recording'} has it in {recorded.unit}",
                     "State the unit in the study's [channels].",
                 )
         read = fill_readings(recording.selected(what.sensors), what.sensors, missing, self.reconstructor.sensor_means)
@@ -128,10 +128,10 @@ def load_model(folder: Path) -> SensingModel:
         if half.shape != (len(what.states),):
             raise ValueError(f"it has {half.size} interval half-widths for {len(what.states)} states")
     except (ValueError, KeyError, TypeError, AttributeError) as error:
-        found = error.found if isinstance(error, DamagedError) else str(error)
+        fault = error.found if isinstance(error, DamagedError) else str(error)
         raise SchemaError(
             f"{folder.name}/{NAME} must be a model saved by gaitdisc",
-            f"it lacks {error}" if isinstance(error, KeyError) else found,
+            f"it lacks {error}" if isinstance(error, KeyError) else fault,
             "Run `gaitdisc reconstruct` again.",
         ) from error
     build = None if kind in WITHOUT_NETWORK else make_network(kind, len(what.sensors))

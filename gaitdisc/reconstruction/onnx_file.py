@@ -53,16 +53,16 @@ def write_onnx(model: SensingModel, path: Path) -> None:
             h = graph.add("Concat", h, scaled, axis=1)
         states = graph.unscaled(graph.linear(h, fitted.weights, fitted.offset), fitted.y_scale)
     elif isinstance(fitted, Ensemble):
-        each = [_network(graph, member, x, model) for member in fitted.members]
-        states = graph.add("Mean", *each)
+        outputs = [_network(graph, member, x, model) for member in fitted.members]
+        states = graph.add("Mean", *outputs)
     else:
         states = _network(graph, fitted, x, model)  # type: ignore[arg-type]
     graph.add("Cast", states, to=graph.tensor_type(np.float32), output=STATES)
-    whole = graph.whole(len(fitted.inputs), len(fitted.outputs))
-    helper.set_model_props(whole, _metadata(model))
-    checker.check_model(whole, full_check=True)
+    onnx_model = graph.whole(len(fitted.inputs), len(fitted.outputs))
+    helper.set_model_props(onnx_model, _metadata(model))
+    checker.check_model(onnx_model, full_check=True)
     with whole_file(path) as part:
-        part.write_bytes(whole.SerializeToString())
+        part.write_bytes(onnx_model.SerializeToString())
 
 
 def _metadata(model: SensingModel) -> dict[str, str]:
@@ -130,13 +130,13 @@ class _Graph:
         return self.add("Add", self.add("MatMul", x, self.constant(weights)), self.constant(offset))
 
 
-def _network(graph: _Graph, model: TrainedNetwork, x: str, whole: SensingModel) -> str:
+def _network(graph: _Graph, model: TrainedNetwork, x: str, sensing_model: SensingModel) -> str:
     from gaitdisc.models.shred import Shred
 
     weights, h = model.weights(), graph.scaled(x, model.x_scale)
     prefix = ""
     if isinstance(model.network, Shred):
-        h = _recurrent(graph, model.network, weights, h, len(whole.reconstructor.sensing.sensors))
+        h = _recurrent(graph, model.network, weights, h, len(sensing_model.reconstructor.sensing.sensors))
         prefix = "decoder."
     for name in ("first", "second"):
         h = graph.add("Relu", graph.linear(h, weights[f"{prefix}{name}.weight"].T, weights[f"{prefix}{name}.bias"]))
@@ -156,12 +156,12 @@ def _recurrent(graph: _Graph, shred: Any, weights: dict[str, NDArray[Any]], x: s
     extra: dict[str, Any] = {"linear_before_reset": 1} if shred.cell == "gru" else {}
     last = h
     for layer in range(shred.recurrent.num_layers):
-        parts = [
+        arrays = [
             np.concatenate([np.split(weights[f"recurrent.{word}_l{layer}"], len(order))[k] for k in order])
             for word in ("weight_ih", "weight_hh", "bias_ih", "bias_hh")
         ]
-        given = [graph.constant(part[None]) for part in (parts[0], parts[1], np.concatenate(parts[2:]))]
+        constants = [graph.constant(array[None]) for array in (arrays[0], arrays[1], np.concatenate(arrays[2:]))]
         nodes = shred.recurrent.hidden_size
-        last = graph.add(operator, h, *given, outputs=2, hidden_size=nodes, **extra)
+        last = graph.add(operator, h, *constants, outputs=2, hidden_size=nodes, **extra)
         h = graph.add("Squeeze", last.replace("_1", "_0"), graph.constant([1]))
     return graph.add("Squeeze", last, graph.constant([0]))

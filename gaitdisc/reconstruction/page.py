@@ -127,14 +127,14 @@ def _count_wins(done: Reconstruction, best: str, measure: str) -> list[str]:
     """In how many participants the recommended model errs least, and who else does."""
     wide: Any = done.summary.pivot_table(index="participant", columns="model", values=measure)
     least = wide[[model for model in wide.columns if not model.endswith(CALIBRATED.format(""))]].idxmin(axis=1)
-    people, own = len(least), int((least == best).sum())
+    people, wins = len(least), int((least == best).sum())
     if people < 2:
         return []
-    if own == people:
+    if wins == people:
         return [f"The recommended model has the smallest error in all {people} participants."]
     counts = least[least != best].value_counts(sort=False).sort_values(ascending=False, kind="stable")
     others = [f"{model} in {count}" for model, count in counts.items()]
-    return [f"The recommended model has the smallest error in {own} of {people} participants, {listing(others)}."]
+    return [f"The recommended model has the smallest error in {wins} of {people} participants, {listing(others)}."]
 
 
 def _after_calibration(done: Reconstruction, best: str) -> list[str]:
@@ -251,9 +251,9 @@ def draw_state(axes: Axes, numbers: pd.DataFrame) -> None:
         axes.plot(rows["percent"], rows["reconstructed"], color=look.colour, linestyle=look.line, linewidth=1.1)
 
 
-def search_table(found: pd.DataFrame) -> Table:
+def search_table(search: pd.DataFrame) -> Table:
     """Best set of every size, from a reconstruction's `search`."""
-    chosen = enough_sensors(found)
+    chosen = enough_sensors(search)
     rows = tuple(
         (
             f"{row['sensors']}{' *' if k == chosen else ''}",
@@ -263,7 +263,7 @@ def search_table(found: pd.DataFrame) -> Table:
             str(row["fits"]),
             f"{row['seconds']:.1f}",
         )
-        for k, row in found.reset_index(drop=True).iterrows()
+        for k, row in search.reset_index(drop=True).iterrows()
     )
     caption = (
         "Best set of sensors of every size for all participants together, by ridge regression on the sensors' history. "
@@ -273,24 +273,24 @@ def search_table(found: pd.DataFrame) -> Table:
         "otherwise the largest."
     )
     columns = ("sensors", "which", "all angles [deg]", "not measured [deg]", "regressions", "processor time [s]")
-    return Table("search", caption, columns, rows, found)
+    return Table("search", caption, columns, rows, search)
 
 
-def search_sentences(found: pd.DataFrame) -> list[str]:
+def search_sentences(search: pd.DataFrame) -> list[str]:
     """How many sensors are enough by a reconstruction's `search`, and what one more would bring."""
-    chosen = enough_sensors(found)
-    row = found.iloc[chosen]
+    chosen = enough_sensors(search)
+    row = search.iloc[chosen]
     names = listing([spoken(name) for name in str(row["names"]).split(", ")])
     size = int(row["sensors"])
-    if chosen + 1 < len(found):
-        less = 1 - (float(found["loss"].iloc[chosen + 1]) / float(row["loss"])) ** 0.5
-        said = f"{counted(size, 'sensor').capitalize()} {'is' if size == 1 else 'are'} enough: {names}. One more "
-        said += f"sensor reduces the error of all angles by {100 * less:.0f} %"
+    if chosen + 1 < len(search):
+        less = 1 - (float(search["loss"].iloc[chosen + 1]) / float(row["loss"])) ** 0.5
+        words = f"{counted(size, 'sensor').capitalize()} {'is' if size == 1 else 'are'} enough: {names}. One more "
+        words += f"sensor reduces the error of all angles by {100 * less:.0f} %"
     else:
-        said = f"The best set of {counted(size, 'sensor')} is {names}; it may not be enough, because no larger set "
-        said += "was tried"
-    cost = f"{counted(int(found['fits'].sum()), 'regression')}, {found['seconds'].sum():.1f} s"
-    return [f"{said} (search: {cost})."]
+        words = f"The best set of {counted(size, 'sensor')} is {names}; it may not be enough, because no larger set "
+        words += "was tried"
+    cost = f"{counted(int(search['fits'].sum()), 'regression')}, {search['seconds'].sum():.1f} s"
+    return [f"{words} (search: {cost})."]
 
 
 def write_reconstruction_report(done: Reconstruction, folder: Path) -> Path:

@@ -52,8 +52,8 @@ def persistence(trials: Sequence[Samples], ahead_s: float) -> Values:
     for trial in trials:
         before = trial.time - ahead_s
         row = np.clip(np.searchsorted(trial.time, before - 1e-6), 0, max(len(trial) - 1, 0))
-        found = np.abs(trial.time[row] - before) < 1e-6
-        forecast.append(np.where(found[:, None], trial.y[row], np.nan))
+        exists = np.abs(trial.time[row] - before) < 1e-6
+        forecast.append(np.where(exists[:, None], trial.y[row], np.nan))
     return np.concatenate(forecast)
 
 
@@ -69,7 +69,7 @@ class PhaseAverage:
 
         Phase is the time since the last known contact by the mean duration of a stride: percent stride is known later.
         """
-        found = []
+        forecasts = []
         for trial in trials:
             contacts = contact_times(trial)
             last = np.searchsorted(contacts, trial.time - ahead_s + 1e-9) - 1
@@ -78,8 +78,8 @@ class PhaseAverage:
             known = np.isfinite(phase)
             values = np.full((len(trial), self.curve.shape[1]), np.nan)
             values[known] = self.curve[(phase[known] * POINTS).astype(int) % POINTS]
-            found.append(values)
-        return np.concatenate(found)
+            forecasts.append(values)
+        return np.concatenate(forecasts)
 
 
 def phase_average(trials: Sequence[Samples]) -> PhaseAverage:
@@ -151,7 +151,7 @@ class PersonReconstruction:
 
     def model(self, kind: str) -> SensingModel:
         """Return the model of one kind."""
-        return next(each for each in self.fitted if each.reconstructor.kind == kind)
+        return next(model for model in self.fitted if model.reconstructor.kind == kind)
 
 
 def reconstruct(
@@ -159,33 +159,33 @@ def reconstruct(
 ) -> PersonReconstruction:
     """Fit and test every kind of model, a forecast beside its two baselines; channels: sensors, then states."""
     fits = fits or Fits()
-    test, own = parts.tested(), channels[len(what.sensors) :]
+    test, state_channels = parts.tested(), channels[len(what.sensors) :]
     stride = stride_numbers(parts.test)
     fitted, predictions, test_rows = _fitted(parts, what, fits)
     predictions += _baselines(parts, what) if what.lags.ahead else []
-    test_rows &= np.isfinite(np.hstack([one.states for one in predictions])).all(axis=1)
+    test_rows &= np.isfinite(np.hstack([prediction.states for prediction in predictions])).all(axis=1)
     spread, summary = parts.fitted().y.std(axis=0), []
     errors: dict[tuple[str, str], pd.DataFrame] = {}
     curves: dict[tuple[str, str], pd.DataFrame] = {}
-    for one in predictions:
-        tested = Reconstructed(test.rows(test_rows), stride[test_rows], one.states[test_rows])
-        inside = coverage(tested.states - tested.windows.y, one.half_widths)
+    for prediction in predictions:
+        tested = Reconstructed(test.rows(test_rows), stride[test_rows], prediction.states[test_rows])
+        inside = coverage(tested.states - tested.windows.y, prediction.half_widths)
         summary.append(
             {
                 "participant": participant,
-                "model": one.model,
-                "n_fitted": one.n_fitted,
+                "model": prediction.model,
+                "n_fitted": prediction.n_fitted,
                 **_summary(tested, channels, what),
-                "check_loss": float(np.mean((one.missed / spread) ** 2)),
+                "check_loss": float(np.mean((prediction.missed / spread) ** 2)),
                 "coverage": float(np.mean(inside)),
-                "seconds": one.seconds,
+                "seconds": prediction.seconds,
             }
         )
-        errors[participant, one.model] = state_errors(tested, own, fits.seed)
-        curves[participant, one.model] = phase_curves(tested, what.states)
+        errors[participant, prediction.model] = state_errors(tested, state_channels, fits.seed)
+        curves[participant, prediction.model] = phase_curves(tested, what.states)
     errors_table, curves_table = (
-        pd.concat(each, names=["participant", "model"]).reset_index(level=[0, 1]).reset_index(drop=True)
-        for each in (errors, curves)
+        pd.concat(tables, names=["participant", "model"]).reset_index(level=[0, 1]).reset_index(drop=True)
+        for tables in (errors, curves)
     )
     models = tuple(SensingModel(done, tuple(channels), half) for done, half in fitted)
     return PersonReconstruction(participant, errors_table, pd.DataFrame(summary), curves_table, models)
@@ -229,11 +229,11 @@ def _baselines(parts: Parts, what: Sensing) -> list[_Prediction]:
     """What a forecast has to beat; errors of fitted and checked part, the latter may be shorter than the time ahead."""
     ahead_s = what.lags.ahead / what.rate_hz
     known = [trial for trial in (*parts.training, *parts.check) if len(trial)]
-    found = []
+    predictions = []
     for name, forecast in ((PERSISTENCE, persistence), (PHASE_AVERAGE, phase_average(parts.training).forecast)):
         missed = finite_rows(forecast(known, ahead_s) - stacked(known).y)
-        found.append(_Prediction(name, forecast(parts.test, ahead_s), missed, half_widths(missed)))
-    return found
+        predictions.append(_Prediction(name, forecast(parts.test, ahead_s), missed, half_widths(missed)))
+    return predictions
 
 
 def _summary(tested: Reconstructed, channels: Sequence[Channel], what: Sensing) -> dict[str, float]:
@@ -285,14 +285,14 @@ def cross_widths(kind: str, what: Sensing, parts: Parts, missed: Values, seed: i
         return half_widths(cross_errors(kind, what, parts, seed))
     check = parts.checked()
     standard = fit_reconstructor(STANDARD, what, parts.fitted(), check, seed)
-    one = half_widths(standard(check) - check.y)
-    return half_widths(missed) * half_widths(cross_errors(STANDARD, what, parts, seed)) / one
+    standard_widths = half_widths(standard(check) - check.y)
+    return half_widths(missed) * half_widths(cross_errors(STANDARD, what, parts, seed)) / standard_widths
 
 
 def group_people(trials: Sequence[Samples]) -> dict[str, list[Samples]]:
     """Trials of each person, by pseudonym."""
-    found: dict[str, list[Samples]] = {}
+    people: dict[str, list[Samples]] = {}
     for trial in trials:
         if len(trial):
-            found.setdefault(trial.subject, []).append(trial)
-    return found
+            people.setdefault(trial.subject, []).append(trial)
+    return people

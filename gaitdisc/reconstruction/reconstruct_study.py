@@ -84,7 +84,7 @@ def reconstruct_study(
     channels = walks.named((*what.sensors, *what.states))
     fits = Fits(settings.kinds, settings.seed, settings.device, CALIBRATION_STRIDES if settings.split == SUBJECT else 0)
     windows = {
-        person: [what.windows(walk.recording, walk.phi) for walk in found] for person, found in walks.people.items()
+        person: [what.windows(walk.recording, walk.phi) for walk in trials] for person, trials in walks.people.items()
     }
     done, refusals = [], list(walks.refusals)
     refused: GaitdiscError | None = None
@@ -145,7 +145,7 @@ def _result(
     used = {**study.public_settings({"filters", "strides", "conditions"}), "reconstruct": asdict(settings)}
     when = f"the states {what.lags.ahead / what.rate_hz:.2f} s after" if what.lags.ahead else "the states at"
     errors, summary, curves = (
-        pd.concat([getattr(each, name) for each in done], ignore_index=True) for name in ("errors", "summary", "curves")
+        pd.concat([getattr(p, name) for p in done], ignore_index=True) for name in ("errors", "summary", "curves")
     )
     return Reconstruction(
         title=study.public_title,
@@ -176,8 +176,8 @@ def search_study(study: Study, most: int, settings: ReconstructionSettings | Non
     walks = read_walks(study, (), settings.condition_read)
     names, lags = [channel.name for channel in walks.channels], settings.lags(walks.rate_hz)
     windows = {
-        person: [cut_windows(walk.recording, names, names, lags, walk.phi) for walk in found]
-        for person, found in walks.people.items()
+        person: [cut_windows(walk.recording, names, names, lags, walk.phi) for walk in trials]
+        for person, trials in walks.people.items()
     }
     return search_sensors([partition(walks, windows, person, settings) for person in windows], walks.channels, most)
 
@@ -194,12 +194,12 @@ class ReconstructedRecording:
 
     def lines(self) -> list[str]:
         """Return what is said of it."""
-        said = [f"{len(self.states.names)} states of {self.states.duration_s:.2f} s: {self.path}"]
+        lines = [f"{len(self.states.names)} states of {self.states.duration_s:.2f} s: {self.path}"]
         for channel in self.states.channels:
             if channel.name in self.rmse:
                 inside = f"{100 * self.coverage[channel.name]:.0f} % inside the {100 * self.level:.0f} % interval"
-                said.append(f"  {channel.name}: RMSE {self.rmse[channel.name]:.3g} {channel.unit}, {inside}")
-        return said
+                lines.append(f"  {channel.name}: RMSE {self.rmse[channel.name]:.3g} {channel.unit}, {inside}")
+        return lines
 
 
 def reconstruct_recording(
@@ -230,8 +230,8 @@ def reconstruct_recording(
             "Record longer, or fill the gaps.",
         )
     first, last = np.flatnonzero(known)[[0, -1]]
-    kept = states.between(float(states.time[first]), float(states.time[last]) + 0.5 / states.rate_hz)
-    write_storage(kept, out)
+    trimmed = states.between(float(states.time[first]), float(states.time[last]) + 0.5 / states.rate_hz)
+    write_storage(trimmed, out)
     rmse, inside = {}, {}
     for column, name in enumerate(what.states):
         if name in filtered.names:
@@ -239,4 +239,4 @@ def reconstruct_recording(
             error = states[name][both] - filtered[name][both]
             rmse[name] = float(np.sqrt(np.mean(error**2)))
             inside[name] = float(coverage(error[:, None], saved.half_widths[column : column + 1])[0])
-    return ReconstructedRecording(kept, out, rmse, inside, INTERVAL_LEVEL)
+    return ReconstructedRecording(trimmed, out, rmse, inside, INTERVAL_LEVEL)

@@ -90,13 +90,13 @@ class Reconstruction(Saved, file="reconstruction.json"):
 
     def over_participants(self) -> pd.DataFrame:
         """Mean of each measure over participants, by model, with its 95 % CI (Student's t, from 3 participants on)."""
-        found: dict[object, dict[str, float]] = {}
+        means: dict[object, dict[str, float]] = {}
         for model, rows in self.summary.groupby("model", sort=False):
-            found[model] = {"n": len(rows)}
+            means[model] = {"n": len(rows)}
             for measure in MEASURES:
                 mean, _, half = mean_over_people(rows[measure].to_numpy(float))
-                found[model] |= {measure: mean, f"{measure}_low": mean - half, f"{measure}_high": mean + half}
-        return pd.DataFrame(found).T
+                means[model] |= {measure: mean, f"{measure}_low": mean - half, f"{measure}_high": mean + half}
+        return pd.DataFrame(means).T
 
     def over_states(self) -> pd.DataFrame:
         """Mean RMSE, relative L2 and R2 over participants; indexed by state and model."""
@@ -137,13 +137,13 @@ def mean_over_people(values: Values) -> tuple[float, float, float]:
     return mean, sd, float(t.ppf(0.975, n - 1)) * sd / float(np.sqrt(n))
 
 
-def enough_sensors(found: pd.DataFrame) -> int:
+def enough_sensors(search: pd.DataFrame) -> int:
     """Row of the smallest set of sensors in a `search` that one more improves by less than a tenth.
 
     >>> enough_sensors(pd.DataFrame({"loss": [1.0, 0.5, 0.49]}))
     1
     """
-    root = np.sqrt(found["loss"].to_numpy(float))
+    root = np.sqrt(search["loss"].to_numpy(float))
     worth = root[1:] < (1 - WORTH) * root[:-1]
     return int(np.argmin(worth)) if not worth.all() else len(root) - 1
 

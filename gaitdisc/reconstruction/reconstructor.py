@@ -141,8 +141,8 @@ class Reconstructor(Saved, file="model.json"):
         )
         what = Sensing(sensors, targets, lags, float(self.rate_hz))
         windows = [self._windows(*pair, what) for pair in zip(readings, states, strict=True)]
-        parts = [each.last_block(CHECKED, what.reach_s + SEAM_S) for each in windows]
-        training, check = (stacked([part[k] for part in parts]) for k in (0, 1))
+        blocks = [trial.last_block(CHECKED, what.reach_s + SEAM_S) for trial in windows]
+        training, check = (stacked([block[k] for block in blocks]) for k in (0, 1))
         done = fit_reconstructor(self.kind, what, training, check, self.seed)
         self._model = SensingModel(done, _signals((*sensors, *targets)), half_widths(done(check) - check.y))
         return self
@@ -315,38 +315,38 @@ class Given(NamedTuple):
         """Names of the columns; a word and their number where they have none."""
         return self.names or tuple(f"{word}_{number}" for number in range(1, self.values.shape[1] + 1))
 
-    def in_order(self, wanted: tuple[str, ...]) -> Values:
+    def in_order(self, order: tuple[str, ...]) -> Values:
         """Columns of the sensors or states by name, where both have names; else as given."""
-        if not self.names or all(re.fullmatch(r"(sensor|state)_\d+", name) for name in wanted):
+        if not self.names or all(re.fullmatch(r"(sensor|state)_\d+", name) for name in order):
             return self.values
-        absent = [name for name in wanted if name not in self.names]
+        absent = [name for name in order if name not in self.names]
         if absent:
             raise ShapeError(
-                f"the table must have the columns {', '.join(wanted)}",
+                f"the table must have the columns {', '.join(order)}",
                 f"{absent[0]!r} is not among {', '.join(self.names[:8])}",
                 "Use the column names of fit, or an array in the order of fit.",
             )
-        return self.values[:, [self.names.index(name) for name in wanted]]
+        return self.values[:, [self.names.index(name) for name in order]]
 
 
-def _read(given: Any, rate_hz: float, words: str) -> Given:
+def _read(data: Any, rate_hz: float, words: str) -> Given:
     """Read a trial from a recording, a table, a column or an array; its times, if any, must have the model's rate."""
-    if isinstance(given, Recording):
-        _check_rate(rate_hz, given.rate_hz, "recording")
-        return Given(given.values, given.names, given.time)
+    if isinstance(data, Recording):
+        _check_rate(rate_hz, data.rate_hz, "recording")
+        return Given(data.values, data.names, data.time)
     names, time = (), None
-    if hasattr(given, "to_frame"):  # one column of a DataFrame
-        names = () if given.name is None else (str(given.name),)
-        given = given.to_frame(given.name if names else words)
-    elif hasattr(given, "columns"):
-        names = tuple(map(str, given.columns))
-    if hasattr(given, "columns") and has_times(given):
-        time, labels, given = frame_columns(given)
+    if hasattr(data, "to_frame"):  # one column of a DataFrame
+        names = () if data.name is None else (str(data.name),)
+        data = data.to_frame(data.name if names else words)
+    elif hasattr(data, "columns"):
+        names = tuple(map(str, data.columns))
+    if hasattr(data, "columns") and has_times(data):
+        time, labels, data = frame_columns(data)
         _check_rate(rate_hz, mean_rate(time), "table")
         names = names and tuple(labels)
-    elif hasattr(given, "columns") and given.index.dtype.kind == "f":
-        time = np.asarray(given.index, float)
-    values = real_array(given)
+    elif hasattr(data, "columns") and data.index.dtype.kind == "f":
+        time = np.asarray(data.index, float)
+    values = real_array(data)
     if values.ndim != 2:
         raise ShapeError(
             f"{words} must be an array (time, column)",

@@ -109,12 +109,12 @@ def read_walks(study: Study, sensors: Sequence[str], condition: str = "", target
             f"all walks are refused. The first: {refusals[0].reason}" if refusals else "the study has no walks",
             "Correct what the message names, or choose other sensors.",
         )
-    _refuse_units([walk for found in walks.values() for walk in found])
-    channels, left_out = _moving([walk for found in walks.values() for walk in found], sensors)
+    _refuse_units([walk for person_walks in walks.values() for walk in person_walks])
+    channels, left_out = _moving([walk for person_walks in walks.values() for walk in person_walks], sensors)
     names = [channel.name for channel in channels]
     people = {
-        name: tuple(replace(walk, recording=walk.recording.selected(names)) for walk in found)
-        for name, found in walks.items()
+        name: tuple(replace(walk, recording=walk.recording.selected(names)) for walk in person_walks)
+        for name, person_walks in walks.items()
     }
     _refuse_rates(people)
     return SensedWalks(people, channels, tuple(refusals), (*left_out, *findings), files)
@@ -123,35 +123,35 @@ def read_walks(study: Study, sensors: Sequence[str], condition: str = "", target
 def _walks(
     study: Study, person: Participant, condition: str, reader: C3DReader, public: PublicWords, refusals: list[Refusal]
 ) -> list[ReadWalk]:
-    found = []
+    usable = []
     streams = [stream for stream, _ in TARGETS.values()]
-    own = StudyWalks(study, person, partial(public_trial, study, person, public, reader))
+    study_walks = StudyWalks(study, person, partial(public_trial, study, person, public, reader))
     for planned in person.trials:
         if not is_walk(study, planned) or (condition and planned.condition != condition):
             continue
         try:
-            read = own.read_walk(planned)
+            read = study_walks.read_walk(planned)
             trial = of_trial(public, person, planned).keep_known_channels(read.trial, streams)
-            found.append(replace(read, trial=trial))
+            usable.append(replace(read, trial=trial))
         except GaitdiscError as error:
             refusals.append(Refusal(person.id, planned.condition, str(public.error(error))))
-    return found
+    return usable
 
 
 def _sense(read: ReadWalk, study: Study, sensors: Sequence[str], targets: str) -> tuple[SensedWalk, list[Finding]]:
     trial = read.trial
     if targets != STATES:
         both, strides, seen = target_walk(trial, study, sensors, targets)
-        kept = both.between(both.time[0] + EDGE_S, both.time[-1] - EDGE_S)
-        return SensedWalk(kept, strides.phi(kept.time)), seen
+        inner = both.between(both.time[0] + EDGE_S, both.time[-1] - EDGE_S)
+        return SensedWalk(inner, strides.phi(inner.time)), seen
     kinematics = trial.stream("kinematics")
     for name in sensors:
         kinematics.index(name)  # refuses a sensor that was not recorded, and names the nearest
-    wanted = dict.fromkeys([*(name for name in WHOLE_STATE if name in kinematics.names), *sensors])
+    selected = dict.fromkeys([*(name for name in WHOLE_STATE if name in kinematics.names), *sensors])
     legs = [f"{joint}_{side}" for joint in ("hip_flexion", "knee_angle") for side in "rl"]
-    needed = tuple(dict.fromkeys([*wanted, *(name for name in legs if name in kinematics.names)]))
+    needed = tuple(dict.fromkeys([*selected, *(name for name in legs if name in kinematics.names)]))
     walk = read.processed(study.model_copy(update={"models": Models().model_copy(update={"angles": needed})}))
-    state = walk.state.selected(list(wanted))
+    state = walk.state.selected(list(selected))
     inner = state.between(state.time[0] + EDGE_S, state.time[-1] - EDGE_S)
     phi = walk.strides[walk.side].phi(inner.time)
     return SensedWalk(inner, phi), [finding for finding in walk.findings if finding.severity != "note"]
@@ -175,22 +175,22 @@ def target_walk(
     stream = next((key for key in there if set(sensors) <= set(trial.stream(key).names)), there[0])
     read = trial.stream(stream).selected(sensors)  # refuses, and names the nearest
     read = low_pass(read, filters.kinematics_hz, filters.order, filters.gap_s)
-    wanted, findings = _find_targets(trial, study, targets)
+    target, findings = _find_targets(trial, study, targets)
     choice = choose_contacts(trial, study.strides.detector, study.walking_direction)
     side = study.strides.side if study.strides.side in choice.contacts else next(iter(choice.contacts))
     strides = cut_strides(choice.contacts[side], None, study.strides.min_s, study.strides.max_s)
-    values = interpolate(wanted.time, wanted.values, read.time)
+    values = interpolate(target.time, target.values, read.time)
     if not np.isfinite(values).any():
         raise SamplingError(
             f"trial {trial.name}: {targets} and sensors must overlap in time",
             f"sensors last from {read.time[0]:.2f} to {read.time[-1]:.2f} s, "
-            f"{targets} from {wanted.time[0]:.2f} to {wanted.time[-1]:.2f} s",
+            f"{targets} from {target.time[0]:.2f} to {target.time[-1]:.2f} s",
             "Check that the files belong to the same trial and clock.",
         )
     both = replace(
         read,
         values=np.hstack([read.values, values]),
-        channels=(*read.channels, *wanted.channels),
+        channels=(*read.channels, *target.channels),
         suspect=None,
         subject=trial.subject,
         condition=trial.condition,
@@ -207,13 +207,13 @@ def refuse_unknown_targets(targets: str) -> None:
 
 def _find_targets(trial: Trial, study: Study, targets: str) -> tuple[Recording, list[Finding]]:
     key, quantities = TARGETS[targets]
-    found = trial.stream(key).selected_by(lambda channel: channel.quantity in quantities)
+    recording = trial.stream(key).selected_by(lambda channel: channel.quantity in quantities)
     filters = study.filters
     dead: dict[str, Finding] = {}
-    if key == "emg" and is_raw(found):
-        dead = {finding.channel: finding for finding in emg_findings(found) if finding.severity == "refused"}
-        found = found.selected([name for name in found.names if name not in dead])
-    if not found.names:
+    if key == "emg" and is_raw(recording):
+        dead = {finding.channel: finding for finding in emg_findings(recording) if finding.severity == "refused"}
+        recording = recording.selected([name for name in recording.names if name not in dead])
+    if not recording.names:
         raise ChannelError(
             f"trial {trial.name} must have {targets}",
             f"none is usable: {', '.join(dead)}" if dead else f"it has no {' or '.join(quantities)}",
@@ -223,28 +223,28 @@ def _find_targets(trial: Trial, study: Study, targets: str) -> tuple[Recording, 
         Finding("warning", "left out", finding.file, f"{name}: {finding.what}", "this muscle, which is excluded", name)
         for name, finding in dead.items()
     ]
-    if key == "emg" and is_raw(found):
-        return envelopes(found, filters.emg_highpass_hz, filters.emg_lowpass_hz, filters.order), findings
+    if key == "emg" and is_raw(recording):
+        return envelopes(recording, filters.emg_highpass_hz, filters.emg_lowpass_hz, filters.order), findings
     cutoff_hz = {"emg": filters.emg_lowpass_hz, "forces": FORCE_HZ}.get(key, filters.kinematics_hz)
-    return low_pass(found, cutoff_hz, filters.order, filters.gap_s), findings
+    return low_pass(recording, cutoff_hz, filters.order, filters.gap_s), findings
 
 
 def _moving(walks: Sequence[SensedWalk], sensors: Sequence[str]) -> tuple[tuple[Channel, ...], list[Finding]]:
     """Channels that every walk has and that move in every walk; a sensor that does not is refused."""
-    first, kept, findings = walks[0].recording, [], []
+    first, moving, findings = walks[0].recording, [], []
     for channel in first.channels:
         lacking = [w.recording for w in walks if channel.name not in w.recording.names]
         least = STILL.get(channel.unit, STILL_OTHERWISE)
         still = [w.recording for w in walks if w.recording not in lacking and _still(w.recording[channel.name], least)]
         if not lacking and not still:
-            kept.append(channel)
+            moving.append(channel)
             continue
         why = f"does not vary in {len(still)}" if still else f"is missing in {len(lacking)}"
         what = f"{channel.name} {why} of {len(walks)} walks"
         if channel.name in sensors:
             raise ChannelError("a sensor must exist and vary in every walk", what, "Choose another sensor.")
         findings.append(Finding("note", "left out", "the study", what, "this state, which is left out", channel.name))
-    return tuple(kept), findings
+    return tuple(moving), findings
 
 
 def _still(values: Values, least: float) -> bool:
@@ -267,11 +267,11 @@ def _refuse_units(walks: Sequence[SensedWalk]) -> None:
 
 
 def _refuse_rates(people: dict[str, tuple[SensedWalk, ...]]) -> None:
-    rates = {walk.recording.rate_hz: name for name, found in people.items() for walk in found}
+    rates = {walk.recording.rate_hz: name for name, person_walks in people.items() for walk in person_walks}
     if len(rates) > 1:
-        (one, first), (other, second) = list(rates.items())[:2]
+        (rate_hz, first), (other_hz, second) = list(rates.items())[:2]
         raise SamplingError(
             "all walks must have the same sampling rate for reconstruction",
-            f"{first} was recorded at {one:g} Hz, {second} at {other:g} Hz",
+            f"{first} was recorded at {rate_hz:g} Hz, {second} at {other_hz:g} Hz",
             "Resample the kinematics to one rate.",
         )

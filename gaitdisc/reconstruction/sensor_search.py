@@ -44,18 +44,18 @@ def search_sensors(people: Sequence[Parts], channels: Sequence[Channel], most: i
         )
     begun = time.process_time()
     angles = angle_columns(channels)
-    kept = tuple(angles) if len(angles) > 1 else tuple(range(len(channels)))
-    products = [_products(parts, kept, bool(angles)) for parts in people]
+    searched = tuple(angles) if len(angles) > 1 else tuple(range(len(channels)))
+    products = [_products(parts, searched, bool(angles)) for parts in people]
     rows, best = [], ()
-    for size in range(1, min(most, len(kept) - 1) + 1):
-        more = (tuple(sorted((*best, k))) for k in kept if k not in best)
+    for size in range(1, min(most, len(searched) - 1) + 1):
+        more = (tuple(sorted((*best, k))) for k in searched if k not in best)
         losses = {
-            chosen: float(np.mean([_errors(each, chosen)[0].sum() / len(each.kept) for each in products]))
-            for chosen in (combinations(kept, size) if size <= WHOLE_SEARCH else more)
+            chosen: float(np.mean([_errors(product, chosen)[0].sum() / len(product.kept) for product in products]))
+            for chosen in (combinations(searched, size) if size <= WHOLE_SEARCH else more)
         }
         best = min(losses, key=lambda chosen: losses[chosen])
         names = ", ".join(channels[k].name for k in best)
-        on_test = [float(np.sqrt(np.mean(_errors(each, best)[1]))) for each in products]
+        on_test = [float(np.sqrt(np.mean(_errors(product, best)[1]))) for product in products]
         now = time.process_time()
         rmse = float(np.mean(on_test)) if angles else float("nan")
         rows.append((size, names, losses[best], rmse, len(losses) * len(people), now - begun))
@@ -78,7 +78,7 @@ class _Products:
     kept: Chosen
 
 
-def _products(parts: Parts, kept: Chosen, in_deg: bool) -> _Products:
+def _products(parts: Parts, searched: Chosen, in_deg: bool) -> _Products:
     training = thin_windows(parts.fitted(), MOST_WINDOWS)
     x_scale, y_scale = fit_scale(training.x), fit_scale(training.y)
 
@@ -88,7 +88,7 @@ def _products(parts: Parts, kept: Chosen, in_deg: bool) -> _Products:
         return x.T @ x / len(x), x.T @ y / len(x), np.mean(y**2, axis=0)
 
     weights = y_scale.sd**2 if in_deg else np.ones(len(y_scale.sd))
-    return _Products(of(training), of(parts.checked()), of(parts.tested()), weights, kept)
+    return _Products(of(training), of(parts.checked()), of(parts.tested()), weights, searched)
 
 
 def _errors(products: _Products, chosen: Chosen) -> tuple[Values, Values]:
@@ -103,8 +103,8 @@ def _errors(products: _Products, chosen: Chosen) -> tuple[Values, Values]:
     values, vectors = np.linalg.eigh(fitted[0])
     turned = vectors.T @ fitted[1]
     weights = [vectors @ (turned / (np.maximum(values, 0.0)[:, None] + penalty)) for penalty in PENALTIES]
-    losses = [_square(checked, each) * products.weights[rest] for each in weights]
-    best = int(np.argmin([each.sum() for each in losses]))
+    losses = [_square(checked, weight) * products.weights[rest] for weight in weights]
+    best = int(np.argmin([loss.sum() for loss in losses]))
     return losses[best], _square(tested, weights[best]) * products.weights[rest]
 
 

@@ -47,12 +47,12 @@ def stride_numbers(trials: Sequence[Samples]) -> NDArray[np.int_]:
         if not len(trial):
             continue
         known = np.isfinite(trial.phi)
-        found = np.full(len(trial), -1)
+        number = np.full(len(trial), -1)
         phi, time = trial.phi[known], trial.time[known]
         new = (np.diff(phi) < 0) | (np.diff(time) > 1.0)
-        found[known] = first + np.concatenate([[0], np.cumsum(new)])[: len(phi)]
-        first = found.max(initial=first - 1) + 1
-        numbers.append(found)
+        number[known] = first + np.concatenate([[0], np.cumsum(new)])[: len(phi)]
+        first = number.max(initial=first - 1) + 1
+        numbers.append(number)
     return np.concatenate(numbers)
 
 
@@ -100,26 +100,26 @@ def angles_error(tested: Reconstructed, channels: Sequence[Channel], sensors: Va
         return dict.fromkeys(("rmse_deg", "relative_l2", "r2", "relative_l2_whole"), float("nan"))
     measured, states = tested.windows.y[:, angles], tested.states[:, angles]
     norm = float(np.linalg.norm(states - measured))
-    own, read = float(np.linalg.norm(measured)), float(np.linalg.norm(sensors))
+    measured_norm, read = float(np.linalg.norm(measured)), float(np.linalg.norm(sensors))
     return {
         "rmse_deg": float(np.sqrt(np.mean((states - measured) ** 2))),
-        "relative_l2": norm / own,
+        "relative_l2": norm / measured_norm,
         "r2": float(np.nanmedian(r2(measured, states))),
-        "relative_l2_whole": norm / float(np.hypot(own, read)),
+        "relative_l2_whole": norm / float(np.hypot(measured_norm, read)),
     }
 
 
 def phase_curves(tested: Reconstructed, states: Sequence[str], points: int = 51) -> pd.DataFrame:
     """Over the stride: state, percent, measured, measured_sd, reconstructed, rmse of the windows in the bin."""
     inside = tested.stride >= 0
-    phi, y, found = tested.windows.phi[inside], tested.windows.y[inside], tested.states[inside]
+    phi, y, estimates = tested.windows.phi[inside], tested.windows.y[inside], tested.states[inside]
     edges = np.linspace(0, 100, points + 1)
     bins = np.clip(np.digitize(phi, edges) - 1, 0, points - 1)
     rows = []
     for k in np.unique(bins):
         here = bins == k
         for column, state in enumerate(states):
-            m, f = y[here, column], found[here, column]
+            m, f = y[here, column], estimates[here, column]
             rmse = float(np.sqrt(np.mean((f - m) ** 2)))
             rows.append((state, float(edges[k] + edges[1] / 2), m.mean(), m.std(), f.mean(), rmse))
     return pd.DataFrame(

@@ -165,17 +165,17 @@ class WindowModel:
         return self.model(seen.x)
 
 
-def fitting_device(kinds: Sequence[str], wanted: str) -> str:
+def fitting_device(kinds: Sequence[str], device: str) -> str:
     """`cpu` or `cuda` for kinds of models; `auto` is the GPU where there is one, ridge regression takes the CPU.
 
     >>> fitting_device(("delay ridge",), "auto")
     'cpu'
     """
-    if wanted in DEVICES and all(kind in WITHOUT_NETWORK for kind in kinds):
+    if device in DEVICES and all(kind in WITHOUT_NETWORK for kind in kinds):
         return "cpu"
     from gaitdisc.models.trainer import choose_device
 
-    return choose_device(wanted).type
+    return choose_device(device).type
 
 
 def fit_reconstructor(
@@ -219,14 +219,14 @@ def _find_fit(kind: str, sensors: int, seed: int, device: str) -> Callable[[Samp
         )
 
         def fit(training: Samples, check: Samples) -> ScaledModel:
-            each = math.ceil(len(training) / text.batch)  # steps of an epoch
-            long = replace(text, epochs=math.ceil(TEXT_STEPS / each), patience=math.ceil(TEXT_PATIENCE / each))
+            steps = math.ceil(len(training) / text.batch)  # of an epoch
+            long = replace(text, epochs=math.ceil(TEXT_STEPS / steps), patience=math.ceil(TEXT_PATIENCE / steps))
             return train(training, build, long, check=check).network
 
         return fit
     if kind == ENSEMBLE:
-        each = [replace(settings, seed=seed + k) for k in range(MEMBERS)]
-        return lambda training, check: Ensemble(tuple(train(training, build, s, check=check).network for s in each))
+        members = [replace(settings, seed=seed + k) for k in range(MEMBERS)]
+        return lambda training, check: Ensemble(tuple(train(training, build, s, check=check).network for s in members))
     return lambda training, check: train(training, build, settings, check=check).network
 
 

@@ -74,7 +74,7 @@ def cut_windows(
     >>> made.x.tolist(), made.y.ravel().tolist(), made.inputs
     ([[0.0, 1.0], [1.0, 2.0], [2.0, 3.0]], [10.0, 20.0, 30.0], ('a 0.10 s ago', 'a'))
     """
-    read, wanted = recording.selected(sensors).values, recording.selected(states).values
+    read, y = recording.selected(sensors).values, recording.selected(states).values
     if len(read) <= lags.reach + lags.ahead:
         forth = f" and {lags.ahead / recording.rate_hz:.2f} s ahead" if lags.ahead else ""
         raise SamplingError(
@@ -86,15 +86,15 @@ def cut_windows(
     rows = last[:, None] + (np.arange(lags.count) - lags.count + 1) * lags.spacing
     x = read[rows].reshape(len(last), -1)
     known = np.isfinite(x)
-    whole = (known.any(axis=1) if missing else known.all(axis=1)) & np.isfinite(wanted[last + lags.ahead]).all(axis=1)
+    usable = (known.any(axis=1) if missing else known.all(axis=1)) & np.isfinite(y[last + lags.ahead]).all(axis=1)
     names = tuple(
         sensor if ago == 0 else f"{sensor} {ago * lags.spacing / recording.rate_hz:.2f} s ago"
         for ago in range(lags.count - 1, -1, -1)
         for sensor in sensors
     )
-    at = last[whole] + lags.ahead
+    at = last[usable] + lags.ahead
     return Samples(
-        x[whole], wanted[at], names, tuple(states), recording.time[at], np.asarray(phi)[at], subject=recording.subject
+        x[usable], y[at], names, tuple(states), recording.time[at], np.asarray(phi)[at], subject=recording.subject
     )
 
 
@@ -106,8 +106,8 @@ def present(samples: Samples, sensors: Sequence[str]) -> Samples:
 def stacked(samples: Sequence[Samples]) -> Samples:
     """Put windows of several trials one below the other; each window still belongs to one trial."""
     first = samples[0]
-    joined = {name: np.concatenate([getattr(each, name) for each in samples]) for name in ("x", "y", "time", "phi")}
-    subjects = {each.subject for each in samples}
+    joined = {name: np.concatenate([getattr(s, name) for s in samples]) for name in ("x", "y", "time", "phi")}
+    subjects = {s.subject for s in samples}
     return replace(first, **joined, subject=first.subject if len(subjects) == 1 else f"{len(subjects)} people")
 
 
@@ -128,7 +128,7 @@ class Parts:
     def __post_init__(self) -> None:
         """Refuse a split that leaves a part empty."""
         for name in ("training", "check", "test"):
-            if not any(len(each) for each in getattr(self, name)):
+            if not any(len(trial) for trial in getattr(self, name)):
                 raise SamplingError(
                     f"the split {self.rule!r} must leave windows in all three parts",
                     f"none remains for {name.replace('check', 'validation')}: the trials are too short "
@@ -138,15 +138,15 @@ class Parts:
 
     def fitted(self) -> Samples:
         """Windows that models are fitted to."""
-        return stacked([each for each in self.training if len(each)])
+        return stacked([trial for trial in self.training if len(trial)])
 
     def checked(self) -> Samples:
         """Windows that models are chosen by."""
-        return stacked([each for each in self.check if len(each)])
+        return stacked([trial for trial in self.check if len(trial)])
 
     def tested(self) -> Samples:
         """Windows that models are tested on."""
-        return stacked([each for each in self.test if len(each)])
+        return stacked([trial for trial in self.test if len(trial)])
 
 
 def split_within(trials: Sequence[Samples], rule: str, reach_s: float, seed: int = 0) -> Parts:
@@ -165,7 +165,7 @@ def split_within(trials: Sequence[Samples], rule: str, reach_s: float, seed: int
     if rule not in RULES:
         raise SchemaError(f"the split rule must be one of {', '.join(RULES)}", f"found {rule!r}", "Use one of these.")
     rng = np.random.default_rng(seed)
-    labels = [_labels(each, rule, reach_s, rng) for each in trials]
+    labels = [_labels(trial, rule, reach_s, rng) for trial in trials]
     training, check, test = (_chosen(trials, labels, part) for part in (TRAINING, CHECK, TEST))
     return Parts(training, check, test, rule)
 
@@ -185,8 +185,8 @@ def split_by_subject(people: Sequence[Sequence[Samples]], tested: int) -> Parts:
 
 def split_by_trial(trials: Sequence[Samples], tested: Sequence[int], reach_s: float) -> Parts:
     """Leave whole trials out; the last 15 % of each other one are checked, `reach_s` [s] being a window's length."""
-    others = [each for k, each in enumerate(trials) if k not in tested]
-    labels = [_apart(each.time, np.where(_share(each.time) < 0.85, TRAINING, CHECK), reach_s) for each in others]
+    others = [trial for k, trial in enumerate(trials) if k not in tested]
+    labels = [_apart(trial.time, np.where(_share(trial.time) < 0.85, TRAINING, CHECK), reach_s) for trial in others]
     test = tuple(trials[k] for k in tested)
     return Parts(_chosen(others, labels, TRAINING), _chosen(others, labels, CHECK), test, "leave trials out")
 
@@ -217,7 +217,7 @@ def _apart(time: Values, raw: NDArray[np.int_], reach_s: float) -> NDArray[np.in
 
 
 def _chosen(trials: Sequence[Samples], labels: Sequence[NDArray[np.int_]], part: int) -> tuple[Samples, ...]:
-    return tuple(each.rows(found == part) for each, found in zip(trials, labels, strict=True))
+    return tuple(trial.rows(label == part) for trial, label in zip(trials, labels, strict=True))
 
 
 WAYS = {

@@ -102,9 +102,9 @@ def _study(part: Part, folder: Path, quick: bool, data: Path | None, ticked: Cal
     package = str(Path(__file__).parents[2])
     paths = os.pathsep.join(filter(None, (package, os.environ.get("PYTHONPATH", ""))))
     environment = {**os.environ, "PYTHONPATH": paths, "PYTHONUTF8": "1", "GAITDISC_DATA": str(_data_folder(data))}
-    said = folder / SAID
+    error_log = folder / SAID
     started = time.perf_counter()
-    with (folder / ".part-printed").open("wb+") as printed, said.open("wb") as errors:
+    with (folder / ".part-printed").open("wb+") as printed, error_log.open("wb") as errors:
         process = subprocess.Popen(command, stdout=printed, stderr=errors, env=environment)
         try:
             while process.poll() is None:
@@ -118,13 +118,13 @@ def _study(part: Part, folder: Path, quick: bool, data: Path | None, ticked: Cal
         text = printed.read().decode("utf-8")
     (folder / ".part-printed").unlink()
     if process.returncode:
-        lines = said.read_text(encoding="utf-8").strip().splitlines()
+        lines = error_log.read_text(encoding="utf-8").strip().splitlines()
         raise TrainingError(
             f"part {part.name} of chapter {part.chapter} cannot be computed",
             f"its study ended with {lines[-1] if lines else f'exit code {process.returncode}'}",
-            f"Read its complete output in {said}.",
+            f"Read its complete output in {error_log}.",
         )
-    said.unlink()
+    error_log.unlink()
     return text
 
 

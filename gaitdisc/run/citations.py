@@ -84,7 +84,7 @@ DISCREPANCIES = (
 RESPONSES = ("the Nominal, Exo, Discrepancy and Augmented models", "networks, trained with AdamW", "ridge regression")
 SENSED = (
     "reconstruction of states from a few sensors",
-    *dict.fromkeys(one for each in OF_MODELS.values() for one in each),
+    *dict.fromkeys(method for methods in OF_MODELS.values() for method in methods),
 )
 TESTED = ("Wilcoxon's signed-rank test", "Holm-Sidak corrections")
 SEARCHED = ("multiple shooting", "damped least squares", "information criterion")
@@ -152,7 +152,7 @@ def list_methods(result: Any) -> Iterator[str]:
         yield from SEARCHED
         if result.held_out.p == result.held_out.p:  # a test was made
             yield TESTED[0]
-        if any(one.reads_as for one in (*result.effects, *result.rivals)):
+        if any(effect.reads_as for effect in (*result.effects, *result.rivals)):
             yield "a term identified by regression on a library"
         if any("spike" in finding.kind for finding in result.findings):
             yield "spiked samples"
@@ -181,11 +181,11 @@ def _of_run(run: ResponseRun) -> Iterator[str]:
     if run.over is not None and run.over.responders["silhouette"].notna().any():
         yield "sub-groups of people"
     yield from _of_files(run.provenance.files)
-    detectors = {*(walk.detector for walk in run.walks), *(name for one in run.cycles for name in one.detectors)}
+    detectors = {*(walk.detector for walk in run.walks), *(name for pooled in run.cycles for name in pooled.detectors)}
     yield from CONTACTS if "markers" in detectors else ()
     kinematics = run.provenance.settings.get("kinematics") or {}
-    for one in (*run.walks, *run.cycles):
-        yield from _of_markers(one.findings, kinematics.get("hip"))
+    for unit in (*run.walks, *run.cycles):
+        yield from _of_markers(unit.findings, kinematics.get("hip"))
 
 
 def _of_files(files: Iterable[str]) -> Iterator[str]:
@@ -214,8 +214,8 @@ def _of_markers(findings: Iterable[Finding], hip: str | None) -> Iterator[str]:
 def entries() -> dict[str, str]:
     """Every entry of `data_schema/methods.bib`, by key."""
     text = (schema_folder() / "methods.bib").read_text(encoding="utf-8").replace("{VERSION}", f"{{{__version__}}}")
-    found = {match[1]: match[0] for match in re.finditer(r"^@\w+\{(\w+),\n.*?^\}", text, re.MULTILINE | re.DOTALL)}
-    absent = sorted({key for keys in MENTIONED.values() for key in keys} - set(found))
+    by_key = {match[1]: match[0] for match in re.finditer(r"^@\w+\{(\w+),\n.*?^\}", text, re.MULTILINE | re.DOTALL)}
+    absent = sorted({key for keys in MENTIONED.values() for key in keys} - set(by_key))
     if absent:
         raise SchemaError("methods.bib must contain all methods cited", f"it lacks {', '.join(absent)}", "Add it.")
-    return found
+    return by_key

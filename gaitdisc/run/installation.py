@@ -64,8 +64,8 @@ def _read_back(what: str, made: Recording, file: str) -> Check:
         with tempfile.TemporaryDirectory() as folder:
             path = Path(folder) / file
             write_c3d([made], path) if path.suffix == ".c3d" else write_recording(made, path)
-            found = read_trial(path)
-            stream = next(one for one in found.streams.values() if made.names[0] in one.names)
+            trial = read_trial(path)
+            stream = next(recording for recording in trial.streams.values() if made.names[0] in recording.names)
             same = np.allclose(stream[made.names[0]], made.values[:, 0], atol=1e-6)
     except Exception as error:  # whatever it is, the installation does not read this kind of file
         return Check(f"reads {what}", "wrong", f"{type(error).__name__}: {error}")

@@ -82,7 +82,7 @@ def compute_unit(study: Study, participant: Participant, folder: Path, progress:
 def pool_unit(study: Study, participant: Participant, folder: Path, unfitted: str) -> ParticipantUnit:
     """Pool the cycles of one participant over trials, or load what an earlier run pooled."""
     cycles = compute_cycles(study, participant, folder)
-    refusals = tuple(refusal for one in cycles for refusal in one.refusals)
+    refusals = tuple(refusal for pooled in cycles for refusal in pooled.refusals)
     why = unfitted if study.conditions.device is not None else ""
     return ParticipantUnit((), None, refusals, cycles_key(study, participant), cycles, why)
 
@@ -143,10 +143,10 @@ def _find_stored(participant: Participant, keys: Mapping[str, str], folder: Path
         return None
     words = refused.walks if refused else tuple(keys)
     walks = [WALK.kept(_walk_folder(folder, participant, word), keys[word]) for word in words if word in keys]
-    whole = tuple(walk for walk in walks if walk is not None)
-    if len(whole) < len(words):
+    stored = tuple(walk for walk in walks if walk is not None)
+    if len(stored) < len(words):
         return None
-    return ParticipantUnit(whole, response, refused.refusals if refused else (), key)
+    return ParticipantUnit(stored, response, refused.refusals if refused else (), key)
 
 
 def _load(walks: Mapping[str, Walk], participant: Participant, folder: Path) -> tuple[WalkSummary, ...]:
@@ -177,7 +177,7 @@ def run_study(
         renewed = damage_lines(folder)
         compute = partial(compute_unit, study, folder=folder.absolute())
         people, where = study.participants, workers or Workers()
-        units = list(compute_units(where, compute, people, progress, lambda one: ParticipantUnit(refusals=(one,))))
+        units = list(compute_units(where, compute, people, progress, lambda r: ParticipantUnit(refusals=(r,))))
         responses = tuple(unit.response for unit in units if unit.response is not None)
         fitted = [(unit.response.participant, unit.key) for unit in units if unit.response is not None]
         stored = (QUANTITY.kept(folder / "quantities" / name, key) for name, key in fitted)
@@ -189,7 +189,7 @@ def run_study(
             settings |= {"fits": asdict(response_settings(study))}
             tests = (compare_models(responses),)
             over = (compare_participants(responses, quantities, study.models.seed),)
-        files = {name: sha for one in units for walk in (*one.walks, *one.cycles) for name, sha in walk.files.items()}
+        files = {name: sha for u in units for walk in (*u.walks, *u.cycles) for name, sha in walk.files.items()}
         run = ResponseRun(
             title=study.public_title,
             nominal=study.conditions.nominal,
@@ -205,7 +205,7 @@ def run_study(
                 CYCLES.file: tuple(pooled for unit in units for pooled in unit.cycles),
             },
             unfitted=tuple(
-                Refusal(who.id, "", one.unfitted) for who, one in zip(people, units, strict=True) if one.unfitted
+                Refusal(who.id, "", unit.unfitted) for who, unit in zip(people, units, strict=True) if unit.unfitted
             ),
             renewed=renewed,
         )

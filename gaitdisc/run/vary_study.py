@@ -98,9 +98,9 @@ def _vary(
     run = run_study(study, folder, workers)
     with write_lock(folder, run=True):
         people = [study.participant(response.participant) for response in run.responses]
-        found = list(compute_units(workers, compute, people, progress, lambda refusal: refusal))
-        run = replace(run, refusals=(*run.refusals, *(each for each in found if isinstance(each, Refusal))))
-        yield run, tuple(each for each in found if not isinstance(each, Refusal))
+        units = list(compute_units(workers, compute, people, progress, lambda refusal: refusal))
+        run = replace(run, refusals=(*run.refusals, *(unit for unit in units if isinstance(unit, Refusal))))
+        yield run, tuple(unit for unit in units if not isinstance(unit, Refusal))
 
 
 def compute_variants(
@@ -114,13 +114,13 @@ def compute_variants(
     if stored is not None:
         return stored
     if question == "sensitivity":
-        found = _sensitivity(study, participant, progress)
+        variants = _sensitivity(study, participant, progress)
     else:
         table = _fitted(study, participant, partial(fit_without, settings=response_settings(study), progress=progress))
-        found = table if isinstance(table, Refusal) else Variants(participant.id, question, table, {})
-    if isinstance(found, Variants):
-        VARIANTS.save(found, place, key)
-    return found
+        variants = table if isinstance(table, Refusal) else Variants(participant.id, question, table, {})
+    if isinstance(variants, Variants):
+        VARIANTS.save(variants, place, key)
+    return variants
 
 
 def compute_quantity(
@@ -139,8 +139,8 @@ def compute_quantity(
         there = {round(float(length), 6) for length in stored.table["length_s"]} | set(stored.left_away)
         if {round(length, 6) for length in lengths_s} <= there:
             return stored
-    whole = RESPONSE.kept(folder / "responses" / participant.id, key)
-    fit = partial(fit_data_quantity, settings=response_settings(study), lengths_s=lengths_s, part=part, whole=whole)
+    response = RESPONSE.kept(folder / "responses" / participant.id, key)
+    fit = partial(fit_data_quantity, settings=response_settings(study), lengths_s=lengths_s, part=part, whole=response)
     quantity = _fitted(study, participant, partial(fit, progress=progress))
     if isinstance(quantity, Refusal):
         return quantity
@@ -165,8 +165,8 @@ def _sensitivity(study: Study, participant: Participant, progress: Progress) -> 
     try:
         with C3DReader() as reader:
             planned = {word: participant.trials_of(word)[0] for word in study.conditions.both}
-            own = StudyWalks(study, participant, lambda one: read_planned_trial(study, participant, one, reader))
-            trials = {word: own.read_walk(one) for word, one in planned.items()}
+            walks = StudyWalks(study, participant, lambda trial: read_planned_trial(study, participant, trial, reader))
+            trials = {word: walks.read_walk(trial) for word, trial in planned.items()}
     except GaitdiscError as error:
         return Refusal(participant.id, "", str(public.error(error)))
     tables, left_away = [], {}
@@ -191,8 +191,8 @@ def _under(study: Study, trials: Mapping[str, ReadWalk], setting: Setting, progr
     fits = response_settings(study)
     null = make_filter_null(exo, filtered.filters)
     less = [first_share(walk.trajectory, fits, setting.share) for walk in (nominal, exo)]
-    found = fit_response(less[0], less[1], fits, null, progress).r2
-    return found[found["walk"] == "exo"]
+    scores = fit_response(less[0], less[1], fits, null, progress).r2
+    return scores[scores["walk"] == "exo"]
 
 
 def _settings(study: Study) -> tuple[Setting, ...]:

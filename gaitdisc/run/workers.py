@@ -154,9 +154,9 @@ def compute_in_processes(
     free = [_pool() for _ in range(min(jobs, len(people)))]
     working: dict[Future[Unit], tuple[int, ProcessPoolExecutor]] = {}
     done: dict[int, Unit | Lost] = {}
-    given = 0
+    n_yielded = 0
     try:
-        while given < len(people):
+        while n_yielded < len(people):
             while free and waiting:
                 number, pool = waiting.pop(), free.pop()
                 future, pool = _begun(pool, compute, people[number])
@@ -174,9 +174,9 @@ def compute_in_processes(
                     else:
                         done[number] = Lost(_reason(error, jobs))
                 free.append(pool)
-            while given in done:
-                yield people[given], done.pop(given)
-                given += 1
+            while n_yielded in done:
+                yield people[n_yielded], done.pop(n_yielded)
+                n_yielded += 1
     finally:
         for pool in (*free, *(pool for _, pool in working.values())):
             pool.shutdown(wait=False, kill_workers=True)

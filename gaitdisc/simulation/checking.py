@@ -38,15 +38,15 @@ def check(simulation: Simulation) -> None:
 def _check_size(simulation: Simulation) -> None:
     if not simulation.states:
         raise SimulationError("a simulation must have at least one state", "there is none", "Add [states.<name>].")
-    parts = sum(
-        len(each)
-        for each in (simulation.states, simulation.driving, simulation.parameters, simulation.ports,
+    n_parts = sum(
+        len(group)
+        for group in (simulation.states, simulation.driving, simulation.parameters, simulation.ports,
                      simulation.definitions, simulation.observations, simulation.effects)
     )  # fmt: skip
-    if parts > MOST_PARTS:
+    if n_parts > MOST_PARTS:
         raise SimulationError(
             f"a simulation file may have at most {MOST_PARTS} parts",
-            f"this file has {parts}",
+            f"this file has {n_parts}",
             "Write a model of this size as a PythonSimulation.",
         )
     characters = sum(len(text) for _, text in simulation.expressions())
@@ -112,26 +112,26 @@ def _check_numbers(simulation: Simulation) -> None:
             )
     for state in simulation.states:
         if state.initial is not None and not math.isfinite(state.initial):
-            found = f"initial is {state.initial}"
+            fault = f"initial is {state.initial}"
             raise SimulationError(
-                "the initial value of a state must be a finite number", found, "Write a number.", ("states", state.name)
+                "the initial value of a state must be a finite number", fault, "Write a number.", ("states", state.name)
             )
 
 
 def _check_equations(simulation: Simulation) -> None:
     states = [state.name for state in simulation.states]
-    given = [name for name, _ in simulation.equations]
-    for name in given:
+    named = [name for name, _ in simulation.equations]
+    for name in named:
         if name not in states:
             remedy = did_you_mean(name, states, f"The states are {', '.join(states)}.")
             raise SimulationError(
                 "an equation must belong to a state", f"{name!r} is not a state", remedy, ("equations", name)
             )
     for name in states:
-        if given.count(name) != 1:
-            found = "it has none" if name not in given else "it has several"
+        if named.count(name) != 1:
+            fault = "it has none" if name not in named else "it has several"
             raise SimulationError(
-                f"state {name!r} must have one equation", found, f'Write {name} = "..." in [equations].', ("equations",)
+                f"state {name!r} must have one equation", fault, f'Write {name} = "..." in [equations].', ("equations",)
             )
 
 
@@ -228,12 +228,12 @@ def _check_sensors(simulation: Simulation) -> None:
 
 
 def _check_inputs(simulation: Simulation) -> None:
-    for one in simulation.inputs:
-        place, errors = ("inputs", one.name), one.gain is not None or one.sd is not None
-        _check_positive(one, {"gain": "1", "sd": one.unit, "wander": "s"}, place)
-        if one.wander is not None and not errors:
+    for signal in simulation.inputs:
+        place, errors = ("inputs", signal.name), signal.gain is not None or signal.sd is not None
+        _check_positive(signal, {"gain": "1", "sd": signal.unit, "wander": "s"}, place)
+        if signal.wander is not None and not errors:
             raise SimulationError("an input with wander must have gain or sd", "it has neither", "Add one.", place)
-        if errors and one.wraps:
+        if errors and signal.wraps:
             raise SimulationError("the phase of the stride must be exact", "it has gain or sd", "Remove both.", place)
 
 
@@ -241,5 +241,5 @@ def _check_positive(part: Input | Sensor, units: dict[str, str], place: tuple[st
     for key, unit in units.items():
         number = getattr(part, key)
         if number is not None and not (math.isfinite(number) and number > 0):
-            found = f"found {key} = {number:g}"
-            raise SimulationError(f"{key} must be a number above 0 [{unit}]", found, f"Correct or remove {key}.", place)
+            fault = f"found {key} = {number:g}"
+            raise SimulationError(f"{key} must be a number above 0 [{unit}]", fault, f"Correct or remove {key}.", place)

@@ -50,10 +50,10 @@ class Drive:
     def of(cls, trials: Sequence[ArrayLike], rate: float, time0: ArrayLike = 0.0) -> Drive:
         """Drive of a list of trials, each (sample, input), with one first time for all or one for each."""
         arrays = [np.asarray(trial, float) for trial in trials]
-        samples = np.array([len(each) for each in arrays])
+        samples = np.array([len(array) for array in arrays])
         inputs = np.zeros((len(arrays), samples.max(), arrays[0].shape[1]))
-        for trial, each in enumerate(arrays):
-            inputs[trial, : len(each)] = each
+        for trial, array in enumerate(arrays):
+            inputs[trial, : len(array)] = array
         return cls(rate, np.broadcast_to(np.asarray(time0, float), samples.shape), inputs, samples)
 
 
@@ -95,16 +95,16 @@ class Compiled:
         place, starts, values = self._rows(drive, rows)
         right = self.right_hand_side
         seconds = self._seconds(right, values)
-        found = np.full((len(starts), steps + 1, len(self.states)), np.nan)
-        found[:, 0] = starts
+        states = np.full((len(starts), steps + 1, len(self.states)), np.nan)
+        states[:, 0] = starts
         ok = np.asarray(np.isfinite(starts).all(axis=1))
         lanes, integrate = self._integrator(values)
         program = right.placed(lanes), right.setup, right.constants, self._delays(right), right.registers
         driven, before = self._driven(drive), self._before(past)
         plan = (steps, substeps, lanes, np.flatnonzero(right.used()[1 + len(self.states) :][: len(self.inputs)]))
         with np.errstate(all="ignore"):  # a row that leaves every bound is reported, not warned of
-            integrate(program, driven, (place, starts, values, seconds), plan, before, (found, ok))
-        return found, ok
+            integrate(program, driven, (place, starts, values, seconds), plan, before, (states, ok))
+        return states, ok
 
     def _integrator(self, values: Values) -> tuple[int, Callable[..., None]]:  # noqa: ARG002
         """Rows that a block has room for, and what integrates them; values (row, parameter): parameters."""
@@ -123,9 +123,9 @@ class Compiled:
         columns = leaf_columns(np.broadcast_to(np.asarray(t, float), len(x)), x, u, values)
         return self._derivatives(x, at_points(self.right_hand_side, columns, late, len(x)).T, values)
 
-    def _derivatives(self, x: Values, given: Values, values: Values) -> Values:  # noqa: ARG002
+    def _derivatives(self, x: Values, outputs: Values, values: Values) -> Values:  # noqa: ARG002
         """Derivatives (point, state) by what the right-hand side gives (point, output)."""
-        return given
+        return outputs
 
     def observe(self, drive: Drive, rows: Rows, states: Values, past: Values | None = None) -> Values:
         """Observed channels (row, step, observed) along rows that were run, their states and past as of `run`."""
@@ -152,11 +152,11 @@ class Compiled:
         for column in range(len(self.parameters)):
             if used[first + column]:
                 columns[first + column] = np.repeat(values[:, column], steps)
-        found = at_points(self.observation, columns, late.reshape(points, -1), points)
-        return np.ascontiguousarray(found.T).reshape(count, steps, len(self.observed))
+        observed = at_points(self.observation, columns, late.reshape(points, -1), points)
+        return np.ascontiguousarray(observed.T).reshape(count, steps, len(self.observed))
 
     def _driven(self, drive: Drive) -> tuple:
-        wraps = np.array([each.wraps for each in self.simulation.inputs], bool)
+        wraps = np.array([signal.wraps for signal in self.simulation.inputs], bool)
         return drive.rate, drive.time0, drive.inputs, drive.samples, wraps
 
     def _before(self, past: Values | None) -> Values:
@@ -196,8 +196,8 @@ class Compiled:
         """Seconds of each delay of a program, (row, delay)."""
         if not program.delays:
             return np.empty((len(values), 0))
-        wanted = compile_program([seconds for _, seconds in program.delays], self.parameters)
-        return np.ascontiguousarray(at_points(wanted, list(values.T), None, len(values)).T)
+        ago = compile_program([seconds for _, seconds in program.delays], self.parameters)
+        return np.ascontiguousarray(at_points(ago, list(values.T), None, len(values)).T)
 
     def _delays(self, program: Program) -> NDArray[np.int64]:
         """Of each delay whether it is of a state (else of an input), and its column, (delay, 2)."""

@@ -71,7 +71,7 @@ def evaluate_many(simulation: Simulation, expressions: Sequence[str], points: Po
     seconds = at_points(ago, columns, None, count)
     late = np.empty((count, len(program.delays)))
     for k, (signal, _) in enumerate(program.delays):
-        wraps = any(each.wraps for each in simulation.inputs if each.name == signal)
+        wraps = any(driver.wraps for driver in simulation.inputs if driver.name == signal)
         late[:, k] = delay_series(columns[program.leaves.index(signal)], seconds[k], points.rate, wraps)
     return at_points(program, columns, late, count)
 
@@ -111,7 +111,7 @@ def refuse_delays(simulation: Simulation | PythonSimulation, shortest_s: float =
     An input is known in full, so that a negative delay of one is a signal that was recorded late.
     """
     values = simulation.values()
-    inputs = tuple(each.name for each in simulation.inputs)
+    inputs = tuple(signal.name for signal in simulation.inputs)
     lines = [*simulation.expressions()]
     if isinstance(simulation, PythonSimulation):
         lines += [(("inputs", name), text) for name, text in simulation.replaced]
@@ -132,14 +132,14 @@ def refuse_own_delays(
             continue
         program = compile_program([ago], tuple(values))
         with np.errstate(all="ignore"):
-            seconds = float(at_points(program, [np.array(one) for one in values.values()], None, 1)[0, 0])
-        said = f"{written(call)[:60]!r} is {seconds:g} s" + (f" ({written(ago)[:40]})" if set(names(ago)) else "")
+            seconds = float(at_points(program, [np.array(value) for value in values.values()], None, 1)[0, 0])
+        fault = f"{written(call)[:60]!r} is {seconds:g} s" + (f" ({written(ago)[:40]})" if set(names(ago)) else "")
         if not np.isfinite(seconds):
-            raise SimulationError("a delay must be a number of seconds", said, "Write a number that is not negative.")
+            raise SimulationError("a delay must be a number of seconds", fault, "Write a number that is not negative.")
         if seconds < 0 and not (isinstance(signal, Name) and signal.name in inputs):
             raise SimulationError(
                 "the delay of a state must not be negative, because its future is unknown",
-                said,
+                fault,
                 "Write the delay without the minus sign.",
             )
         if abs(seconds) >= shortest_s:
@@ -147,6 +147,6 @@ def refuse_own_delays(
                 f"a delay must be shorter than the shortest trial ({trial!r}, {shortest_s:.4g} s)"
                 if trial
                 else f"a delay must be shorter than a day ({shortest_s:g} s)",
-                said,
+                fault,
                 "Write the delay in seconds, or remove the trial." if trial else "Write the delay in seconds.",
             )

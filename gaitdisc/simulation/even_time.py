@@ -54,7 +54,7 @@ def on_even_time(
     count = int(place[-1]) + 1
     missing = count - len(place)
     if missing:  # empty rows where the clock jumped
-        driving, observed = (np.full((count, each.shape[1]), np.nan) for each in (even.inputs, even.observed))
+        driving, observed = (np.full((count, table.shape[1]), np.nan) for table in (even.inputs, even.observed))
         driving[place], observed[place] = even.inputs, even.observed
         even = TrialColumns(even.name, even.time[0] + np.arange(count) / rate, driving, observed)
         what = f"trial {trial.name!r} lacks {missing} of {len(even.time)} rows"
@@ -64,8 +64,8 @@ def on_even_time(
 
 def clock_findings(trials: list[TrialColumns], rate: float, source: str) -> list[Finding]:
     """Note times that look like milliseconds."""
-    whole = all(np.array_equal(trial.time, np.rint(trial.time)) for trial in trials)
-    if rate >= SLOW_HZ or not whole:
+    is_whole = all(np.array_equal(trial.time, np.rint(trial.time)) for trial in trials)
+    if rate >= SLOW_HZ or not is_whole:
         return []
     what = f"the time step is {1 / rate:g} s, and the trial lasts {len(trials[0].time) / rate:g} s"
     return [Finding("warning", "clock", source, what, MILLISECONDS)]
@@ -145,8 +145,8 @@ def _along(values: Values, time: Values, late_s: Values, wraps: tuple[bool, ...]
     for column, turns in enumerate(wraps):
         known = np.isfinite(values[:, column])
         if known.sum() > 1:
-            whole = _between(time, known, values[:, column], turns)
-            at = whole - late_s * np.gradient(whole, time)
+            bridged = _between(time, known, values[:, column], turns)
+            at = bridged - late_s * np.gradient(bridged, time)
             out[:, column] = np.where(known, at % 1.0 if turns else at, np.nan)
     return out
 
@@ -158,7 +158,7 @@ def _between(at: Values, known: NDArray[np.bool_], values: Values, turns: bool) 
 
 def _roughness(values: Values, like: Values) -> float:
     """Sum over the columns of the squared third differences, each over that of another table."""
-    sums = [np.nansum(np.diff(one, 3, axis=0) ** 2, axis=0) for one in (values, like)]
+    sums = [np.nansum(np.diff(table, 3, axis=0) ** 2, axis=0) for table in (values, like)]
     return float(np.sum(sums[0] / np.where(sums[1] > 0, sums[1], 1.0)))
 
 
@@ -181,8 +181,8 @@ def _bridge_inputs(
                 f"value from t = {trial.time[first]:.4g} s on",
                 "Split the trial there into two, or fill the gap first.",
             )
-        whole = _between(np.arange(len(empty), dtype=float), ~empty, filled[:, column], name == "phase")
-        filled[:, column] = whole % 1.0 if name == "phase" else whole
+        bridged = _between(np.arange(len(empty), dtype=float), ~empty, filled[:, column], name == "phase")
+        filled[:, column] = bridged % 1.0 if name == "phase" else bridged
         what = f"trial {trial.name!r} lacks {int(empty.sum())} samples, at most {longest / rate:.3g} s in a row"
         findings.append(Finding("warning", "bridged", source, what, "the simulated motion in these gaps", name))
     return replace(trial, inputs=filled)

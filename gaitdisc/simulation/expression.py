@@ -110,7 +110,7 @@ def names(tree: Tree) -> Iterator[str]:
     >>> sorted(set(names(parse("-k*max(0, x - x0) + k"))))
     ['k', 'x', 'x0']
     """
-    return (each.name for each in _each_part(tree) if isinstance(each, Name))
+    return (part.name for part in _each_part(tree) if isinstance(part, Name))
 
 
 def delays(tree: Tree) -> Iterator[Operation]:
@@ -119,7 +119,7 @@ def delays(tree: Tree) -> Iterator[Operation]:
     >>> [each.arguments[0].name for each in delays(parse("1 - 2*delay(v, 0.1)"))]
     ['v']
     """
-    return (each for each in _each_part(tree) if isinstance(each, Operation) and each.symbol == "delay")
+    return (part for part in _each_part(tree) if isinstance(part, Operation) and part.symbol == "delay")
 
 
 def _each_part(tree: Tree) -> Iterator[Tree]:
@@ -134,10 +134,10 @@ def unknown_name(text: str, name: str, known: tuple[str, ...]) -> SimulationErro
     >>> unknown_name("b*omgea", "omgea", ("omega", "b")).remedy
     "Did you mean 'omega'? Known names: omega, b."
     """
-    found = re.search(rf"\b{re.escape(name)}\b", text)
+    match = re.search(rf"\b{re.escape(name)}\b", text)
     listed = ", ".join(known[:30]) + (", ..." if len(known) > 30 else "")
     remedy = f"{did_you_mean(name, known)} Known names: {listed}.".lstrip()
-    return _refusal(text, found.start() if found else 0, f"the unknown name {name!r}", remedy)
+    return _refusal(text, match.start() if match else 0, f"the unknown name {name!r}", remedy)
 
 
 class _Conversion:
@@ -165,8 +165,8 @@ class _Conversion:
         if isinstance(node, ast.Call):
             return self._call(node, depth)
         kind = type(node.op) if isinstance(node, ast.BinOp | ast.UnaryOp) else type(node)
-        found, remedy = _WORDS.get(kind, (f"{kind.__name__}, which is not arithmetic", f"Use {_ALLOWED}."))
-        raise self._refuse(node, found, remedy)
+        piece, remedy = _WORDS.get(kind, (f"{kind.__name__}, which is not arithmetic", f"Use {_ALLOWED}."))
+        raise self._refuse(node, piece, remedy)
 
     def _number(self, node: ast.Constant) -> Number:
         if type(node.value) not in (int, float):
@@ -188,19 +188,19 @@ class _Conversion:
             raise self._refuse(node, f"the unknown function {name!r}", remedy)
         fewest, most = FUNCTIONS[name]
         if not fewest <= count <= most:
-            wanted = f"{fewest}" if fewest == most else f"{fewest} to {most}"
-            raise self._refuse(node, f"{name} with {count} arguments", f"Give {name} {wanted}.")
+            allowed = f"{fewest}" if fewest == most else f"{fewest} to {most}"
+            raise self._refuse(node, f"{name} with {count} arguments", f"Give {name} {allowed}.")
         return Operation(name, tuple(self.tree(argument, depth + 1) for argument in node.args))
 
-    def _refuse(self, node: ast.expr, found: str, remedy: str) -> SimulationError:
-        return _refusal(self._text, self._start + node.col_offset, found, remedy)
+    def _refuse(self, node: ast.expr, piece: str, remedy: str) -> SimulationError:
+        return _refusal(self._text, self._start + node.col_offset, piece, remedy)
 
 
-def _refusal(text: str, at: int, found: str, remedy: str) -> SimulationError:
+def _refusal(text: str, at: int, piece: str, remedy: str) -> SimulationError:
     line, column = text.count("\n", 0, at) + 1, at - (text.rfind("\n", 0, at) + 1) + 1
     around = text[max(0, at - 20) : at + 30].replace("\n", " ")
     where = f"line {line}, column {column}" if "\n" in text else f"column {column}"
-    return SimulationError("expressions must be arithmetic on names", f"at {where} ({around!r}) found {found}", remedy)
+    return SimulationError("expressions must be arithmetic on names", f"at {where} ({around!r}) found {piece}", remedy)
 
 
 def _remedy(strange: str) -> str:

@@ -90,10 +90,10 @@ def simulation_from_function(
     taken = _by_name(function) if not states else _as_vectors(function, states, inputs, dict(parameters or {}))
     count = taken.derivatives
     if count > len(taken.signals) or (states and count != len(states)):
-        given = f"states: {len(states)}" if states else f"arguments without a default: {len(taken.signals)}"
+        stated = f"states: {len(states)}" if states else f"arguments without a default: {len(taken.signals)}"
         raise SimulationError(
             "the first arguments of a simulation's function must be its states, one for each derivative",
-            f"derivatives that {taken.title} returns: {count}; {given}",
+            f"derivatives that {taken.title} returns: {count}; {stated}",
             "Give every state its own argument, before the inputs.",
         )
     unit, known = dict(units or {}), (*taken.signals, *taken.numbers, *taken.ports)
@@ -148,8 +148,8 @@ class _Taken:
     @cached_property
     def derivatives(self) -> int:
         """How many it returns."""
-        found = [(len(one), point) for one, point in zip(self.returned, self.points, strict=True) if one]
-        if not found:
+        tries = [(len(rates), point) for rates, point in zip(self.returned, self.points, strict=True) if rates]
+        if not tries:
             raised = self.raised[0]
             raise SimulationError(
                 "a simulation's function must accept a number for each argument and return a derivative for each state",
@@ -158,27 +158,27 @@ class _Taken:
                 else f"{self.title} raised {type(raised).__name__}: {str(raised)[:200]}",
                 self.remedy,
             ) from raised
-        again = self._try(found[-1][1])
-        before = next(one for one in reversed(self.returned) if one)
+        again = self._try(tries[-1][1])
+        before = next(rates for rates in reversed(self.returned) if rates)
         if not np.array_equal(again, before, equal_nan=True):
             raise SimulationError(
                 "a simulation's function must return the same derivatives whenever it is called with the same numbers",
                 f"{self.title} returned {before}, then {again}",
                 "Remove random numbers and internal memory. Noise belongs to the measurement.",
             )
-        return found[0][0]
+        return tries[0][0]
 
     @cached_property
     def points(self) -> list[dict[str, float]]:
         """Where it is tried, value by name: near, far, at rest; parameters near their own values."""
         rng = np.random.default_rng(0)
-        found = []
+        points = []
         for number in range(TRIED):
             low, high = ((-0.5, 0.5), (-2.0, 2.0), (0.1, 1.0), (0.0, 0.0))[number % 4]
             signals = {name: float(rng.uniform(low, high)) for name in self.signals}
             numbers = {name: value * float(rng.uniform(0.8, 1.2)) for name, value in self.numbers.items()}
-            found.append({TIME: float(rng.uniform(0, 5)), **signals, **numbers, **dict.fromkeys(self.ports, PUSH)})
-        return found
+            points.append({TIME: float(rng.uniform(0, 5)), **signals, **numbers, **dict.fromkeys(self.ports, PUSH)})
+        return points
 
     @cached_property
     def returned(self) -> list[list[float]]:
@@ -200,18 +200,18 @@ class _Taken:
     def at(self, point: Mapping[str, Any]) -> list[float]:
         """Derivatives at one point."""
         plain, named = self.arguments(point.__getitem__)
-        found = self.function(*plain, **named)
-        if isinstance(found, tuple | list) and all(type(one) is float for one in found):
-            return [*found]
-        if found is None or isinstance(found, str | Mapping):
-            raise _NoNumbersError(f"{self.title} returns {str(found)[:60] if found is None else type(found).__name__}")
-        return [float(one) for one in flat(found)]
+        value = self.function(*plain, **named)
+        if isinstance(value, tuple | list) and all(type(number) is float for number in value):
+            return [*value]
+        if value is None or isinstance(value, str | Mapping):
+            raise _NoNumbersError(f"{self.title} returns {str(value)[:60] if value is None else type(value).__name__}")
+        return [float(number) for number in flat(value)]
 
-    def gives(self, found: Values) -> bool:
+    def gives(self, rates: Values) -> bool:
         """Whether derivatives (point, state) are what it returns, wherever that is a number."""
-        there = [number for number, one in enumerate(self.returned) if one and np.all(np.isfinite(one))]
-        own = np.array([self.returned[number] for number in there]).reshape(len(there), -1)
-        return len(there) >= FEWEST and bool(np.all(np.abs(found[there] - own) <= NEAR * np.abs(own).max(axis=0)))
+        there = [number for number, output in enumerate(self.returned) if output and np.all(np.isfinite(output))]
+        known = np.array([self.returned[number] for number in there]).reshape(len(there), -1)
+        return len(there) >= FEWEST and bool(np.all(np.abs(rates[there] - known) <= NEAR * np.abs(known).max(axis=0)))
 
 
 @dataclass(frozen=True)
@@ -244,18 +244,18 @@ class _Called:
 
     def __call__(self, t: Any, x: Any, u: Any, values: Any, pushes: Any) -> Values:
         names = (TIME, *self.taken.signals, *self.taken.numbers, *self.taken.ports)
-        own = values[:, : len(self.taken.numbers)]  # parameters of effects come after the function's own
-        columns = [t, *x.T, *u.T, *own.T, *pushes.T]
+        numbers = values[:, : len(self.taken.numbers)]  # parameters of effects come after the function's own
+        columns = [t, *x.T, *u.T, *numbers.T, *pushes.T]
         if self.by_points:
             rows = zip(*(column.tolist() for column in columns), strict=True)
             return np.array([self._one(dict(zip(names, row, strict=True))) for row in rows]).reshape(x.shape)
         plain, named = self.taken.arguments(dict(zip(names, columns, strict=True)).__getitem__)
-        found = self.taken.function(*plain, **named)
-        if not isinstance(found, tuple | list):
-            found = np.reshape(np.asarray(found, float), (self.states, -1))
+        result = self.taken.function(*plain, **named)
+        if not isinstance(result, tuple | list):
+            result = np.reshape(np.asarray(result, float), (self.states, -1))
         rates = np.empty(x.shape)
-        for state, one in enumerate(found):
-            rates[:, state] = one
+        for state, rate in enumerate(result):
+            rates[:, state] = rate
         return rates
 
     def _one(self, point: Mapping[str, float]) -> list[float]:
@@ -283,23 +283,23 @@ def _refuse_other_numbers(simulation: Simulation, taken: _Taken) -> Simulation:
 def _by_name(function: Callable[..., Any]) -> _Taken:
     """A function that has an argument for each state, input, parameter and port."""
     arguments = inspect.signature(function).parameters
-    for one in arguments.values():
-        if one.kind in (one.VAR_POSITIONAL, one.VAR_KEYWORD, one.POSITIONAL_ONLY):
+    for arg in arguments.values():
+        if arg.kind in (arg.VAR_POSITIONAL, arg.VAR_KEYWORD, arg.POSITIONAL_ONLY):
             raise SimulationError(
                 "a simulation's function must name each of its states, inputs and parameters as an argument",
-                f"{_title(function)} has {str(one)!r}",
+                f"{_title(function)} has {str(arg)!r}",
                 "Write one argument for each. If the function takes vectors, name their elements: "
                 "simulation_from_function(function, states=[...], inputs=[...], parameters={...}).",
             )
-    plain = [one.name for one in arguments.values() if one.default is one.empty and one.kind is not one.KEYWORD_ONLY]
-    ports = tuple(one.name for one in arguments.values() if one.kind is one.KEYWORD_ONLY)
-    given = {name: arguments[name].default for name in arguments if name not in (*plain, *ports)}
-    dicts = {name: [str(key) for key in default] for name, default in given.items() if isinstance(default, Mapping)}
+    plain = [arg.name for arg in arguments.values() if arg.default is arg.empty and arg.kind is not arg.KEYWORD_ONLY]
+    ports = tuple(arg.name for arg in arguments.values() if arg.kind is arg.KEYWORD_ONLY)
+    defaults = {name: arguments[name].default for name in arguments if name not in (*plain, *ports)}
+    dicts = {name: [str(key) for key in default] for name, default in defaults.items() if isinstance(default, Mapping)}
     numbers: dict[str, float] = {}
-    for name, default in given.items():
+    for name, default in defaults.items():
         several = default if name in dicts else {name: default}
         numbers |= {str(key): _number(function, name, value) for key, value in several.items()}
-    single = [name for name in (*plain, *given, *ports) if name not in dicts]
+    single = [name for name in (*plain, *defaults, *ports) if name not in dicts]
 
     def from_values(value: Callable[[str], Any]) -> tuple[tuple, dict]:
         named = {name: value(name) for name in single}
@@ -323,22 +323,22 @@ def _as_vectors(
 ) -> _Taken:
     """A function of the time, the vector of the states and, where there are any, of the inputs and the parameters."""
     numbers = {name: _number(function, name, value) for name, value in parameters.items()}
-    taken = [one for one in inspect.signature(function).parameters.values() if one.default is one.empty]
-    wanted = 1 + bool(inputs) + bool(numbers)
-    if len(taken) not in (wanted, wanted + 1):
+    taken = [arg for arg in inspect.signature(function).parameters.values() if arg.default is arg.empty]
+    count = 1 + bool(inputs) + bool(numbers)
+    if len(taken) not in (count, count + 1):
         named = ["t", "x", *(["u"] if inputs else []), *(["p"] if numbers else [])]
         raise SimulationError(
             f"with these states, inputs and parameters the function must take ({', '.join(named)})",
-            f"{_title(function)} takes ({', '.join(one.name for one in taken)})",
+            f"{_title(function)} takes ({', '.join(arg.name for arg in taken)})",
             "Name the elements of each vector, or give the function these arguments.",
         )
 
     def from_values(value: Callable[[str], Any]) -> tuple[tuple, dict]:
         vectors = [np.array([value(name) for name in names]) for names in (states, inputs) if names]
         dicts = [{name: value(name) for name in numbers}] if numbers else []
-        return (*([value(TIME)] if len(taken) > wanted else []), *vectors, *dicts), {}
+        return (*([value(TIME)] if len(taken) > count else []), *vectors, *dicts), {}
 
-    swapped = len(taken) > wanted and taken[0].name != TIME and any(one.name == TIME for one in taken)
+    swapped = len(taken) > count and taken[0].name != TIME and any(arg.name == TIME for arg in taken)
     remedy = f"Put the time first: def {_title(function)}(t, {taken[0].name}): ..." if swapped else _Taken.remedy
     return _Taken(function, (*states, *inputs), numbers, (), from_values, remedy)
 

@@ -53,12 +53,12 @@ def integrate(program, drive, rows, plan, past, into):
     program, drive, rows, plan, past, into tuple or ndarray: as for `integrate_block`
     """
     place, starts, values, seconds = rows
-    found, ok = into
+    states, ok = into
     blocks = -(-starts.shape[0] // plan[2])
     for block in range(blocks):
         first, end = block * starts.shape[0] // blocks, (block + 1) * starts.shape[0] // blocks
-        own = (place[first:end], starts[first:end], values[first:end], seconds[first:end])
-        integrate_block(program, drive, own, plan, past, (found[first:end], ok[first:end]))
+        block_rows = (place[first:end], starts[first:end], values[first:end], seconds[first:end])
+        integrate_block(program, drive, block_rows, plan, past, (states[first:end], ok[first:end]))
 
 
 @compiled
@@ -76,7 +76,7 @@ def integrate_block(program, drive, rows, plan, past, into):
     rate, _, _, samples, wraps = drive
     place, starts, _, _ = rows
     steps, substeps, lanes, read = plan
-    found, ok = into
+    states, ok = into
     width, n = starts.shape
     registers, rates = _fill(program, rows, n + wraps.size, lanes), np.zeros((n, lanes))
     flat, out, there = registers.reshape(-1), rates.reshape(-1), np.uint64(width)
@@ -108,7 +108,7 @@ def integrate_block(program, drive, rows, plan, past, into):
                 _advance(x, registers, rates, total, (part, 1.0 / (rate * substeps)), width)
             if history.shape[1] > 1:
                 history[:, sample * substeps + sub + 1, :] = x[:, :width]
-        _keep(x, place[:, 1] + sample, last, live, found[:, sample + 1], ok)
+        _keep(x, place[:, 1] + sample, last, live, states[:, sample + 1], ok)
         if not live.any():
             break
 
@@ -230,15 +230,15 @@ def _cubic(values, position):
     if values.size < 4:
         return _linear(values, values.size - 1, position, False)
     first = min(max(int(position) - 1, 0), values.size - 4)
-    found = 0.0
+    value = 0.0
     for i in range(4):
         weight = 1.0
         for j in range(4):
             if j != i:
                 weight *= (position - first - j) / (i - j)
         if weight != 0.0:
-            found += weight * values[first + i]
-    return found
+            value += weight * values[first + i]
+    return value
 
 
 @compiled
@@ -276,7 +276,7 @@ def _advance(x, registers, rates, total, stage, width):
 
 
 @compiled
-def _keep(x, sample, last, live, found, ok):
+def _keep(x, sample, last, live, states, ok):
     """Keep the states of rows that still run; note which diverged, and which have come to their trial's end."""
     for r in range(last.size):
         if live[r] and sample[r] + 1 <= last[r]:
@@ -284,5 +284,5 @@ def _keep(x, sample, last, live, found, ok):
                 ok[r] = ok[r] and abs(x[s, r]) < BOUND
             if ok[r]:
                 for s in range(x.shape[0]):
-                    found[r, s] = x[s, r]
+                    states[r, s] = x[s, r]
         live[r] = ok[r] and sample[r] + 1 < last[r]

@@ -35,11 +35,11 @@ class Measured:
     def __post_init__(self) -> None:
         """Freeze, and refuse what does not fit."""
         observed = read_only(np.ascontiguousarray(self.observed, float))
-        wanted = (len(self.trials), self.drive.inputs.shape[1], len(self.channels))
-        if observed.shape != wanted or len(self.drive.samples) != len(self.trials):
+        shape = (len(self.trials), self.drive.inputs.shape[1], len(self.channels))
+        if observed.shape != shape or len(self.drive.samples) != len(self.trials):
             raise ShapeError(
                 "measured trials must have observed values of shape (trial, sample, channel)",
-                f"their shape is {observed.shape} instead of {wanted}",
+                f"their shape is {observed.shape} instead of {shape}",
                 "Pad the trials to the same length with NaN.",
             )
         object.__setattr__(self, "observed", observed)
@@ -86,7 +86,7 @@ def check_measured(
         findings = [*findings, Finding("warning", "short trial", source, too_few, "these trials, which are excluded")]
         trials = [trial for trial in trials if len(trial.time) >= SHORTEST]
     even = [on_even_time(trial, tuple(inputs), source) for trial in trials]
-    trials, rates = [one for one, _, _ in even], [rate for _, rate, _ in even]
+    trials, rates = [trial for trial, _, _ in even], [rate for _, rate, _ in even]
     apart = int(np.argmax(np.abs(np.array(rates) - rates[0])))
     if abs(rates[apart] - rates[0]) > 2e-3 * rates[0]:
         raise SamplingError(
@@ -123,7 +123,7 @@ def _together(notes: list[Finding]) -> list[Finding]:
 
 def _empty(trials: Sequence[TrialColumns], channels: Sequence[str], source: str) -> list[Finding]:
     """Refuse a channel that is as good as empty in a trial; report empty cells."""
-    found = []
+    findings = []
     for column, name in enumerate(channels):
         missing = {trial.name: int((~np.isfinite(trial.observed[:, column])).sum()) for trial in trials}
         for trial in trials:
@@ -138,19 +138,19 @@ def _empty(trials: Sequence[TrialColumns], channels: Sequence[str], source: str)
         if missing[worst]:
             rows = sum(len(trial.time) for trial in trials)
             what = f"missing samples: {sum(missing.values())} of {rows}, most in trial {worst!r} ({missing[worst]})"
-            found.append(Finding("note", "empty cells", source, what, "nothing: empty cells are excluded", name))
-    return found
+            findings.append(Finding("note", "empty cells", source, what, "nothing: empty cells are excluded", name))
+    return findings
 
 
 def _constant(
     trials: Sequence[TrialColumns], inputs: Sequence[str], channels: Sequence[str], source: str
 ) -> list[Finding]:
     """Refuse an observed channel that never varies; report what does not vary in a trial."""
-    found = []
+    findings = []
     for kind, names in (("observed", channels), ("inputs", inputs)):
         for column, name in enumerate(names):
             values = [(trial.name, getattr(trial, kind)[:, column]) for trial in trials]
-            still = [trial for trial, one in values if np.ptp(finite_values(one)) == 0]
+            still = [trial for trial, samples in values if np.ptp(finite_values(samples)) == 0]
             if len(still) == len(trials) and kind == "observed":
                 raise ShapeError(
                     f"the observed channel {name!r} must vary",
@@ -160,5 +160,5 @@ def _constant(
             if still:
                 what = f"is constant in {len(still)} of {len(trials)} trials (first: {still[0]!r})"
                 severity = "warning" if kind == "observed" else "note"
-                found.append(Finding(severity, "constant", source, what, "the evidence from these trials", name))
-    return found
+                findings.append(Finding(severity, "constant", source, what, "the evidence from these trials", name))
+    return findings

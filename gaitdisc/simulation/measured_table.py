@@ -42,7 +42,7 @@ def gather_table(table: pd.DataFrame, simulation: Simulation, source: str) -> Me
     columns = [str(column).strip() for column in table.columns]
     _refuse_doubled(columns, source)
     table = table.set_axis(columns, axis="columns").reset_index(drop=True)
-    inputs = tuple(each.name for each in simulation.inputs)
+    inputs = tuple(signal.name for signal in simulation.inputs)
     channels = _channels(simulation, columns, source)
     for name in ("time", *inputs):
         if name not in columns:
@@ -57,43 +57,43 @@ def gather_table(table: pd.DataFrame, simulation: Simulation, source: str) -> Me
             "Fill the column 'time', or remove the row.",
         )
     order = list(dict.fromkeys(trial.tolist()))
-    parts = []
+    trials = []
     for name in order:
         rows = np.flatnonzero(trial == name)
-        own = {each: values[rows] for each, values in numbers.items()}
-        parts.append(_columns(str(name), own["time"], own, inputs, channels))
-    return check_measured(parts, inputs, channels, source, _report_left_out(simulation, columns, channels, source))
+        series = {key: values[rows] for key, values in numbers.items()}
+        trials.append(_columns(str(name), series["time"], series, inputs, channels))
+    return check_measured(trials, inputs, channels, source, _report_left_out(simulation, columns, channels, source))
 
 
 def gather_recordings(recordings: Sequence[Recording], simulation: Simulation) -> Measured:
     """Trials of recordings at one rate, one each, converted to the simulation's units."""
-    inputs = tuple(each.name for each in simulation.inputs)
+    inputs = tuple(signal.name for signal in simulation.inputs)
     findings: dict[str, Finding] = {}
-    parts = []
+    trials = []
     channels = _channels(simulation, recordings[0].names, recordings[0].source.file or "recording 1")
     for number, recording in enumerate(recordings, 1):
         name = recording.source.file or f"recording {number}"
         numbers = {}
-        for wanted in dict.fromkeys((*inputs, *channels)):
-            if wanted not in recording.names:
-                raise _missing(wanted, recording.names, name)
-            values = _convert(recording, wanted, simulation, name, findings)
-            doubtful = int(np.count_nonzero(np.asarray(recording.suspect)[:, recording.names.index(wanted)]))
+        for column in dict.fromkeys((*inputs, *channels)):
+            if column not in recording.names:
+                raise _missing(column, recording.names, name)
+            values = _convert(recording, column, simulation, name, findings)
+            doubtful = int(np.count_nonzero(np.asarray(recording.suspect)[:, recording.names.index(column)]))
             if doubtful:
                 what = f"samples marked as unreliable: {doubtful} of {len(values)}"
-                findings[f"{name} {wanted}"] = Finding(
-                    "warning", "suspect", name, what, "results that depend on these samples", wanted
+                findings[f"{name} {column}"] = Finding(
+                    "warning", "suspect", name, what, "results that depend on these samples", column
                 )
-            numbers[wanted] = values
-        parts.append(_columns(name, np.array(recording.time), numbers, inputs, channels))
-    return check_measured(parts, inputs, channels, parts[0].name, list(findings.values()))
+            numbers[column] = values
+        trials.append(_columns(name, np.array(recording.time), numbers, inputs, channels))
+    return check_measured(trials, inputs, channels, trials[0].name, list(findings.values()))
 
 
 def _columns(
     name: str, time: Values, numbers: Mapping[str, Values], inputs: Sequence[str], channels: Sequence[str]
 ) -> TrialColumns:
     none = np.empty((len(time), 0))
-    driving, observed = (np.column_stack([numbers[each] for each in names] or [none]) for names in (inputs, channels))
+    driving, observed = (np.column_stack([numbers[key] for key in names] or [none]) for names in (inputs, channels))
     return TrialColumns(name, time, driving, observed)
 
 
@@ -101,9 +101,9 @@ def _table(path: Path) -> pd.DataFrame:
     import pandas as pd
 
     if path.suffix.lower() not in ENDINGS:
-        found = f"{path.name} is a folder" if path.is_dir() else f"{path.name} ends in {path.suffix!r}"
+        fault = f"{path.name} is a folder" if path.is_dir() else f"{path.name} ends in {path.suffix!r}"
         remedy = "Export the data as CSV, with all trials in one table and a column 'trial'."
-        raise ReadError("measured data must be one CSV or Parquet table", found, remedy)
+        raise ReadError("measured data must be one CSV or Parquet table", fault, remedy)
     try:
         check_regular(path, LARGEST_TEXT_BYTES)
         if path.suffix.lower() == ".parquet":
@@ -127,12 +127,12 @@ def _table(path: Path) -> pd.DataFrame:
     except GaitdiscError:
         raise
     except OSError as error:
-        found = f"{path.name}: {error.strerror or error}"
+        fault = f"{path.name}: {error.strerror or error}"
         kind = MissingFileError if isinstance(error, FileNotFoundError) else ReadError
-        raise kind("measured data must be a table", found, "Check the path.") from error
+        raise kind("measured data must be a table", fault, "Check the path.") from error
     except Exception as error:  # pandas and pyarrow have no common ancestor of theirs
-        found = f"{path.name}: {str(error).splitlines()[0][:200] if str(error) else type(error).__name__}"
-        raise ReadError("measured data must be a CSV or Parquet table", found, "Export the file again.") from error
+        fault = f"{path.name}: {str(error).splitlines()[0][:200] if str(error) else type(error).__name__}"
+        raise ReadError("measured data must be a CSV or Parquet table", fault, "Export the file again.") from error
 
 
 def _refuse_doubled(head: Sequence[str], file: str) -> None:
@@ -211,10 +211,10 @@ def _report_left_out(
     simulation: Simulation, columns: Sequence[str], channels: tuple[str, ...], file: str
 ) -> list[Finding]:
     """Report states that are not measured, and columns that nothing uses; of both at once, one may be the other."""
-    found = []
+    findings = []
     absent = [name for name, _ in simulation.observations if name not in channels]
-    wanted = {"trial", "time", *channels, *(each.name for each in simulation.inputs)}
-    unused = [column for column in columns if column not in wanted]
+    known = {"trial", "time", *channels, *(signal.name for signal in simulation.inputs)}
+    unused = [column for column in columns if column not in known]
     if absent and unused:
         raise ChannelError(
             "if an observation has no column, every column must be used: an unused one may be misnamed",
@@ -223,11 +223,11 @@ def _report_left_out(
         )
     if absent:
         what = f"not measured: {', '.join(absent)}"
-        found.append(Finding("note", "not measured", file, what, "nothing; these states follow from the others"))
+        findings.append(Finding("note", "not measured", file, what, "nothing; these states follow from the others"))
     if unused:
         listed = ", ".join(unused[:10]) + (", ..." if len(unused) > 10 else "")
-        found.append(Finding("note", "unused columns", file, listed, ""))
-    return found
+        findings.append(Finding("note", "unused columns", file, listed, ""))
+    return findings
 
 
 def _convert(

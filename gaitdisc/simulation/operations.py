@@ -86,8 +86,8 @@ def sine(x, quarter):
     c = (-1.13596475577881948265e-11 * z + 2.08757232129817482790e-9) * z - 2.75573143513906633035e-7
     c = ((c * z + 2.48015872894767294178e-5) * z - 1.38888888888741095749e-3) * z + 4.16666666666666019037e-2
     half = 0.5 * z
-    whole = 1.0 - half
-    c = whole + (((1.0 - whole) - half) + z * z * c)
+    leading = 1.0 - half
+    c = leading + (((1.0 - leading) - half) + z * z * c)
     value = c if turn & 1 else s
     return -value if turn & 2 else value
 

@@ -66,8 +66,8 @@ def compile_program(
     graph = _Graph(leaves)
     for name, tree in (definitions or {}).items():
         graph.scope[name] = graph.node(tree)
-    wanted = [graph.node(tree) for tree in outputs]
-    return _lay_out(graph, wanted, frozenset(fixed))
+    nodes = [graph.node(tree) for tree in outputs]
+    return _lay_out(graph, nodes, frozenset(fixed))
 
 
 class _Graph:
@@ -133,10 +133,10 @@ class _Graph:
         return self._numbers[part]
 
 
-def _lay_out(graph: _Graph, wanted: list[int], fixed: frozenset[str]) -> Program:
+def _lay_out(graph: _Graph, outputs: list[int], fixed: frozenset[str]) -> Program:
     """Registers and order: leaves, delays, constants, what is fixed, then the rest in registers used again."""
     parts = graph.parts
-    needed = _list_needed(parts, wanted)
+    needed = _list_needed(parts, outputs)
     delayed = {key: len(graph.leaves) + i for i, key in enumerate(graph.delays)}
     register = {graph.scope[name]: i for i, name in enumerate(graph.leaves)}
     constants: list[float] = []
@@ -161,14 +161,14 @@ def _lay_out(graph: _Graph, wanted: list[int], fixed: frozenset[str]) -> Program
         order.add(node, parts[node], keep=True)
     setup = len(order.code)
     rest = [node for node in operations if node not in still]
-    order.run(rest, parts, wanted)
+    order.run(rest, parts, outputs)
     code = np.array(order.code, np.int64).reshape(-1, 4)
     seconds = tuple((signal, tree) for (signal, _), tree in graph.delays.items())
-    return Program(graph.leaves, seconds, np.array(constants), code, setup, max(order.most, 1), outputs=len(wanted))
+    return Program(graph.leaves, seconds, np.array(constants), code, setup, max(order.most, 1), outputs=len(outputs))
 
 
-def _list_needed(parts: list[tuple], wanted: list[int]) -> list[int]:
-    seen, stack = set(wanted), list(wanted)
+def _list_needed(parts: list[tuple], outputs: list[int]) -> list[int]:
+    seen, stack = set(outputs), list(outputs)
     while stack:
         part = parts[stack.pop()]
         if part[0] not in ("leaf", "delay", "constant"):
@@ -195,9 +195,9 @@ class _Order:
         self._register[node] = out
         self.code.append((CODES[part[0]], out, self._register[part[1]], self._register[part[2]]))
 
-    def run(self, nodes: list[int], parts: list[tuple], wanted: list[int]) -> None:
+    def run(self, nodes: list[int], parts: list[tuple], outputs: list[int]) -> None:
         places: dict[int, list[int]] = {}
-        for output, node in enumerate(wanted):
+        for output, node in enumerate(outputs):
             places.setdefault(node, []).append(output)
         last = {argument: step for step, node in enumerate(nodes) for argument in parts[node][1:]}
         owned = set(nodes)

@@ -43,29 +43,29 @@ class PythonSimulation:
         """What a `Simulation` has: a part of it, or what gives another of this function with other parts."""
         if name.startswith("__"):  # copy and pickle look these up before there are parts
             raise AttributeError(name)
-        own = getattr(self.parts, name)
+        attribute = getattr(self.parts, name)
         if not name.startswith(("with", "observing")):
-            return own
-        return lambda *given, **named: replace(self, parts=own(*given, **named))
+            return attribute
+        return lambda *arguments, **named: replace(self, parts=attribute(*arguments, **named))
 
     @cached_property
     def feeds(self) -> Simulation:
         """What the function is fed with, as observations: ports, what is added to each equation, inputs, the time."""
         sums = {port.name: port.name for port in self.ports}
         for state in self.states:
-            own = [f"({each.term})" for each in self.effects if (each.kind, each.place) == ("equation", state.name)]
-            sums[f"d/dt {state.name}"] = " + ".join(own) or "0"
-        given = dict(self.replaced)
-        sums |= {f"input {each.name}": given.get(each.name, each.name) for each in self.inputs}
+            terms = [f"({e.term})" for e in self.effects if (e.kind, e.place) == ("equation", state.name)]
+            sums[f"d/dt {state.name}"] = " + ".join(terms) or "0"
+        replaced = dict(self.replaced)
+        sums |= {f"input {signal.name}": replaced.get(signal.name, signal.name) for signal in self.inputs}
         return replace(self.parts, observations=(*sums.items(), ("time", "t")), sensors=())
 
     def with_input(self, name: str, expression: str) -> PythonSimulation:
         """Simulation in which an input is replaced by an expression of itself."""
         seen = self.parts.with_observation("replaced", dict(self.replaced).get(name, name)).with_input(name, expression)
-        kept = dict(self.replaced) | {name: dict(seen.observations)["replaced"]}
+        replaced = dict(self.replaced) | {name: dict(seen.observations)["replaced"]}
         rest = tuple(line for line in seen.observations if line[0] != "replaced")
         parts = replace(seen, observations=rest, equations=self.equations)
-        return replace(self, parts=parts, replaced=tuple(kept.items()))
+        return replace(self, parts=parts, replaced=tuple(replaced.items()))
 
 
 def python_simulation(
@@ -95,11 +95,11 @@ def call(simulation: PythonSimulation, x: Values, fed: Values, values: Values) -
     fed (row, feed): ports, sums of the equations' effects, inputs, time: the observations of `PythonSimulation.feeds`
     """
     ports, states = len(simulation.ports), len(simulation.states)
-    own = np.asarray(simulation.rates(fed[:, -1], x, fed[:, ports + states : -1], values, fed[:, :ports]))
-    if own.shape != x.shape or own.dtype.kind not in "fiu":
+    rates = np.asarray(simulation.rates(fed[:, -1], x, fed[:, ports + states : -1], values, fed[:, :ports]))
+    if rates.shape != x.shape or rates.dtype.kind not in "fiu":
         raise SimulationError(
             f"the right-hand side of {simulation.title!r} must return one number per row and state, shape {x.shape}",
-            f"it returned {own.dtype} of shape {own.shape}",
+            f"it returned {rates.dtype} of shape {rates.shape}",
             "Return an array (row, state), for example np.column_stack of the derivatives.",
         )
-    return own + fed[:, ports : ports + states]
+    return rates + fed[:, ports : ports + states]

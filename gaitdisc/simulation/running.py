@@ -33,9 +33,9 @@ def compile_simulation(simulation: Simulation | PythonSimulation) -> Compiled:
     """
     if isinstance(simulation, PythonSimulation):
         parts = simulation.parts
-        own, feeds = (compile_simulation(replace(one, model="")) for one in (parts, simulation.feeds))
+        base, feeds = (compile_simulation(replace(part, model="")) for part in (parts, simulation.feeds))
         return PythonCompiled(
-            **{**vars(own), "simulation": parts, "right_hand_side": feeds.observation}, model=simulation
+            **{**vars(base), "simulation": parts, "right_hand_side": feeds.observation}, model=simulation
         )
     if simulation.model:
         raise SimulationError(
@@ -44,13 +44,13 @@ def compile_simulation(simulation: Simulation | PythonSimulation) -> Compiled:
             "Give the path of this model to `gaitdisc discover`, which uses the engine.",
         )
     states = tuple(state.name for state in simulation.states)
-    inputs = tuple(each.name for each in simulation.inputs)
+    inputs = tuple(signal.name for signal in simulation.inputs)
     parameters = tuple(parameter.name for parameter in simulation.parameters)
     defaults = read_only([parameter.value for parameter in simulation.parameters])
     leaves = ("t", *states, *inputs, *parameters)
     defined = simulation_scope(simulation)
     equations = dict(simulation.equations)
-    wanted = [_with_effects(parse(equations[name]), simulation, "equation", name) for name in states]
+    rates = [_with_effects(parse(equations[name]), simulation, "equation", name) for name in states]
     seen = [parse(text) for _, text in simulation.observations]
     observed = tuple(name for name, _ in simulation.observations)
     return Compiled(
@@ -60,7 +60,7 @@ def compile_simulation(simulation: Simulation | PythonSimulation) -> Compiled:
         parameters=parameters,
         observed=observed,
         defaults=defaults,
-        right_hand_side=compile_program(wanted, leaves, parameters, defined),
+        right_hand_side=compile_program(rates, leaves, parameters, defined),
         observation=compile_program(seen, leaves, parameters, defined),
     )
 
@@ -74,7 +74,7 @@ def simulation_scope(simulation: Simulation) -> dict[str, Tree]:
 
 
 def _with_effects(tree: Tree, simulation: Simulation, kind: str, place: str) -> Tree:
-    terms = [parse(each.term) for each in simulation.effects if (each.kind, each.place) == (kind, place)]
+    terms = [parse(effect.term) for effect in simulation.effects if (effect.kind, effect.place) == (kind, place)]
     if terms and tree == Number(0.0):
         tree = terms.pop(0)
     for term in terms:
@@ -104,9 +104,9 @@ class PythonCompiled(Compiled):
         block = machine.integrate_block.py_func
         return lanes, FunctionType(block.__code__, {**vars(machine), "derive": derive})
 
-    def _derivatives(self, x: Values, given: Values, values: Values) -> Values:
+    def _derivatives(self, x: Values, outputs: Values, values: Values) -> Values:
         """Derivatives by the function, which is fed with what the right-hand side gives."""
-        return call(self.model, x, given, np.broadcast_to(values, (len(x), len(self.parameters))))
+        return call(self.model, x, outputs, np.broadcast_to(values, (len(x), len(self.parameters))))
 
 
 def refuse_divergence(compiled: Compiled, drive: Drive, rows: Rows, states: Values, ok: NDArray[np.bool_]) -> None:
@@ -152,7 +152,7 @@ def _find_cause(compiled: Compiled, time: float, last: Values, u: Values, values
     if not len(values):
         return fastest, ""
     moved = values * (1 + _NUDGE * np.eye(len(values)))
-    times, here, inputs, delayed = (np.repeat(each, len(values), axis=0) for each in (t, x[None], u, late))
+    times, here, inputs, delayed = (np.repeat(array, len(values), axis=0) for array in (t, x[None], u, late))
     with np.errstate(all="ignore"):
         change = compiled.rates(times, here, inputs, moved, delayed)[:, fastest] - rates[fastest]
     change = np.nan_to_num(np.abs(change), nan=0.0, posinf=0.0)

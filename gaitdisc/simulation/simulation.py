@@ -82,36 +82,36 @@ class Simulation:
         for part in ("states", "inputs", "parameters", "ports", "effects", "sensors"):
             object.__setattr__(self, part, tuple(getattr(self, part)))
         for part in ("definitions", "equations", "observations"):
-            given = getattr(self, part)
-            pairs = given.items() if isinstance(given, Mapping) else given
+            lines = getattr(self, part)
+            pairs = lines.items() if isinstance(lines, Mapping) else lines
             object.__setattr__(self, part, tuple((str(name), str(text)) for name, text in pairs))
         if not self.observations:
             object.__setattr__(self, "observations", tuple((state.name, state.name) for state in self.states))
         order = {name: number for number, (name, _) in enumerate(self.observations)}
-        known = [one for one in self.sensors if one.known]
-        known.sort(key=lambda one: order.get(one.channel, len(order)))  # what belongs to none of them stands last
+        known = [sensor for sensor in self.sensors if sensor.known]
+        known.sort(key=lambda sensor: order.get(sensor.channel, len(order)))  # what belongs to none of them stands last
         object.__setattr__(self, "sensors", tuple(known))
         check(self)
 
     def __repr__(self) -> str:
-        effects = "".join(f", {each.name} at {each.place}" for each in self.effects)
+        effects = "".join(f", {effect.name} at {effect.place}" for effect in self.effects)
         return f"Simulation({self.title!r}: states {', '.join(state.name for state in self.states)}{effects})"
 
     def _repr_html_(self) -> str:
         rows = [(f"d{state}/dt", term) for state, term in self.equations]
-        rows += [(each.name, f"{each.value:g} {each.unit}") for each in self.parameters]
-        rows += [(f"at {each.place}", each.term) for each in self.effects]
+        rows += [(p.name, f"{p.value:g} {p.unit}") for p in self.parameters]
+        rows += [(f"at {effect.place}", effect.term) for effect in self.effects]
         return as_html(self.title, [*rows, *((f"observed {name}", term) for name, term in self.observations)])
 
     @property
     def signals(self) -> tuple[str, ...]:
         """Names of the states and inputs, which vary in time and can be delayed."""
-        return (*(state.name for state in self.states), *(each.name for each in self.inputs))
+        return (*(state.name for state in self.states), *(signal.name for signal in self.inputs))
 
     @property
     def driving(self) -> tuple[Input, ...]:
         """The inputs that were measured."""
-        return tuple(each for each in self.inputs if not each.computed)
+        return tuple(signal for signal in self.inputs if not signal.computed)
 
     def expressions(self) -> Iterator[tuple[tuple[str, str], str]]:
         """Every expression with its section and key in the simulation file; the key of an effect is its number."""
@@ -133,7 +133,7 @@ class Simulation:
         channel : str
             Name of the observation.
         """
-        return next((one for one in self.sensors if one.channel == channel), Sensor(channel))
+        return next((sensor for sensor in self.sensors if sensor.channel == channel), Sensor(channel))
 
     def with_sensor(self, sensor: Sensor) -> Simulation:
         """Simulation with another sensor of an observed channel.
@@ -143,7 +143,7 @@ class Simulation:
         sensor : Sensor
             New sensor; it replaces the sensor of the same channel.
         """
-        return replace(self, sensors=(*(one for one in self.sensors if one.channel != sensor.channel), sensor))
+        return replace(self, sensors=(*(s for s in self.sensors if s.channel != sensor.channel), sensor))
 
     def with_effect(self, term: Term) -> Simulation:
         """Simulation with one additional effect.
@@ -172,8 +172,8 @@ class Simulation:
         SimulationError
             If there is no parameter of that name, or a value is not finite.
         """
-        _refuse_unknown(values, "a parameter", [each.name for each in self.parameters])
-        changed = (replace(each, value=float(values.get(each.name, each.value))) for each in self.parameters)
+        _refuse_unknown(values, "a parameter", [p.name for p in self.parameters])
+        changed = (replace(p, value=float(values.get(p.name, p.value))) for p in self.parameters)
         return replace(self, parameters=tuple(changed))
 
     def with_starts(self, starts: Mapping[str, float]) -> Simulation:
@@ -218,8 +218,8 @@ class Simulation:
         equation : str
             Expression in the names of the simulation.
         """
-        kept = ((name, equation if name == state else text) for name, text in self.equations)
-        return replace(self, equations=tuple(kept))
+        equations = ((name, equation if name == state else text) for name, text in self.equations)
+        return replace(self, equations=tuple(equations))
 
     def with_parameter(self, parameter: Parameter) -> Simulation:
         """Simulation with an additional parameter, which replaces one of the same name.
@@ -229,8 +229,8 @@ class Simulation:
         parameter : Parameter
             Parameter with its name, value and unit.
         """
-        parts = {each.name: each for each in self.parameters} | {parameter.name: parameter}
-        return replace(self, parameters=tuple(parts.values()))
+        parameters = {p.name: p for p in self.parameters} | {parameter.name: parameter}
+        return replace(self, parameters=tuple(parameters.values()))
 
     def with_observation(self, name: str, expression: str) -> Simulation:
         """Simulation with an additional observed channel, or with another expression for an existing one.
@@ -259,7 +259,7 @@ class Simulation:
         """
         has = dict(self.observations)
         _refuse_unknown(names, "an observation", has)
-        sensors = tuple(one for one in self.sensors if one.channel in names)
+        sensors = tuple(sensor for sensor in self.sensors if sensor.channel in names)
         return replace(self, observations=tuple((name, has[name]) for name in names), sensors=sensors)
 
     def with_input(self, name: str, expression: str) -> Simulation:
@@ -277,7 +277,7 @@ class Simulation:
         SimulationError
             If there is no such input, or the expression uses unknown names.
         """
-        _refuse_unknown([name], "an input", [each.name for each in self.inputs])
+        _refuse_unknown([name], "an input", [signal.name for signal in self.inputs])
         by = {name: parse(expression)}
 
         def changed(text: str) -> str:
@@ -290,7 +290,7 @@ class Simulation:
             definitions=tuple((key, changed(text)) for key, text in self.definitions),
             equations=tuple((key, changed(text)) for key, text in self.equations),
             observations=tuple((key, changed(text)) for key, text in self.observations),
-            effects=tuple(replace(each, term=changed(each.term)) for each in self.effects),
+            effects=tuple(replace(effect, term=changed(effect.term)) for effect in self.effects),
         )
 
 

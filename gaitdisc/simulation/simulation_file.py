@@ -120,21 +120,21 @@ def names_engine(path: Path | str) -> bool:
     return re.search(rb"^(model\s*=|\[tracked\])", path.read_bytes(), re.MULTILINE) is not None
 
 
-def _not_toml(file: str, found: str) -> ReadError:
-    return ReadError(f"{file} must be a TOML file", found, "Correct the file. docs/simulation.md shows the form.")
+def _not_toml(file: str, fault: str) -> ReadError:
+    return ReadError(f"{file} must be a TOML file", fault, "Correct the file. docs/simulation.md shows the form.")
 
 
 def _simulation(table: Mapping[str, Any], text: str, source: Path | None) -> Simulation:
     _check_keys(table, _SECTIONS, ())
-    said = {section: _table(table.get(section, {}), (section,)) for section in (*TABLES, *_EXPRESSIONS)}
-    parts = {section: tuple(_part(section, *one) for one in said[section].items()) for section in TABLES}
+    tables = {section: _table(table.get(section, {}), (section,)) for section in (*TABLES, *_EXPRESSIONS)}
+    parts = {section: tuple(_part(section, *entry) for entry in tables[section].items()) for section in TABLES}
     effects = table.get("effects", [])
     if not isinstance(effects, list):
         raise SimulationError("effects must be tables", "they have another form", "Write [[effects]].", ("effects",))
-    observed = {n: (e, _sensor(n, e)) if isinstance(e, dict) else (e, None) for n, e in said["observations"].items()}
-    said["observations"] = {n: e["expression"] if sensor else e for n, (e, sensor) in observed.items()}
+    observed = {n: (e, _sensor(n, e)) if isinstance(e, dict) else (e, None) for n, e in tables["observations"].items()}
+    tables["observations"] = {n: e["expression"] if sensor else e for n, (e, sensor) in observed.items()}
     lines: dict[str, Any] = {
-        section: tuple((name, _expression(value, (section, name))) for name, value in said[section].items())
+        section: tuple((name, _expression(value, (section, name))) for name, value in tables[section].items())
         for section in _EXPRESSIONS
     }
     model = _text(table, "model", ())
@@ -229,8 +229,8 @@ def _text(table: Mapping[str, Any], key: str, place: tuple[str, ...]) -> str:
 def _number(table: Mapping[str, Any], key: str, place: tuple[str, ...]) -> float:
     value = table[key]
     if type(value) not in (int, float) or abs(value) > 1e300 or not math.isfinite(value):
-        found = f"found {str(value)[:60]}" if type(value) is not int else "the number exceeds 1e300"
-        raise SimulationError(f"{key} must be a finite number", found, "Write a number without quotes.", place)
+        fault = f"found {str(value)[:60]}" if type(value) is not int else "the number exceeds 1e300"
+        raise SimulationError(f"{key} must be a finite number", fault, "Write a number without quotes.", place)
     return float(value)
 
 

@@ -41,7 +41,7 @@ def _called(symbol: str, swapped: bool = False) -> Callable[..., Quantity]:
 
 def _comparison(of: Callable[[Any, Any], Condition]) -> Callable[[Any, Any], Any]:
     """A comparison with a number; an array does it number by number."""
-    return lambda one, other: NotImplemented if isinstance(other, np.ndarray) else of(one, other)
+    return lambda quantity, other: NotImplemented if isinstance(other, np.ndarray) else of(quantity, other)
 
 
 class Quantity:
@@ -80,12 +80,12 @@ class Quantity:
 
     __rtruediv__, __pow__, __rpow__ = _called("/", swapped=True), _called("**"), _called("**", swapped=True)
     __neg__, __abs__ = _called("neg"), _called("abs")
-    __gt__ = _comparison(lambda one, other: _positive(one - other))
-    __lt__ = _comparison(lambda one, other: _positive(other - one))
-    __ge__ = _comparison(lambda one, other: ~_positive(other - one))
-    __le__ = _comparison(lambda one, other: ~_positive(one - other))
-    __eq__ = _comparison(lambda one, other: ~_positive(abs(one - other)))
-    __ne__ = _comparison(lambda one, other: _positive(abs(one - other)))
+    __gt__ = _comparison(lambda a, b: _positive(a - b))
+    __lt__ = _comparison(lambda a, b: _positive(b - a))
+    __ge__ = _comparison(lambda a, b: ~_positive(b - a))
+    __le__ = _comparison(lambda a, b: ~_positive(a - b))
+    __eq__ = _comparison(lambda a, b: ~_positive(abs(a - b)))
+    __ne__ = _comparison(lambda a, b: _positive(abs(a - b)))
     __hash__ = None  # type: ignore[assignment]
 
     def __bool__(self) -> bool:
@@ -131,8 +131,8 @@ def trace_equations(function: Callable[..., Any], arguments: Callable[[Callable[
         mapping)
     raises NotTraced if the function does something that is no arithmetic, or is too long
     """
-    own = function if isinstance(function, FunctionType | MethodType | functools.partial) else function.__call__
-    on_quantities = _Surroundings().replaced(own if isinstance(own, MethodType) else function)
+    target = function if isinstance(function, FunctionType | MethodType | functools.partial) else function.__call__
+    on_quantities = _Surroundings().replaced(target if isinstance(target, MethodType) else function)
     called = 0
 
     def ways(decided: dict[Tree, bool]) -> list[Tree]:
@@ -142,7 +142,7 @@ def trace_equations(function: Callable[..., Any], arguments: Callable[[Callable[
             raise NotTraced(f"the function branches in more than {MOST_WAYS} ways")
         plain, named = arguments(lambda name: Quantity(Name(name), decided))
         try:
-            return [_tree(one) for one in flat(on_quantities(*plain, **named))]
+            return [_tree(rate) for rate in flat(on_quantities(*plain, **named))]
         except _Undecided as branch:
             condition = branch.condition
         yes, no = gone({**decided, condition: True}), gone({**decided, condition: False})
@@ -150,10 +150,10 @@ def trace_equations(function: Callable[..., Any], arguments: Callable[[Callable[
             never, there = (Operation("-", (_ONE, condition)), no) if isinstance(yes, Exception) else (condition, yes)
             if isinstance(there, Exception):
                 raise there
-            return [Operation("+", (one, Operation("log", (never,)))) for one in there]
+            return [Operation("+", (tree, Operation("log", (never,)))) for tree in there]
         if len(yes) != len(no):
             raise NotTraced("the number of returned derivatives varies")
-        return [_either(condition, one, other) for one, other in zip(yes, no, strict=True)]
+        return [_either(condition, a, b) for a, b in zip(yes, no, strict=True)]
 
     def gone(decided: dict[Tree, bool]) -> list[Tree] | Exception:
         try:
@@ -168,8 +168,8 @@ def trace_equations(function: Callable[..., Any], arguments: Callable[[Callable[
     except NotTraced:
         raise
     except Exception as error:  # whatever the function raises when it is given no numbers
-        said = (str(error).splitlines() or [""])[0][:100]
-        raise NotTraced(f"{type(error).__name__}: {said}") from error
+        reason = (str(error).splitlines() or [""])[0][:100]
+        raise NotTraced(f"{type(error).__name__}: {reason}") from error
 
 
 def flat(returned: Any) -> list[Any]:
@@ -180,67 +180,67 @@ def flat(returned: Any) -> list[Any]:
     """
     if isinstance(returned, np.ndarray):
         return flat(returned.ravel().tolist())
-    return [each for one in returned for each in flat(one)] if isinstance(returned, tuple | list) else [returned]
+    return [number for part in returned for number in flat(part)] if isinstance(returned, tuple | list) else [returned]
 
 
-def _tree(one: Any) -> Tree:
-    if isinstance(one, Quantity):
-        return one.tree
-    value = float(one)
+def _tree(operand: Any) -> Tree:
+    if isinstance(operand, Quantity):
+        return operand.tree
+    value = float(operand)
     if not math.isfinite(value):
         raise NotTraced(f"it computes with {value}")
     return Number(value)
 
 
-def _is(one: Any, number: float) -> bool:
-    tree = one.tree if isinstance(one, Quantity) else one
-    return tree == Number(number) if isinstance(tree, Number) else isinstance(one, int | float) and one == number
+def _is(term: Any, number: float) -> bool:
+    tree = term.tree if isinstance(term, Quantity) else term
+    return tree == Number(number) if isinstance(tree, Number) else isinstance(term, int | float) and term == number
 
 
 def _operation(symbol: str, *arguments: Any) -> Quantity:
-    if any(isinstance(one, np.ndarray) for one in arguments):
+    if any(isinstance(argument, np.ndarray) for argument in arguments):
         return NotImplemented  # the array does it number by number
-    own = [one for one in arguments if isinstance(one, Quantity)]
-    size, depth = 1 + sum(one.size for one in own), 1 + max(one.depth for one in own)
-    return Quantity(Operation(symbol, tuple(map(_tree, arguments))), own[0].ways, size, depth)
+    quantities = [argument for argument in arguments if isinstance(argument, Quantity)]
+    size, depth = 1 + sum(q.size for q in quantities), 1 + max(q.depth for q in quantities)
+    return Quantity(Operation(symbol, tuple(map(_tree, arguments))), quantities[0].ways, size, depth)
 
 
-def _product(one: Quantity, other: Any, swapped: bool = False) -> Quantity:
-    if _is(other, 0) or (_is(one, 0) and not isinstance(other, np.ndarray)):
-        return Quantity(_ZERO, one.ways)
-    if _is(one, 1) and isinstance(other, Quantity):
+def _product(quantity: Quantity, other: Any, swapped: bool = False) -> Quantity:
+    if _is(other, 0) or (_is(quantity, 0) and not isinstance(other, np.ndarray)):
+        return Quantity(_ZERO, quantity.ways)
+    if _is(quantity, 1) and isinstance(other, Quantity):
         return other
-    return one if _is(other, 1) else _operation("*", *((other, one) if swapped else (one, other)))
+    return quantity if _is(other, 1) else _operation("*", *((other, quantity) if swapped else (quantity, other)))
 
 
-def _condition(one: Quantity) -> Condition:
-    return Condition(one.tree, one.ways, one.size, one.depth)
+def _condition(quantity: Quantity) -> Condition:
+    return Condition(quantity.tree, quantity.ways, quantity.size, quantity.depth)
 
 
-def _positive(one: Quantity) -> Condition:
-    return _condition(_operation("step", one))
+def _positive(quantity: Quantity) -> Condition:
+    return _condition(_operation("step", quantity))
 
 
-def _either(condition: Tree, one: Tree, other: Tree) -> Tree:
+def _either(condition: Tree, yes: Tree, no: Tree) -> Tree:
     """One tree where a condition holds, another where it does not."""
-    if one == other:
-        return one
+    if yes == no:
+        return yes
     bare = condition.arguments[0] if isinstance(condition, Operation) and condition.symbol == "step" else condition
-    parts = [(condition, bare, one), (*[Operation("-", (_ONE, condition))] * 2, other)]
+    branches = [(condition, bare, yes), (*[Operation("-", (_ONE, condition))] * 2, no)]
     there = [
-        where if each == _ONE else Operation("where", (above, each)) for where, above, each in parts if each != _ZERO
+        where if tree == _ONE else Operation("where", (above, tree)) for where, above, tree in branches if tree != _ZERO
     ]
     return there[0] if len(there) == 1 else Operation("+", tuple(there))
 
 
-def _chosen(condition: Any, one: Any, other: Any) -> Any:
+def _chosen(condition: Any, yes: Any, no: Any) -> Any:
     """`np.where` of single numbers."""
     if not isinstance(condition, Quantity):
-        return one if condition else other
+        return yes if condition else no
     held: Any = condition if isinstance(condition, Condition) else condition != 0
-    own = [each for each in (held, one, other) if isinstance(each, Quantity)]
-    size, depth = 3 + sum(each.size for each in own) + held.size, 3 + max(each.depth for each in own)
-    return Quantity(_either(held.tree, _tree(one), _tree(other)), held.ways, size, depth)
+    quantities = [q for q in (held, yes, no) if isinstance(q, Quantity)]
+    size, depth = 3 + sum(q.size for q in quantities) + held.size, 3 + max(q.depth for q in quantities)
+    return Quantity(_either(held.tree, _tree(yes), _tree(no)), held.ways, size, depth)
 
 
 def _select(conditions: Sequence[Any], values: Sequence[Any], otherwise: Any = 0.0) -> Any:
@@ -266,10 +266,10 @@ def _trace_angle(y: Any, x: Any) -> Quantity:
 
 def _interpolate(x: Quantity, at: Sequence[float], values: Sequence[float]) -> Quantity:
     """`np.interp`: the first value, and the rise over as much of each stretch as lies before x."""
-    found = 0 * x + float(values[0])
+    value = 0 * x + float(values[0])
     for low, high, rise in zip(at[:-1], at[1:], np.diff(values) / np.diff(at), strict=True):
-        found = found + float(rise) * (_clip(x, float(low), float(high)) - float(low))
-    return found
+        value = value + float(rise) * (_clip(x, float(low), float(high)) - float(low))
+    return value
 
 
 _OF_ONE = ("sin", "cos", "tan", "tanh", "exp", "log", "sqrt", "sinh", "cosh", "arctan", "arcsin", "arccos")
@@ -304,16 +304,16 @@ _ARITHMETIC: dict[str, Callable[..., Any]] = {
 class _RealKind(type):
     """Kind of `_Real`, of which every float is one."""
 
-    def __instancecheck__(cls, one: Any) -> bool:
-        return isinstance(one, float | Quantity)
+    def __instancecheck__(cls, value: Any) -> bool:
+        return isinstance(value, float | Quantity)
 
 
 class _Real(float, metaclass=_RealKind):
     """Python's `float`, which leaves quantities as they are."""
 
-    def __new__(cls, one: Any = 0.0) -> Any:
+    def __new__(cls, value: Any = 0.0) -> Any:
         """The number itself."""
-        return one if isinstance(one, Quantity) else float(one)
+        return value if isinstance(value, Quantity) else float(value)
 
 
 class _Surroundings:
@@ -321,9 +321,9 @@ class _Surroundings:
 
     def __init__(self) -> None:
         self._replaced: dict[int, Any] = {}
-        for room, left in ((math, ()), (np, ("max", "min")), (builtins, ())):
+        for room, skipped in ((math, ()), (np, ("max", "min")), (builtins, ())):
             for name, arithmetic in _ARITHMETIC.items():
-                if name not in left and hasattr(room, name):
+                if name not in skipped and hasattr(room, name):
                     original = getattr(room, name)
                     self._replaced[id(original)] = _number_by_number(arithmetic, original)
         for original in (np.zeros, np.ones, np.empty, np.array, np.asarray):
@@ -334,46 +334,46 @@ class _Surroundings:
         for room in (math, np.linalg, np):
             inside = {name: self._replaced.get(id(value), value) for name, value in vars(room).items()}
             self._replaced[id(room)] = SimpleNamespace(**inside)
-        own = {name: self._replaced.get(id(value), value) for name, value in vars(builtins).items()}
-        self._builtins = own | {"__import__": lambda *given, **named: self.replaced(__import__(*given, **named))}
+        inside = {name: self._replaced.get(id(value), value) for name, value in vars(builtins).items()}
+        self._builtins = inside | {"__import__": lambda *args, **named: self.replaced(__import__(*args, **named))}
 
-    def replaced(self, one: Any) -> Any:
+    def replaced(self, value: Any) -> Any:
         """What stands in the place of a value; the value itself where it needs no other form."""
-        if id(one) in self._replaced:
-            return self._replaced[id(one)]
-        if isinstance(one, MethodType):
-            return MethodType(self.replaced(one.__func__), one.__self__)
-        if isinstance(one, functools.partial):
-            return functools.partial(self.replaced(one.func), *one.args, **one.keywords)
-        if not isinstance(one, FunctionType):
-            inside = [getattr(one, name) for name in INSIDE if isinstance(getattr(one, name, None), FunctionType)]
-            return self.replaced(inside[0]) if inside else one
-        room = (one.__module__ or "").split(".")[0]
+        if id(value) in self._replaced:
+            return self._replaced[id(value)]
+        if isinstance(value, MethodType):
+            return MethodType(self.replaced(value.__func__), value.__self__)
+        if isinstance(value, functools.partial):
+            return functools.partial(self.replaced(value.func), *value.args, **value.keywords)
+        if not isinstance(value, FunctionType):
+            inside = [getattr(value, name) for name in INSIDE if isinstance(getattr(value, name, None), FunctionType)]
+            return self.replaced(inside[0]) if inside else value
+        room = (value.__module__ or "").split(".")[0]
         if (room in sys.stdlib_module_names and room != "__main__") or room in ("numpy", "scipy"):
-            return one
-        around: dict[str, Any] = {"__builtins__": self._builtins, "__name__": one.__module__}
-        cells = tuple(CellType() for _ in one.__closure__ or ())
-        copy = FunctionType(one.__code__, around, one.__name__, one.__defaults__, cells)
-        copy.__kwdefaults__ = one.__kwdefaults__
-        vars(copy).update(vars(one))
-        self._replaced[id(one)] = copy
-        used = [name for name in _names_in(one.__code__) if name in one.__globals__]
-        around |= {name: self.replaced(one.__globals__[name]) for name in used}
-        for cell, original in zip(cells, one.__closure__ or (), strict=True):
+            return value
+        around: dict[str, Any] = {"__builtins__": self._builtins, "__name__": value.__module__}
+        cells = tuple(CellType() for _ in value.__closure__ or ())
+        copy = FunctionType(value.__code__, around, value.__name__, value.__defaults__, cells)
+        copy.__kwdefaults__ = value.__kwdefaults__
+        vars(copy).update(vars(value))
+        self._replaced[id(value)] = copy
+        used = [name for name in _names_in(value.__code__) if name in value.__globals__]
+        around |= {name: self.replaced(value.__globals__[name]) for name in used}
+        for cell, original in zip(cells, value.__closure__ or (), strict=True):
             cell.cell_contents = self.replaced(original.cell_contents)
         return copy
 
 
 def _names_in(code: CodeType) -> set[str]:
     """Names that a function and those inside it may look up around them."""
-    inside = (one for one in code.co_consts if isinstance(one, CodeType))
+    inside = (constant for constant in code.co_consts if isinstance(constant, CodeType))
     return set(code.co_names).union(*map(_names_in, inside))
 
 
-def _holds_quantity(one: Any) -> bool:
-    if isinstance(one, tuple | list):
-        return any(map(_holds_quantity, one))
-    return isinstance(one, Quantity) or (isinstance(one, np.ndarray) and one.dtype == object)
+def _holds_quantity(value: Any) -> bool:
+    if isinstance(value, tuple | list):
+        return any(map(_holds_quantity, value))
+    return isinstance(value, Quantity) or (isinstance(value, np.ndarray) and value.dtype == object)
 
 
 def _number_by_number(arithmetic: Callable[..., Any], original: Callable[..., Any]) -> Callable[..., Any]:
@@ -386,7 +386,7 @@ def _number_by_number(arithmetic: Callable[..., Any], original: Callable[..., An
             arguments = tuple(arguments[0]) if original in (max, min) else (np.array(arguments[0], object),)
         if isinstance(arguments[0], np.ndarray) and arithmetic is _interpolate:
             return np.frompyfunc(lambda x: arithmetic(x, *arguments[1:]), 1, 1)(arguments[0])
-        if any(isinstance(one, np.ndarray) for one in arguments) and arithmetic is not _interpolate:
+        if any(isinstance(argument, np.ndarray) for argument in arguments) and arithmetic is not _interpolate:
             return np.frompyfunc(arithmetic, len(arguments), 1)(*arguments)
         return arithmetic(*arguments, **named)
 
@@ -411,12 +411,12 @@ def _of_equations(original: Callable[..., Any]) -> Callable[..., Any]:
         if not (_holds_quantity(matrix) or _holds_quantity(right)):
             return original(matrix) if original is np.linalg.inv else original(matrix, right)
         count = len(matrix)
-        wanted = np.eye(count).astype(int) if original is np.linalg.inv else np.asarray(right)
-        rows = np.hstack([np.asarray(matrix), wanted.reshape(count, -1)]).astype(object)
+        right_side = np.eye(count).astype(int) if original is np.linalg.inv else np.asarray(right)
+        rows = np.hstack([np.asarray(matrix), right_side.reshape(count, -1)]).astype(object)
         for pivot in range(count):
             rows[pivot] = rows[pivot] / rows[pivot, pivot]
             for row in (row for row in range(count) if row != pivot):
                 rows[row] = rows[row] - rows[row, pivot] * rows[pivot]
-        return rows[:, count:].reshape(wanted.shape)
+        return rows[:, count:].reshape(right_side.shape)
 
     return solved

@@ -51,14 +51,14 @@ def unit_findings(simulation: Simulation) -> tuple[Finding, ...]:
     known = _list_units(simulation, report)
     units = {part.name: part.unit for part in parts}
     places = [(f"[equations] {name}", "equation", name, text) for name, text in simulation.equations]
-    places += [(f"[effects] {n}", one.kind, one.place, one.term) for n, one in enumerate(simulation.effects, 1)]
+    places += [(f"[effects] {n}", e.kind, e.place, e.term) for n, e in enumerate(simulation.effects, 1)]
     for where, kind, place, text in places:
-        wanted, unit = known[place], units[place]
+        expected, unit = known[place], units[place]
         if kind == "equation":
-            wanted, unit = None if wanted is None else multiply(wanted, {"s": 1}, -1), f"{unit}/s"
+            expected, unit = None if expected is None else multiply(expected, {"s": 1}, -1), f"{unit}/s"
         tree = parse(text)
-        found = powers_in(tree, known, None, _at(where, report))
-        if found is not None and wanted is not None and find_dimension(found) != find_dimension(wanted):
+        powers = powers_in(tree, known, None, _at(where, report))
+        if powers is not None and expected is not None and find_dimension(powers) != find_dimension(expected):
             report(f"{where}: {_short(tree)} must have the unit {unit}")
     return tuple(findings)
 
@@ -74,16 +74,16 @@ def powers_in(
     """
     if not isinstance(tree, Operation):
         return units.get(tree.name) if isinstance(tree, Name) else None
-    parts = [powers_in(argument, units, bare, report) for argument in tree.arguments]
+    powers = [powers_in(argument, units, bare, report) for argument in tree.arguments]
     if tree.symbol in _SAME:
-        return _alike(tree, parts, report)
+        return _alike(tree, powers, report)
     if tree.symbol in _PURE:
-        if report and tree.symbol in _OF_PURE and parts[0] is not None and any(find_dimension(parts[0]) or ()):
+        if report and tree.symbol in _OF_PURE and powers[0] is not None and any(find_dimension(powers[0]) or ()):
             report(f"the argument of {_short(tree)} must be a pure number or an angle")
         return {}
     if tree.symbol in _CHOSEN:
-        return parts[_CHOSEN[tree.symbol]]
-    first, second = (bare if part is None else part for part in (parts[0], parts[-1]))
+        return powers[_CHOSEN[tree.symbol]]
+    first, second = (bare if part is None else part for part in (powers[0], powers[-1]))
     if tree.symbol in ("sqrt", "**"):
         exponent = Number(0.5) if tree.symbol == "sqrt" else tree.arguments[1]
         raised = exponent.value if isinstance(exponent, Number) else None
@@ -91,10 +91,10 @@ def powers_in(
     return None if first is None or second is None else multiply(first, second, 1 if tree.symbol == "*" else -1)
 
 
-def _alike(tree: Operation, parts: list[Powers | None], report: Report | None) -> Powers | None:
+def _alike(tree: Operation, powers: list[Powers | None], report: Report | None) -> Powers | None:
     """Unit of a sum or of the largest of several: of the first that has one, if the others have no other."""
-    there = [(part, argument) for part, argument in zip(parts, tree.arguments, strict=True) if part is not None]
-    unlike = (one for one in there[1:] if find_dimension(one[0]) != find_dimension(there[0][0]))
+    there = [(part, argument) for part, argument in zip(powers, tree.arguments, strict=True) if part is not None]
+    unlike = (pair for pair in there[1:] if find_dimension(pair[0]) != find_dimension(there[0][0]))
     if report is not None:
         for _, argument in unlike:
             word = "compared" if tree.symbol in ("max", "min") else "added"
@@ -112,9 +112,9 @@ def unit_powers(unit: str) -> Powers:
     return powers
 
 
-def multiply(one: Powers, other: Powers, sign: int = 1) -> Powers:
+def multiply(powers: Powers, other: Powers, sign: int = 1) -> Powers:
     """Powers of a product; with the sign -1 of a quotient."""
-    product = dict(one)
+    product = dict(powers)
     for word, power in other.items():
         product[word] = product.get(word, 0) + sign * power
     return {word: power for word, power in product.items() if power}
@@ -144,12 +144,12 @@ def find_factor(tree: Tree) -> tuple[float, Tree]:
         number, rest = find_factor(tree.arguments[0])
         return -number, rest
     if tree.symbol in ("*", "/"):
-        (one, left), (other, right) = map(find_factor, tree.arguments)
-        number = one * other if tree.symbol == "*" else one / (other or 1.0)
+        (factor, left), (other, right) = map(find_factor, tree.arguments)
+        number = factor * other if tree.symbol == "*" else factor / (other or 1.0)
         if isinstance(right, Number):
             return number, left
         return number, right if isinstance(left, Number) and tree.symbol == "*" else tree
-    signals = [one for one in tree.arguments if not isinstance(one, Number)] if tree.symbol in _SUMMED else []
+    signals = [part for part in tree.arguments if not isinstance(part, Number)] if tree.symbol in _SUMMED else []
     return (find_factor(signals[0])[0] if signals else 1.0), tree
 
 
@@ -165,12 +165,12 @@ def refuse_units(simulation: Simulation) -> None:
     """
     for name, text in simulation.observations:
         sensor = simulation.sensor(name)
-        wanted = find_dimension(sensor.unit) if sensor.unit else None
-        if wanted is None:
+        dimension = find_dimension(sensor.unit) if sensor.unit else None
+        if dimension is None:
             continue
         tree = parse(text)
-        found = powers_in(tree, _list_units(simulation), None)
-        if found is not None and find_dimension(found) != wanted:
+        powers = powers_in(tree, _list_units(simulation), None)
+        if powers is not None and find_dimension(powers) != dimension:
             raise _unlike(sensor, f"{text!r} has a unit of another dimension", "Correct the unit or the expression.")
         _refuse_factor(simulation, sensor, tree)
 
@@ -197,9 +197,9 @@ def _is_of_units(number: float, unit: str) -> bool:
     return any(abs(number / factor - 1) < ROUNDED for other in others if (factor := unit_factor(unit, other)))
 
 
-def _unlike(sensor: Sensor, found: str, remedy: str) -> SimulationError:
+def _unlike(sensor: Sensor, fault: str, remedy: str) -> SimulationError:
     needed = f"an observation must have the unit of its column, {sensor.unit!r}"
-    return SimulationError(needed, found, remedy, ("observations", sensor.channel))
+    return SimulationError(needed, fault, remedy, ("observations", sensor.channel))
 
 
 def _list_units(simulation: Simulation, report: Report | None = None) -> dict[str, Powers | None]:

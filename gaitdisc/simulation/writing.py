@@ -96,11 +96,11 @@ def read_into(model: PythonSimulation, path: Path | str) -> PythonSimulation:
     except (OSError, ValueError) as error:
         raise ReadError("a model must be a TOML file", f"{path.name}: {error}", "Check the path.") from error
     for section in ("states", "inputs", "ports"):
-        own, its = [part.name for part in getattr(model, section)], list(table.get(section, {}))
-        if own != its:
+        names, stated = [part.name for part in getattr(model, section)], list(table.get(section, {}))
+        if names != stated:
             raise SchemaError(
-                f"the {section} must be those of {model.title!r}: {', '.join(own) or 'none'}",
-                f"{path.name} has {', '.join(its) or 'none'}",
+                f"the {section} must be those of {model.title!r}: {', '.join(names) or 'none'}",
+                f"{path.name} has {', '.join(stated) or 'none'}",
                 "Read the file that was written from this model.",
             )
     equations = [f"{name} = {quote(listed)}" for name, listed in model.equations]
@@ -134,8 +134,8 @@ def _table(simulation: Simulation, long: bool) -> dict[str, Any]:
         name: {"expression": text, **_entry(simulation.sensor(name), SENSOR)} if long else text
         for name, text in simulation.observations
     }
-    table["effects"] = [{one.kind: one.place, "name": one.name, "term": one.term} for one in simulation.effects]
-    return {"title": simulation.title, **{section: said for section, said in table.items() if said}}
+    table["effects"] = [{e.kind: e.place, "name": e.name, "term": e.term} for e in simulation.effects]
+    return {"title": simulation.title, **{section: content for section, content in table.items() if content}}
 
 
 def _entry(part: object, keys: Iterable[str]) -> dict[str, Any]:
@@ -179,9 +179,9 @@ def _change(table: Any, before: dict[str, Any], after: dict[str, Any], short: bo
             continue
         there = table.get(key)
         if isinstance(there, dict) and isinstance(value, dict):
-            lines = key == "observations" and any(isinstance(one, str) for one in there.values())
-            own = _change(there, before.get(key) or {}, value, lines)
-            added |= {key: own} if own else {}
+            lines = key == "observations" and any(isinstance(entry, str) for entry in there.values())
+            nested = _change(there, before.get(key) or {}, value, lines)
+            added |= {key: nested} if nested else {}
         elif isinstance(value, dict) and not short:
             added[key] = value
         else:
