@@ -60,7 +60,10 @@ def answer(
     verdict: Verdict,
     refitted: Callable[[ScoredModel], ScoredModel] = lambda model: model,
 ) -> tuple[Discovery, Simulation]:
-    """Write down what was found, its numbers fitted once more by `refitted`; the runs shown are those of the search."""
+    """Write down what was found.
+
+    refitted: fits the numbers once more; the runs that are shown stay those of the search
+    """
     now, base = verdict.found, case.search.base
     channels = tuple(name for name, _ in base.observations)
     floor, proof = case.noise_floor(now.noise.size), verdict.proof

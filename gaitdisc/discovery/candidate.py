@@ -158,7 +158,10 @@ class Candidate:
         return max(low - value, value - high)
 
     def penalty(self, values: Mapping[str, float]) -> float:
-        """Return the share of the gap that it must close: the greater, the more kinds of motion it can imitate."""
+        """Return the share of the gap that it must close to be worth its statement.
+
+        The more kinds of motion an explanation can imitate, the more of a gap it has to close.
+        """
         drives = self.name in ("viscous_damping", *PASSIVE) and self.power * values.get("factor", 0.0) > 0
         flexible, bent = self.name in FLEXIBLE, self.name in BENT
         price = CRITERIA.bent if bent else CRITERIA.plain

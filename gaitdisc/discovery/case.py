@@ -188,7 +188,10 @@ class Case:
 
 
 def set_up_case(simulation: Simulation, measured: Measured, request: Request = ALL) -> Case:
-    """Prepare a case; of four trials, one is held out, of one, the last quarter of its time."""
+    """Prepare a case: split the trials, list places and explanations, guess the states.
+
+    measured: its trials; of four, one is held out, of one, the last quarter of its time
+    """
     simulation = with_constant_errors(match_channels(simulation, measured, request.shapes))
     if len(measured.trials) == 1:
         measured = split_in_time(measured)

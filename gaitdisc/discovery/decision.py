@@ -178,7 +178,10 @@ def search_runs(case: Case, as_read: ScoredModel) -> tuple[ScoredModel, ScoredMo
 
 
 def keep_on_longer_runs(case: Case, as_read: ScoredModel, named: ScoredModel) -> ScoredModel:
-    """Return what was selected less what longer runs do without: in short runs several do what another number does."""
+    """Return what was selected less what longer runs have no use for, on the runs that it was found on.
+
+    Where chaos keeps runs short, several explanations together can do what one does with another number.
+    """
     if len(named.parts) < 2 or case.spans_a_period(as_read):
         return named
     longer = case.lengthen(named)
@@ -206,7 +209,10 @@ def with_autocorrelation(
 def with_random_pushes(
     case: Case, as_read: ScoredModel, named: ScoredModel, rivals: list[ScoredModel]
 ) -> Verdict | None:
-    """Return the verdict on random pushes, or a term before them, where runs err by more than noise; else None."""
+    """Return the verdict on random pushes, or on a term that goes before them; None where they explain nothing.
+
+    The runs, or free runs of unseen data, where pushes add up, must err by more than noise and a simulation may.
+    """
     (error, doubt), scale = free_runs(case, as_read), case.scale
     own_error = case.leaves_noise(as_read) or scale.excess(as_read.fit) < CRITERIA.model_error
     noise = case.noise_floor(as_read.noise.size) / scale.spread

@@ -61,7 +61,10 @@ def discover_engine(
     request: Request = ALL,
     files: dict[Path, str] | None = None,
 ) -> EngineAnswer:
-    """Find what a model of MuJoCo or OpenSim lacks; its mapping says by which columns trials are read."""
+    """Find what a model of MuJoCo or OpenSim lacks.
+
+    measured: reads the trials, once the mapping says what their columns are
+    """
     mapping, engine = read_mapping(model)
     data = measured(mapping)
     refuse_unmeasured(mapping, engine, data)

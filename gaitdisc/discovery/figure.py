@@ -88,7 +88,10 @@ def draw_runs(axes: Axes, numbers: pd.DataFrame, channel: str) -> None:
 
 
 def draw_left(axes: Axes, numbers: pd.DataFrame, channel: str, floor: float) -> None:
-    """Draw what is left of a channel over time, as read and with what was found; twice the sensor's noise is grey."""
+    """Draw what is left of one channel over time: measured minus simulated, as read and with what was found.
+
+    floor: standard deviation of the sensor's noise [as drawn]; twice it is shaded grey
+    """
     time = numbers["time"].to_numpy()
     seen, simulated, augmented = (numbers[f"{channel}_{word}"].to_numpy() for word in WORDS)
     axes.axhspan(-2 * floor, 2 * floor, color="#888888", alpha=0.22, linewidth=0)

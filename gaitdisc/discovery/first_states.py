@@ -85,7 +85,10 @@ def _following(simulation: Simulation, drive: Drive, states: Values, hidden: NDA
 def _states(
     seeing: ObservationMap, smooth: Values, slope: Values, begin: Values, rates: dict[int, int], rate: float
 ) -> tuple[Values, NDArray[np.bool_]]:
-    """States of a trial (sample, state), and which the channels say (state,); a rate left open is a slope."""
+    """States of one trial (sample, state), and which of them the channels say (state,).
+
+    A rate that they leave open is the slope of its position.
+    """
     free = np.ones(begin.shape[1], bool)
     x, known = seeing.solved(smooth, begin, free)
     often = known.mean(axis=0) > OFTEN
@@ -110,7 +113,10 @@ def _bridge(values: Values, known: NDArray[np.bool_]) -> Values:
 
 
 def with_own_states(shooting: Shooting, machine: Compiled, values: Values, starts: Values) -> Values:
-    """Return start states (segment, state) with those of the effects' own states behind the simulation's."""
+    """Return start states (segment, state) with those of the effects' own states, where these are not yet among them.
+
+    starts (segment, state): of the simulation as read, first; what follows is replaced
+    """
     if shooting.past is None or len(machine.states) == shooting.past.shape[2]:
         return starts[:, : len(machine.states)]
     segments = shooting.segments

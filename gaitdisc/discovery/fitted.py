@@ -18,7 +18,10 @@ OF_SEGMENTS = ("starts", "states", "residual", "white", "slopes")  # of a fit, o
 
 @dataclass(frozen=True)
 class Prior:
-    """Normal distributions around the file's values; half the width between its bounds, where they end, is two SD."""
+    """Normal distributions of parameters around the file's values, cut off at the file's bounds.
+
+    Half the width between the bounds is two standard deviations.
+    """
 
     names: tuple[str, ...] = ()
     # (number,), where they stand among the parameters

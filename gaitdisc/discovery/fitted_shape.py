@@ -32,7 +32,10 @@ FITTED = 8  # shapes, of those that promise most
 
 
 def shapes_at(place: Place, now: ScoredModel, search: Search) -> list[Candidate]:
-    """Return the shapes that could be fitted at a place: over a state, two, a difference of bodies, or the stride."""
+    """Return the shapes that could be fitted at a place: over one state, over two (bumps, and powers), over the stride.
+
+    At a place between bodies the states may be differences of two, and another body's.
+    """
     shapes = [one for motion in place.motions for one in _shapes_over(place, *motion, now, search)]
     if any(signal.name == "phase" for signal in search.base.inputs):
         centres = (np.arange(STRIDE_BUMPS) + 0.5) / STRIDE_BUMPS

@@ -126,7 +126,10 @@ def carry_change(model: ScoredModel, change: Values) -> Values:
 
 
 def propagate_push(model: ScoredModel, places: tuple[Place, ...]) -> Values:
-    """Return what a unit push changes at once in what sensors see, unfiltered (segment, sample, channel, place)."""
+    """Return what a unit push changes at once in what the sensors see (segment, sample, channel, place).
+
+    Before any filter, states as they are: an input may stand in what is measured.
+    """
     pushed = np.concatenate([np.zeros((1, len(places))), PUSH * np.eye(len(places))])
     values, states = (np.repeat(each[None], len(pushed), axis=0) for each in (model.fit.values, model.fit.states))
     machine = pushable(model.simulation, places)

@@ -145,7 +145,10 @@ def _predict(covariance: Values) -> tuple[list[Values], Values]:
 def whiten(
     residual: Values, channel: int, known: NDArray[np.bool_], predictors: Values, spread: Values, out: Values
 ) -> None:
-    """Write a channel's innovations into `out`; row p of predictors (order + 1, order) predicts from p samples."""
+    """Write one channel's innovations, in units of their spread, into `out`, as `Noise.whiten` has them.
+
+    predictors (order + 1, order): row p predicts from the p samples before
+    """
     segments, samples, _, columns = residual.shape
     last = len(spread) - 1
     for segment in range(segments):

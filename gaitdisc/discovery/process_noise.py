@@ -85,7 +85,10 @@ def rank_process_noise(model: ScoredModel, places: tuple[Place, ...]) -> list[Pr
 
 
 def sensor_covariance(shooting: Shooting, known: NDArray[np.bool_]) -> Values:
-    """Covariance of noise white before the filter, of unit size (segment, number, number); unmeasured: independent."""
+    """Covariance of noise that was white before the filter (segment, number, number), of unit size.
+
+    What was not measured is taken for independent of all else.
+    """
     segments, length, channels = known.shape
     whole = shooting.segments.length
     unit = np.broadcast_to(np.eye(whole)[None, :, None, :], (1, whole, channels, whole))

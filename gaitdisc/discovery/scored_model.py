@@ -106,7 +106,10 @@ class ScoredModel:
 
     @property
     def bic(self) -> float:
-        """Information criterion (BIC), misfit plus log(N) per number; comparable for the same runs and noise alone."""
+        """Information criterion (BIC): misfit plus log(N) for each number fitted; the smaller the better.
+
+        Comparable between models of the same runs under the same noise, and only between these.
+        """
         return self.fit.misfit + self.size * float(np.log(self.fit.white.size))
 
     def refitted(

@@ -116,7 +116,10 @@ def look_at_whole_runs(case: Case, as_read: ScoredModel, verdict: Verdict) -> tu
 
 
 def fit_whole_runs(case: Case, now: ScoredModel) -> ScoredModel:
-    """Return a model fitted to whole learned trials, all errors weighing alike, where a small error shows; else it."""
+    """Return a model fitted to the learned trials whole, where a small error of a number shows; else as it was.
+
+    All errors weigh alike: the autocorrelation of what short runs leave takes a slow drift away for noise.
+    """
     model = case.fit_over(case.longest, now, case.scale.white_error(now.fit))
     return model.with_own_past() if case.search.sensible(model) else now
 

@@ -34,7 +34,10 @@ LISTED = 3  # trials of a channel that the finding names
 
 
 def without_spikes(measured: Measured) -> Measured:
-    """Return trials with spiked samples empty, and a finding per channel; spikes low-passed later are not seen."""
+    """Return trials whose spiked samples are empty, with a finding for each channel that had any.
+
+    Of a record that was low-passed after it was spiked none is seen: there a spike is as smooth as the motion.
+    """
     marks = np.zeros(measured.observed.shape, bool)
     for trial, samples in enumerate(measured.samples):
         for channel in range(len(measured.channels)):

@@ -1,6 +1,7 @@
 """Cycles pooled over trials that wait on disk: a made walk cut into short trials gives those of the whole."""
 
 from dataclasses import replace
+from functools import partial
 
 import numpy as np
 import pytest
@@ -212,16 +213,12 @@ def test_a_contact_that_an_event_misses_costs_its_strides_and_not_the_trial(piec
 
 def test_a_belt_s_speed_gives_lengths(pieces):
     trials = (PlannedTrial(condition="walk", files=("0.c3d",), speed_m_per_s=1.2),)
-    study, person = _study(
-        trials,
-        strides=StrideRules(ground="treadmill"),
-        quality=Quality(min_strides=1),
-        treadmill=Treadmill(speed_m_per_s=1.0),
-    )
+    rules = {"strides": StrideRules(ground="treadmill"), "quality": Quality(min_strides=1)}
+    study, person = _study(trials, **rules, treadmill=Treadmill(speed_m_per_s=1.0))
     (found,) = pool_cycles(study, person, lambda _: pieces[0])
     np.testing.assert_allclose(found.kept["speed_m_per_s"], 1.2)  # the trial's own belt before the study's
     assert found.kept["step_m"].isna().all()  # no markers, so nobody saw where the feet were
-    without, person = _study(trials[:0] + _planned(1), strides=study.strides, quality=study.quality)
+    without, person = _study(_planned(1), **rules)
     (found,) = pool_cycles(without, person, lambda _: pieces[0])
     assert found.kept["stride_m"].isna().all()
 
@@ -249,13 +246,8 @@ def turning(request):
         people.append(Participant(id=f"P{number:02d}", trials=trials))
     study = Study(conditions=Conditions(nominal="straight", others=("turn",)), participants=tuple(people))
     with C3DReader() as reader:
-        return [
-            one
-            for person in people
-            for one in pool_cycles(
-                study, person, lambda planned, person=person: read_planned_trial(study, person, planned, reader)
-            )
-        ]
+        reads = [partial(read_planned_trial, study, person, reader=reader) for person in people]
+        return [walk for person, read in zip(people, reads, strict=True) for walk in pool_cycles(study, person, read)]
 
 
 @pytest.mark.slow
@@ -311,9 +303,7 @@ def test_a_static_trial_of_another_person_is_said_and_costs_no_cycle(gait_data):
     with C3DReader() as reader:
         for name, static in (("own", own), ("wrong", wrong), ("none", None), ("broken", broken)):
             study, person = _study((walk, static) if static else (walk,))
-            (found,) = pool_cycles(
-                study, person, lambda planned, s=study, p=person: read_planned_trial(s, p, planned, reader)
-            )
+            (found,) = pool_cycles(study, person, partial(read_planned_trial, study, person, reader=reader))
             assert found.counted("r") == found.counted("l") == 1 and not found.refusals
             said[name] = [(f.severity, f.what) for f in found.findings if f.kind == "static trial"]
     assert said["own"] == []
