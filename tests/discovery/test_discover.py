@@ -256,7 +256,7 @@ def test_where_one_trial_comes_to_rest_its_first_quarter_proves_the_friction():
     found, _ = discover(still, Measured(rest, seen, ("1",), measured.channels))
     assert [effect.name for effect in found.effects] == ["coulomb_friction"]
     (instead,) = (one for one in found.findings if one.kind == "held out")
-    assert says(instead.what, "trial 1", "quarter is held")
+    assert says(instead.what, "trial 1", "held out", "first quarter")
 
 
 def test_where_the_last_quarter_of_one_trial_alone_shows_a_gap_the_first_is_held_out():
