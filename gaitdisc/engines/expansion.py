@@ -42,7 +42,8 @@ def expand(
 ) -> tuple[Simulation, Measured]:
     """Simulation that is expanded along a record, and the record with what the engine computed along it.
 
-    simulation, measured: as the mapping file has it; driven by its inputs
+    simulation: as the mapping file has it: the names, the observations, the ports
+    measured: driven by its inputs
     states (trial, sample, state): smoothed: coordinates, then speeds
     values: parameters around which to expand; the simulation's own where absent
     """

@@ -162,8 +162,9 @@ def recording_files(folder: Path) -> list[Path]:
 
 def list_files(folder: Path) -> Iterator[Path]:
     """List files of a folder, relative to it, that are not hidden and not in a run of a study."""
-    runs = {path.parent for path in folder.rglob(LIST) if (path.parent / KINDS[0]).is_file()} - {folder}
-    for path in folder.rglob("*"):
+    paths = list(folder.rglob("*"))
+    runs = {path.parent for path in paths if path.name == LIST and (path.parent / KINDS[0]).is_file()} - {folder}
+    for path in paths:
         inside = path.relative_to(folder)
         if path.is_file() and runs.isdisjoint(path.parents) and not any(p.startswith(".") for p in inside.parts):
             yield inside

@@ -205,7 +205,7 @@ class ReconstructedRecording:
 def reconstruct_recording(
     file: Path, model: Path, out: Path, calibration: Path | None = None, missing: str = "none"
 ) -> ReconstructedRecording:
-    """Reconstruct the states of one recording, low-passed as kinematics by default, and write them as a `.mot`.
+    """Reconstruct the states of one recording, low-passed as kinematics, and write them as a `.mot`.
 
     calibration: kinematics of the same person that hold the sensors and every state, some ten strides: the model is
         corrected for the person by them. Its intervals stay as they are, and are too wide then
