@@ -20,6 +20,7 @@ GIVEN = command_line(
     argument("--people", "how many people", 3),
     argument("--seed", "of the first person; the next have the next", 777301),
     argument("--fit", "the fit of both walks alone, not the search that has to bear it out", False),
+    argument("--trials", "trials of 4 s into which each walk is cut; 0 leaves it whole", 0),
     QUICK,
 )  # before the slow imports
 
@@ -47,7 +48,7 @@ from gaitdisc.ingest.study import Conditions, Participant, PlannedTrial, Study
 from gaitdisc.ingest.study_file import load_study, write_study
 
 CONDITIONS, CHANNELS = Conditions(nominal="nominal", device="exo"), {name: f"{name} [N]" for name in FORCES}
-WALK_S, PRESSURE_M, ERROR_HZ = 36.0, 0.003, 6.0
+WALK_S, TRIAL_S, PRESSURE_M, ERROR_HZ = 36.0, 4.0, 0.003, 6.0
 MODELS = ("Nominal", "Nominal + named effect", "Augmented (plain regression)", "Exo")
 RIGHT = {
     "none": ("", "", np.nan),
@@ -115,7 +116,8 @@ def write_person(person: Person, hidden: str, folder: Path) -> Path:
         write_storage(trial.stream("kinematics"), folder / angles)
         write_c3d((trial.stream("emg"), trial.stream("forces"), markers), folder / analog)
         write_storage(moments(walk), folder / net)
-        planned.append(PlannedTrial(condition=word, files=files))
+        parts = [(start, start + TRIAL_S) for start in np.linspace(0.0, WALK_S - TRIAL_S, GIVEN.trials).tolist()]
+        planned += [PlannedTrial(condition=word, files=files, crop_s=part) for part in parts or [None]]
     mine = (Participant(id=person.name, mass_kg=round(person.mass_kg, 1), trials=tuple(planned)),)
     study = Study(title=hidden, conditions=CONDITIONS, channels=CHANNELS, participants=mine)
     write_study(study.placed(folder), folder / "study.toml")

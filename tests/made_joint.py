@@ -1,8 +1,10 @@
 """An ankle whose moment is known: bursts of three muscles, their gains, and what is added to them."""
 
+from dataclasses import replace
+
 import numpy as np
 
-from gaitdisc.processing.joint_record import JointRecord
+from gaitdisc.processing.joint_record import JointRecord, join_trials
 from gaitdisc.processing.muscle_moment import FASTEST, Driven, force_at_speed
 
 RATE_HZ, STRIDE_S = 100.0, 1.1
@@ -38,3 +40,23 @@ def made_joint(strides=24, seed=0, spring=0.0, late_s=0.0, strength=1.0):
         "ankle_angle", "r", "W01", "made", time, seen, angle, rate, speedup, moment + 1.0 * wander, emg, MUSCLES,
         phase, number, np.empty(0),
     )  # fmt: skip
+
+
+def cut_record(record, rows, first):
+    """Part of a record as a trial of its own, whose clock begins at zero; strides before the first are outside."""
+    stride = np.where(record.stride[rows] < first, -1, record.stride[rows] - first)
+    arrays = {name: getattr(record, name)[rows] for name in ("seen", "angle", "rate", "speedup", "moment", "envelopes")}
+    phase = np.where(stride < 0, np.nan, record.phase[rows])
+    return replace(record, time=record.time[rows] - record.time[rows][0], phase=phase, stride=stride, **arrays)
+
+
+def short_trials(record, strides=3):
+    """The record cut into trials of some strides, the first of each begun before the trial, and joined again."""
+    samples = round(strides * STRIDE_S * RATE_HZ)
+    starts = range(0, len(record.time) - samples + 1, samples)
+    return join_trials(
+        [
+            cut_record(record, slice(start + 40, start + samples), round(start / RATE_HZ / STRIDE_S) + 1)
+            for start in starts
+        ]
+    )

@@ -209,7 +209,8 @@ def _forces(walk: TrueWalk, leg: Leg, segments: Segments, rng: np.random.Generat
         point = np.column_stack([np.interp(walk.quick_s, walk.slow_s, coordinate) for coordinate in slow.T])
         along, up = walk.force[:, column].T
         force = np.column_stack([along, up, -sign * INWARDS * up]) @ TO_LABORATORY.T
-        moment = np.cross(point - belt.corners.mean(axis=0), force)
+        turn = np.interp(walk.quick_s, walk.slow_s, walk.turn[:, column])[:, None] * np.array([0.0, 0.0, 1.0])
+        moment = np.cross(point - belt.corners.mean(axis=0), force) + turn @ TO_LABORATORY.T
         columns += [force + rng.normal(0.0, FORCE_N, force.shape), moment + rng.normal(0.0, MOMENT_NM, moment.shape)]
         channels += [
             Channel(f"{belt.name}_{kind}{axis}", "vertical_force" if kind + axis == "fz" else quantity, unit)

@@ -35,8 +35,8 @@ NOISE = WANDER + 1
 # quick: phase, force right x y, left x y, excitation right 9, left 9
 QUICK = 1 + 4 + 2 * MUSCLES_A_LEG
 # slow: phase, psi (2, 3), adduction and rotation (2, 2), moments (2, 3), spring (2), slip (2), pelvis x y,
-# second derivative of psi (2, 3)
-SLOW = 1 + 6 + 4 + 6 + 2 + 2 + 2 + 6
+# second derivative of psi (2, 3), turning moment of the belt (2)
+SLOW = 1 + 6 + 4 + 6 + 2 + 2 + 2 + 6 + 2
 
 
 class Loop(NamedTuple):
@@ -85,7 +85,7 @@ def integrate(leg, strength, belt, loop, worn, tables, noise):  # noqa: PLR0912,
     activation, excitation = np.empty((2, MUSCLES_A_LEG)), np.empty((2, MUSCLES_A_LEG))
     others, reflex = np.empty((2, 3)), np.zeros((2, 3))
     side, side_rate = np.empty((2, 2)), np.empty((2, 2))
-    carried, slip, spring = np.zeros(2), np.zeros(2), np.zeros(2)
+    carried, slip, spring, turn = np.zeros(2), np.zeros(2), np.zeros(2), np.zeros(2)
     standing = np.zeros(2, np.bool_)
     pelvis, pelvis_rate, pelvis_speedup, pelvis_push = np.zeros(2), np.zeros(2), np.zeros(2), np.zeros(2)
     row, rattle = np.empty((2, COLUMNS.width)), np.empty(NOISE)
@@ -182,7 +182,7 @@ def integrate(leg, strength, belt, loop, worn, tables, noise):  # noqa: PLR0912,
             want_x, want_y = row[s, COLUMNS.place], row[s, COLUMNS.place + 1]
             want_vx = row[s, COLUMNS.path] * pace + worn.speed * (pace * worn.stride_s - 1.0)
             want_vy = row[s, COLUMNS.path + 1] * pace
-            push_x, push_y, turn = 0.0, 0.0, 0.0
+            push_x, push_y, turn[s] = 0.0, 0.0, 0.0
             if opening > 0.0:
                 if not standing[s]:
                     standing[s] = True
@@ -192,7 +192,7 @@ def integrate(leg, strength, belt, loop, worn, tables, noise):  # noqa: PLR0912,
                 push_y = opening * (belt.up * (want_y - y) + belt.up_damping * (want_vy - vy))
                 foot = row[s, COLUMNS.psi + 2] - psi[s, 2]
                 foot_rate = row[s, COLUMNS.turning + 2] * pace - rate[s, 2]
-                turn = opening * (belt.turn * foot + belt.turn_damping * foot_rate)
+                turn[s] = opening * (belt.turn * foot + belt.turn_damping * foot_rate)
             else:
                 standing[s] = False
             force[s, 0] = row[s, COLUMNS.force] + push_x
@@ -204,7 +204,7 @@ def integrate(leg, strength, belt, loop, worn, tables, noise):  # noqa: PLR0912,
             pelvis_push[1] += force[s, 1] - row[s, COLUMNS.force + 1]
             # equations of motion
             ankle = moments[2] + spring[s]
-            q[0], q[1], q[2] = moments[0] + moments[1], -moments[1] - ankle, ankle + turn
+            q[0], q[1], q[2] = moments[0] + moments[1], -moments[1] - ankle, ankle + turn[s]
             add_ground_force(leg, psi[s], force[s], arm, q)
             hip_x = row[s, COLUMNS.hip] + pelvis_speedup[0]
             hip_y = row[s, COLUMNS.hip + 1] + pelvis_speedup[1]
@@ -248,6 +248,7 @@ def integrate(leg, strength, belt, loop, worn, tables, noise):  # noqa: PLR0912,
                 for j in range(2):
                     slow[n, 7 + 2 * s + j] = side[s, j]
                 slow[n, 17 + s], slow[n, 19 + s], slow[n, 21 + s] = spring[s], slip[s], pelvis[s]
+                slow[n, 29 + s] = turn[s]
         for s in range(2):
             for j in range(3):
                 rate[s, j] += speedup[s, j] * STEP_S

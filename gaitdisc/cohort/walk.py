@@ -71,6 +71,8 @@ class TrueWalk:
     acceleration: Values = field(repr=False)  # (slow, 2, 3) [deg/s2], side; hip, knee, ankle
     # (slow, 2) [m], forwards, upwards: how far the pelvis is from its habitual path
     pelvis: Values = field(repr=False)
+    # (slow, 2) [N m], of the belt on the foot towards dorsiflexion, beside that of the force at its usual point
+    turn: Values = field(repr=False)
 
     def contacts(self, side: int = 0) -> Values:
         """Times at which a foot meets the belt, from the phase itself [s]."""
@@ -198,4 +200,5 @@ def _keep_walk(person: Person, device: Spring, seed: int, quick: Values, slow: V
         sole=slow[:, 19:21],
         acceleration=np.degrees(np.stack(joints, axis=2)),
         pelvis=slow[:, 21:23],
+        turn=slow[:, 29:31],
     )

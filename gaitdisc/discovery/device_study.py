@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property, partial
 
@@ -10,28 +10,28 @@ import numpy as np
 
 from gaitdisc.discovery.candidate import Candidate
 from gaitdisc.discovery.changed_moment import NORMAL_95, Changed, find_change, foot_mass
-from gaitdisc.discovery.joint_and_trials import FEWEST_TRIALS, STRIDES, as_walk, changes, nominal_moment, weighed
+from gaitdisc.discovery.joint_and_trials import FEWEST_STRIDES, as_walk, changes, nominal_moment, weighed
 from gaitdisc.discovery.result import Estimate
-from gaitdisc.errors import ChannelError, SchemaError, StrideError
+from gaitdisc.errors import ChannelError, GaitdiscError, SchemaError, StrideError
 from gaitdisc.ingest.c3d import C3DReader
 from gaitdisc.ingest.public_words import PublicWords, list_words, of_trial
-from gaitdisc.ingest.study import Participant, Study
+from gaitdisc.ingest.study import Participant, PlannedTrial, Study
 from gaitdisc.ingest.trial_sets import not_compared
 from gaitdisc.kinetics.newton_euler import GRAVITY
-from gaitdisc.processing.joint_record import JointRecord, joint_record
+from gaitdisc.processing.joint_record import JointRecord, join_trials, joint_record
 from gaitdisc.processing.muscle_moment import JOINTS, MuscleMoment
 from gaitdisc.processing.process import ReadWalk, StudyWalks
 from gaitdisc.processing.processed_walks import public_trial
-from gaitdisc.recording import Trial
+from gaitdisc.recording import Finding, Trial
+from gaitdisc.words import counted
 
 LEAST_R2 = 0.7  # two strides of a published walk have -2.4 and 0.70, 36 s of the embedded cohort 0.96
 AGREES = 1.25  # times what is left of Nominal strides; 0.97 to 1.12 in four made people where nothing was hidden
 FOOT_SHOWS_AT = ("knee_angle", "hip_flexion")
-FEWEST_STRIDES = FEWEST_TRIALS * STRIDES
 MEND = (
-    f"Record one walk of at least {FEWEST_STRIDES} strides in each condition, and set the second condition as device "
-    "in [conditions]. From short trials, `gaitdisc run` pools the cycles; `gaitdisc report STUDY --person P --before A "
-    "--after B` compares two sessions or conditions."
+    f"Record at least {FEWEST_STRIDES} strides in each condition, in one trial or several, and set the second "
+    "condition as device in [conditions]. From fewer, `gaitdisc run` pools the cycles; `gaitdisc report STUDY "
+    "--person P --before A --after B` compares two sessions or conditions."
 )
 LEAST_FOOT_KG = 0.3  # three made people show up to 0.2 kg at these joints where there is none
 
@@ -75,7 +75,7 @@ class PersonWalks:
     study: Study
     participant: Participant
     _reader: C3DReader = field(default_factory=C3DReader, init=False)
-    _read: dict[str, ReadWalk] = field(default_factory=dict, init=False)
+    _read: dict[PlannedTrial, ReadWalk] = field(default_factory=dict, init=False)
     _models: dict[str, MuscleMoment] = field(default_factory=dict, init=False)
 
     @cached_property
@@ -97,7 +97,7 @@ class PersonWalks:
 
     def at(self, condition: str, joint: str) -> DeviceWalks:
         """Return one joint of the Nominal walk and another, whatever the moment model explains."""
-        if lacking := not_compared(against(self.study, condition), self.participant):
+        if lacking := not_compared(against(self.study, condition), self.participant, pooled=True):
             needed = f"both walks of {self.participant.id} are required"
             raise SchemaError(needed, lacking.removesuffix("."), MEND)
         nominal, device = (self._record(word, joint) for word in (self.study.conditions.nominal, condition))
@@ -106,12 +106,28 @@ class PersonWalks:
         return DeviceWalks(nominal, device, self._models[joint])
 
     def _record(self, condition: str, joint: str) -> JointRecord:
-        planned = self.participant.trials_of(condition)[0]
-        if condition not in self._read:
+        """Return one joint in the walk of a condition, or in its short trials one after another."""
+        trials = [planned for planned in self.participant.trials_of(condition) if not planned.leave_out]
+        records, faults = [], {}
+        for planned in trials:
+            try:
+                records.append(self._trial_record(planned, joint))
+            except GaitdiscError as error:
+                faults[self.participant.trial_name(planned)] = error
+        if read := [self._read[planned].trial for planned in trials if planned in self._read]:
+            check_length(read, self.study.strides.min_s)
+        if not records:
+            raise next(iter(faults.values()))
+        spoils = "this trial, which is excluded"
+        excluded = [Finding("warning", "excluded trial", name, str(fault), spoils) for name, fault in faults.items()]
+        record = join_trials(records)
+        return replace(record, findings=(*record.findings, *excluded))
+
+    def _trial_record(self, planned: PlannedTrial, joint: str) -> JointRecord:
+        if planned not in self._read:
             with self._reader:
-                self._read[condition] = self._walks.read_walk(planned)
-        read = self._read[condition]
-        check_length(read.trial, self.study.strides.min_s)
+                self._read[planned] = self._walks.read_walk(planned)
+        read = self._read[planned]
         check_kinetics(read.trial)
         mass_kg = None if read.body_weight_n is None else read.body_weight_n / GRAVITY
         public = of_trial(self._words, self.participant, planned)
@@ -146,12 +162,12 @@ def weigh_foot(walks: Mapping[str, DeviceWalks]) -> Estimate | None:
     return Estimate(knee, knee - half, knee + half, "kg") if named else None
 
 
-def check_length(trial: Trial, shortest_s: float) -> None:
-    """Refuse a walk too short for the strides of a discovery, before faults whose mend would not help."""
-    time = trial.stream("kinematics").time
-    if (lasts_s := float(time[-1] - time[0])) < FEWEST_STRIDES * shortest_s:
-        needed = f"to name the effect of a device, one trial must have {FEWEST_STRIDES} strides"
-        raise StrideError(needed, f"{trial.name} lasts only {lasts_s:.1f} s", MEND)
+def check_length(trials: Sequence[Trial], shortest_s: float) -> None:
+    """Refuse walks too short for the strides of a discovery, before faults whose mend would not help."""
+    clocks = [trial.stream("kinematics").time for trial in trials]
+    if (lasts_s := float(sum(time[-1] - time[0] for time in clocks))) < FEWEST_STRIDES * shortest_s:
+        needed = f"to name the effect of a device, the trials of a condition must have {FEWEST_STRIDES} strides"
+        raise StrideError(needed, f"{trials[0].name}: {counted(len(trials), 'trial')}, {lasts_s:.1f} s", MEND)
 
 
 def check_kinetics(trial: Trial) -> None:

@@ -10,6 +10,7 @@ from functools import partial
 from typing import TYPE_CHECKING
 
 import numpy as np
+from numpy.typing import NDArray
 
 from gaitdisc.discovery.candidate import Candidate
 from gaitdisc.discovery.changed_moment import Change, Walk
@@ -28,7 +29,8 @@ if TYPE_CHECKING:
 
 STRIDES, MOTION_STRIDES = 3, 4  # of one trial of the search: with moments, and of the motion alone
 FEWEST_TRIALS = 4
-KNOWN = 0.3  # of the samples of a trial, with a known load of the foot
+FEWEST_STRIDES = FEWEST_TRIALS * STRIDES
+KNOWN = 0.5  # of the samples of a trial must have a known load; swing alone, 0.4 of a stride, shows no load
 BLOCKS = 4  # of the Nominal walk, each left out of the calibration once
 RATE_HZ = 50.0  # enough for moments below 20 Hz
 TRACKED = (800.0, 57.0, 1.0)  # of angle, rate and acceleration
@@ -165,25 +167,37 @@ def cut_walk_trials(record: JointRecord, model: MuscleMoment, simulation: Simula
     late = lag_signal(np.interp(at, at[known], record.moment[known])[None], driven.rate_hz / RATE_HZ)[0]  # as its state
     seen = np.column_stack([record.seen, np.where(known, late, np.nan)])
     usable = np.isfinite(inputs).all(axis=1) & np.isfinite(record.seen)
-    trials: list[TrialColumns] = []
-    first, last = 0, int(record.stride.max())
-    while first + STRIDES - 1 <= last:
-        inside = np.flatnonzero((record.stride >= first) & (record.stride < first + STRIDES))
+    series: list[NDArray[np.intp]] = []
+    strides = STRIDES + 1
+    while len(series) * strides < FEWEST_STRIDES and strides > 1:  # short trials hold fewer strides in a row
+        strides -= 1
+        series = find_series(record, usable, strides)
+    if len(series) * strides < FEWEST_STRIDES:
+        raise StrideError(
+            f"the load on the foot must be known in {100 * KNOWN:.0f} % of the samples of {FEWEST_STRIDES} strides",
+            f"it is in {len(series)} of {int(record.stride.max()) + 1} strides of {record.subject} {record.condition}",
+            "Record longer, or more trials, and keep each foot on its own plate.",
+        )
+    thinned = [inside[::step] for inside in series]
+    trials = [
+        TrialColumns(str(number), record.time[rows], inputs[rows], seen[rows]) for number, rows in enumerate(thinned, 1)
+    ]
+    driving = [signal.name for signal in simulation.inputs]
+    return check_measured(trials, driving, [name for name, _ in simulation.observations], record.subject)
+
+
+def find_series(record: JointRecord, usable: NDArray[np.bool_], strides: int) -> list[NDArray[np.intp]]:
+    """Samples of each series of so many strides in a row, all usable, with a known load in enough of them."""
+    series: list[NDArray[np.intp]] = []
+    first = 0
+    while first + strides - 1 <= int(record.stride.max()):
+        inside = np.flatnonzero((record.stride >= first) & (record.stride < first + strides))
         complete = len(inside) > 1 and (np.diff(inside) == 1).all() and usable[inside].all()
         complete = complete and np.isfinite(record.moment[inside]).mean() > KNOWN
         if complete:
-            thinned = inside[::step]
-            trials.append(TrialColumns(str(len(trials) + 1), record.time[thinned], inputs[thinned], seen[thinned]))
-        first += STRIDES if complete else 1
-    if len(trials) < FEWEST_TRIALS:
-        raise StrideError(
-            f"the walk must have {FEWEST_TRIALS} series of {STRIDES} consecutive strides with a known load on the foot "
-            f"in {100 * KNOWN:.0f} % of the samples",
-            f"{record.subject} {record.condition} has {last + 1} strides with {len(trials)} such series",
-            "Record longer, and keep each foot on its own plate.",
-        )
-    driving = [signal.name for signal in simulation.inputs]
-    return check_measured(trials, driving, [name for name, _ in simulation.observations], record.subject)
+            series.append(inside)
+        first += strides if complete else 1
+    return series
 
 
 def lag_signal(signal: Values, samples: float) -> Values:

@@ -129,14 +129,15 @@ def differing_body(study: Study, participant: Participant) -> str:
     return ""
 
 
-def not_compared(study: Study, participant: Participant) -> str:
-    """Why models cannot compare two walks of a participant; empty where they can."""
+def not_compared(study: Study, participant: Participant, pooled: bool = False) -> str:
+    """Why two walks of a participant, or their pooled trials, cannot be compared by models; empty where they can."""
     if study.conditions.device is None:
         return "the study does not compare a device"
     walks = [trial for trial in participant.trials if is_walk(study, trial)]
     both = study.conditions.both
-    one_each = all(len(participant.trials_of(word)) == 1 for word in both)
-    if one_each and len({trial.session for trial in walks if trial.condition in both}) == 1:
+    counts = [len(participant.trials_of(word)) for word in both]
+    complete = all(counts) if pooled else counts == [1, 1]
+    if complete and len({trial.session for trial in walks if trial.condition in both}) == 1:
         return ""
     return _one_walk_each(study, participant)
 

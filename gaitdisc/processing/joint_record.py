@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from gaitdisc.errors import ChannelError, UnitError
+from gaitdisc.errors import ChannelError, SamplingError, UnitError
 from gaitdisc.ingest.study import Study
 from gaitdisc.kinematics.marker_set import read_marker_sets
 from gaitdisc.kinematics.markers import marker_labels, marker_places, up_axis
@@ -93,6 +95,50 @@ def joint_record(trial: Trial, study: Study, joint: str, mass_kg: float | None) 
     )
 
 
+def join_trials(records: Sequence[JointRecord]) -> JointRecord:
+    """Return short trials of a joint as one record: strides are numbered on, a sample outside of strides lies between.
+
+    Muscles are those of every trial; the clock goes on from trial to trial.
+    """
+    first, *others = records
+    if not others:
+        return first
+    rates = [1 / float(np.median(np.diff(record.time))) for record in records]
+    if not np.allclose(rates, rates[0], rtol=1e-3):
+        raise SamplingError(
+            f"trials of {first.condition} that are taken together must have one rate of the angles",
+            f"{first.subject} has {', '.join(f'{rate:.4g} Hz' for rate in (min(rates), max(rates)))}",
+            "Export all trials at one rate.",
+        )
+    muscles = tuple(name for name in first.muscles if all(name in record.muscles for record in others))
+    clock = np.cumsum([0.0, *(record.time[-1] - record.time[0] + 2 / rates[0] for record in records)])
+    count = np.cumsum([0, *(int(record.stride.max()) + 1 for record in records)])
+    alike = [
+        replace(
+            record,
+            time=record.time - record.time[0] + begins,
+            envelopes=record.envelopes[:, [record.muscles.index(name) for name in muscles]],
+            stride=np.where(record.stride < 0, -1, record.stride + numbered),
+        )
+        for record, begins, numbered in zip(records, clock, count, strict=False)
+    ]
+
+    def joined(name: str, between: float = np.nan) -> NDArray[Any]:
+        parts = [getattr(record, name) for record in alike]
+        return np.concatenate([np.concatenate([part, np.full_like(part[:1], between)]) for part in parts])[:-1]
+
+    time = joined("time")
+    return replace(
+        first,
+        time=np.where(np.isnan(time), np.roll(time, 1) + 1 / rates[0], time),
+        **{name: joined(name) for name in ("seen", "angle", "rate", "speedup", "moment", "envelopes", "phase")},
+        stride=joined("stride", -1),
+        muscles=muscles,
+        per_kg=joined("per_kg") if all(record.per_kg.size for record in records) else np.empty(0),
+        findings=tuple(dict.fromkeys(finding for record in records for finding in record.findings)),
+    )
+
+
 def _moment(trial: Trial, name: str, mass_kg: float | None, time: Values) -> Values:
     """Moment of a joint in N m on a time base."""
     recording = trial.stream("moments").selected([f"{name}_moment"])
@@ -128,7 +174,9 @@ def _per_kg(trial: Trial, study: Study, joint: str, time: Values) -> Values:
     if not all((key, side) in points for key in (JOINT_AT[joint], "heel", "toe")):
         return np.empty(0)
     centre, heel, toe = (points[key, side] for key in (JOINT_AT[joint], "heel", "toe"))
-    up = up_axis(np.nanmean(marker_places(markers, labels), axis=1), heel)
+    feet = np.mean([points[key, on] for key in ("heel", "toe") for on in "lr" if (key, on) in points], axis=0)
+    tops = (points[key, side] for key in ("asis", "sacrum", "knee_lateral") if (key, side) in points)
+    up = up_axis(next(tops, np.nanmean(marker_places(markers, labels), axis=1)), feet)
     moment = moment_per_foot_kg(centre, heel, toe, up, markers.rate_hz)
     return interpolate(markers.time, (-moment if joint == "knee_angle" else moment)[:, None], time)[:, 0]
 

@@ -6,6 +6,7 @@ import pytest
 from gaitdisc.cohort import marker_trial as laboratory
 from gaitdisc.cohort.habit import habitual
 from gaitdisc.cohort.marker_trial import STANDS_N, belts, marker_trial, overground, standing
+from gaitdisc.cohort.person import Spring
 from gaitdisc.cohort.walk import walked
 from gaitdisc.ingest.c3d_writing import write_c3d
 from gaitdisc.ingest.reading import read_trial
@@ -80,6 +81,20 @@ def test_moments_by_newton_and_euler_are_those_that_walked(files, walk):
         known = np.isfinite(seen)
         assert known.mean() > 0.5
         assert np.corrcoef(seen[known], true[known])[0, 1] > alike, joint
+
+
+def test_a_spring_on_the_ankle_is_in_the_moment_about_it(person):
+    """The belt turns the foot against the spring, and its plate measures that as well."""
+    worn = walked(person, Spring(5.0), 6.0, seed=5)
+    trial, static = marker_trial(worn, "walk", "exo"), standing(person)
+    moved = move_body(trial.stream("markers"), static.stream("markers"))
+    who = Person(person.mass_kg)
+    found = trial_kinetics(trial, moved.poses, find_foot_paths(moved), who, KineticsSettings())
+    seen, spring = found.moments["ankle_angle_r_moment"] * person.mass_kg, worn.spring[:, 0]
+    known = np.isfinite(seen) & (spring < -5.0)
+    assert known.sum() > 100
+    lacks = (seen - worn.moments[:, 0, 2] - spring)[known].mean()
+    assert abs(lacks) < 0.25 * -spring[known].mean()  # 0.6 of it without the turning moment
 
 
 def test_a_force_lies_on_its_belt_and_pushes_inwards(files):

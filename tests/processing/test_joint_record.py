@@ -9,9 +9,9 @@ from gaitdisc.cohort.marker_trial import marker_trial
 from gaitdisc.cohort.measurement import measure
 from gaitdisc.cohort.person import draw_one
 from gaitdisc.cohort.walk import walked
-from gaitdisc.errors import ChannelError, UnitError
+from gaitdisc.errors import ChannelError, SamplingError, UnitError
 from gaitdisc.ingest.study import Conditions, Participant, PlannedTrial, Study
-from gaitdisc.processing.joint_record import joint_record
+from gaitdisc.processing.joint_record import join_trials, joint_record
 from gaitdisc.recording import Recording
 from gaitdisc.signals.butterworth import low_pass
 from gaitdisc.signals.derivatives import derivative
@@ -106,3 +106,34 @@ def test_the_speed_of_push_off_is_kept_which_the_low_pass_of_angles_blunts(walk,
 
 def walk_angles(walk):
     return measure(walk, "W01_nominal", "nominal").stream("kinematics").selected(["ankle_angle_r"])
+
+
+def test_short_trials_joined_are_one_record_with_a_sample_outside_between(record):
+    rows = slice(100, 400)
+    count = int(record.stride[rows].max()) + 1
+    part = replace(
+        record,
+        **{
+            name: getattr(record, name)[rows]
+            for name in ("time", "seen", "angle", "rate", "speedup", "moment", "phase")
+        },
+        **{name: getattr(record, name)[rows] for name in ("envelopes", "stride", "per_kg")},
+    )
+    fewer = replace(part, muscles=part.muscles[1:], envelopes=part.envelopes[:, 1:])
+    joined = join_trials([part, fewer, part])
+    np.testing.assert_allclose(np.diff(joined.time), 0.01, rtol=1e-9)
+    np.testing.assert_array_equal(np.flatnonzero(np.isnan(joined.angle)), [300, 601])
+    assert joined.muscles == record.muscles[1:] and joined.envelopes.shape == (902, 6)
+    np.testing.assert_array_equal(joined.stride[[300, 601]], -1)
+    for trial in range(3):
+        rows = slice(301 * trial, 301 * trial + 300)
+        outside = part.stride < 0
+        np.testing.assert_array_equal(joined.stride[rows], np.where(outside, -1, part.stride + count * trial))
+        np.testing.assert_array_equal(joined.moment[rows], part.moment)
+    assert joined.findings == part.findings
+    assert join_trials([part]) is part
+
+
+def test_trials_of_two_rates_are_not_joined(record):
+    with pytest.raises(SamplingError, match=r"one rate.*W01.*50 Hz, 100 Hz"):
+        join_trials([record, replace(record, time=record.time * 2)])

@@ -5,7 +5,7 @@ from types import SimpleNamespace
 import numpy as np
 import pandas as pd
 import pytest
-from made_joint import made_joint
+from made_joint import made_joint, short_trials
 from manufactured_discovery import manufactured
 from texts import says
 
@@ -65,10 +65,10 @@ def test_a_walk_without_emg_or_forces_says_which(has, lacks, mend):
         check_kinetics(trial(has))
 
 
-def test_a_trial_of_a_few_strides_is_refused_for_its_length_and_sent_to_pooled_cycles():
-    with pytest.raises(StrideError, match=r"12 strides.*W01_exo lasts only 4\.7 s.*--before A --after B"):
-        check_length(trial("kinematics", lasts_s=4.7), 0.4)
-    check_length(trial("kinematics", lasts_s=4.9), 0.4)
+def test_trials_of_a_few_strides_are_refused_for_their_length_and_sent_to_pooled_cycles():
+    with pytest.raises(StrideError, match=r"12 strides.*W01_exo: 1 trial, 4\.7 s\..*--before A --after B"):
+        check_length([trial("kinematics", lasts_s=4.7)], 0.4)
+    check_length([trial("kinematics", lasts_s=2.5)] * 2, 0.4)
 
 
 def one_walk(word="nominal", **others):
@@ -95,6 +95,27 @@ def test_a_study_without_a_device_compares_none_of_its_conditions(tmp_path):
     write_study(study, tmp_path / "study.toml")
     with pytest.raises(SchemaError, match=r"both walks of W01 are required; the study does not compare a device"):
         discover_study(tmp_path / "study.toml", "W01")
+
+
+def test_an_unusable_trial_costs_no_other_and_a_condition_without_a_usable_one_is_refused(monkeypatch):
+    planned = [PlannedTrial(condition=word, files=(f"{word}{k}.mot",)) for word in ("nominal", "exo") for k in range(3)]
+    person = Participant(id="W01", trials=tuple(planned))
+    study = one_walk().model_copy(update={"participants": (person,)})
+    bad = [planned[4]]
+
+    def record(_, trial, __):
+        if trial in bad:
+            raise NoMomentsError("needed", "no plate was hit", "Mend.")
+        return made_joint(12, seed=planned.index(trial))
+
+    monkeypatch.setattr(PersonWalks, "_trial_record", record)
+    device = PersonWalks(study, person).at("exo", "ankle_angle").device
+    assert device.stride.max() + 1 == 24
+    assert [(finding.kind, finding.file) for finding in device.findings] == [("excluded trial", "W01 exo 2")]
+    assert "no plate was hit" in device.findings[0].what
+    bad += planned[3:]
+    with pytest.raises(NoMomentsError, match="no plate"):
+        PersonWalks(study, person).at("exo", "ankle_angle")
 
 
 CONDITIONS = Conditions(nominal="nominal", device="exo", others=("exo_soft", "turn"))
@@ -178,6 +199,16 @@ def test_the_models_of_chapter_4_stand_beside_in_newton_metres(walks):
     assert list(sizes)[:2] == ["Nominal", "Nominal + named effect"]
     assert sizes["Nominal + named effect"] == sizes["Nominal"]  # nothing is named
     assert 0.5 < sizes["Augmented (plain regression)"] < sizes["Exo"] < sizes["Nominal"]
+
+
+def test_short_trials_show_the_spring_that_they_share(walks):
+    """The walks, cut into eight trials of three strides, from the middle of a stride on."""
+    apart = DeviceWalks(short_trials(walks.nominal), short_trials(walks.device), nominal_moment(walks.nominal))
+    assert apart.device.stride.max() + 1 == 16  # two whole strides each
+    change = replace(apart, model=nominal_moment(apart.nominal)).changed
+    assert change.change.name == "one_sided_spring"
+    assert change.value == pytest.approx(150.0, abs=1.96 * change.spread)
+    assert change.value == pytest.approx(walks.changed.value, rel=0.1)
 
 
 @pytest.mark.slow
