@@ -171,7 +171,7 @@ def cut_walk_trials(record: JointRecord, model: MuscleMoment, simulation: Simula
     strides = STRIDES + 1
     while len(series) * strides < FEWEST_STRIDES and strides > 1:  # short trials hold fewer strides in a row
         strides -= 1
-        series = find_series(record, usable, strides)
+        series = find_series(record.stride, usable, known, strides)
     if len(series) * strides < FEWEST_STRIDES:
         raise StrideError(
             f"the load on the foot must be known in {100 * KNOWN:.0f} % of the samples of {FEWEST_STRIDES} strides",
@@ -186,14 +186,16 @@ def cut_walk_trials(record: JointRecord, model: MuscleMoment, simulation: Simula
     return check_measured(trials, driving, [name for name, _ in simulation.observations], record.subject)
 
 
-def find_series(record: JointRecord, usable: NDArray[np.bool_], strides: int) -> list[NDArray[np.intp]]:
-    """Samples of each series of so many strides in a row, all usable, with a known load in enough of them."""
+def find_series(
+    stride: NDArray[np.intp], usable: NDArray[np.bool_], known: NDArray[np.bool_], strides: int
+) -> list[NDArray[np.intp]]:
+    """Samples of each series of so many strides in a row, usable throughout and known in enough samples."""
     series: list[NDArray[np.intp]] = []
     first = 0
-    while first + strides - 1 <= int(record.stride.max()):
-        inside = np.flatnonzero((record.stride >= first) & (record.stride < first + strides))
+    while first + strides - 1 <= stride.max():
+        inside = np.flatnonzero((stride >= first) & (stride < first + strides))
         complete = len(inside) > 1 and (np.diff(inside) == 1).all() and usable[inside].all()
-        complete = complete and np.isfinite(record.moment[inside]).mean() > KNOWN
+        complete = complete and known[inside].mean() > KNOWN
         if complete:
             series.append(inside)
         first += strides if complete else 1
@@ -278,17 +280,12 @@ def nominal_model(walk: ProcessedWalk, name: str) -> Simulation:
 def stride_trials(walk: ProcessedWalk, name: str, strides: int = MOTION_STRIDES) -> Measured:
     """Cut a walk into trials of so many strides in a row."""
     angle, _, _, phase = _motion(walk, name)
-    time = np.asarray(walk.state.time)
-    cycles = walk.strides[walk.side]
-    trials: list[TrialColumns] = []
-    first = 0
-    while first + strides <= len(cycles):
-        inside = (time >= cycles.start[first]) & (time < cycles.end[first + strides - 1])
-        complete = np.isfinite(phase[inside]).all() and np.isfinite(angle[inside]).all()
-        if complete:
-            label = str(len(trials) + 1)
-            trials.append(TrialColumns(label, time[inside], phase[inside, None], angle[inside, None]))
-        first += strides if complete else 1
+    time, cycles = np.asarray(walk.state.time), walk.strides[walk.side]
+    usable = np.isfinite(phase) & np.isfinite(angle)
+    trials = [
+        TrialColumns(str(number), time[inside], phase[inside, None], angle[inside, None])
+        for number, inside in enumerate(find_series(cycles.number(time), usable, usable, strides), 1)
+    ]
     if len(trials) < FEWEST_TRIALS:
         raise StrideError(
             f"a walk must have at least {FEWEST_TRIALS} separate series of {strides} consecutive strides",

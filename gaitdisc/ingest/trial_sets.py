@@ -135,7 +135,7 @@ def not_compared(study: Study, participant: Participant, pooled: bool = False) -
         return "the study does not compare a device"
     walks = [trial for trial in participant.trials if is_walk(study, trial)]
     both = study.conditions.both
-    counts = [len(participant.trials_of(word)) for word in both]
+    counts = [sum(not (pooled and trial.leave_out) for trial in participant.trials_of(word)) for word in both]
     complete = all(counts) if pooled else counts == [1, 1]
     if complete and len({trial.session for trial in walks if trial.condition in both}) == 1:
         return ""

@@ -111,28 +111,23 @@ def join_trials(records: Sequence[JointRecord]) -> JointRecord:
             "Export all trials at one rate.",
         )
     muscles = tuple(name for name in first.muscles if all(name in record.muscles for record in others))
-    clock = np.cumsum([0.0, *(record.time[-1] - record.time[0] + 2 / rates[0] for record in records)])
-    count = np.cumsum([0, *(int(record.stride.max()) + 1 for record in records)])
     alike = [
-        replace(
-            record,
-            time=record.time - record.time[0] + begins,
-            envelopes=record.envelopes[:, [record.muscles.index(name) for name in muscles]],
-            stride=np.where(record.stride < 0, -1, record.stride + numbered),
-        )
-        for record, begins, numbered in zip(records, clock, count, strict=False)
+        replace(record, envelopes=record.envelopes[:, [record.muscles.index(name) for name in muscles]])
+        for record in records
     ]
 
     def joined(name: str, between: float = np.nan) -> NDArray[Any]:
         parts = [getattr(record, name) for record in alike]
         return np.concatenate([np.concatenate([part, np.full_like(part[:1], between)]) for part in parts])[:-1]
 
-    time = joined("time")
+    stride = joined("stride", -1)
+    begins = np.flatnonzero(np.diff(stride, prepend=-1) * (stride >= 0))
+    signals = ("seen", "angle", "rate", "speedup", "moment", "envelopes", "phase")
     return replace(
         first,
-        time=np.where(np.isnan(time), np.roll(time, 1) + 1 / rates[0], time),
-        **{name: joined(name) for name in ("seen", "angle", "rate", "speedup", "moment", "envelopes", "phase")},
-        stride=joined("stride", -1),
+        time=np.arange(len(stride)) / rates[0],
+        **{name: joined(name) for name in signals},
+        stride=np.where(stride < 0, -1, np.searchsorted(begins, np.arange(len(stride)), "right") - 1),
         muscles=muscles,
         per_kg=joined("per_kg") if all(record.per_kg.size for record in records) else np.empty(0),
         findings=tuple(dict.fromkeys(finding for record in records for finding in record.findings)),

@@ -113,6 +113,10 @@ def test_an_unusable_trial_costs_no_other_and_a_condition_without_a_usable_one_i
     assert device.stride.max() + 1 == 24
     assert [(finding.kind, finding.file) for finding in device.findings] == [("excluded trial", "W01 exo 2")]
     assert "no plate was hit" in device.findings[0].what
+    left_out = [*planned[:3], *(trial.model_copy(update={"leave_out": "tripped"}) for trial in planned[3:])]
+    nobody = person.model_copy(update={"trials": tuple(left_out)})
+    with pytest.raises(SchemaError, match="both walks of W01"):
+        PersonWalks(study, nobody).at("exo", "ankle_angle")
     bad += planned[3:]
     with pytest.raises(NoMomentsError, match="no plate"):
         PersonWalks(study, person).at("exo", "ankle_angle")
