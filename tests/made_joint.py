@@ -47,7 +47,8 @@ def cut_record(record, rows, first):
     stride = np.where(record.stride[rows] < first, -1, record.stride[rows] - first)
     arrays = {name: getattr(record, name)[rows] for name in ("seen", "angle", "rate", "speedup", "moment", "envelopes")}
     phase = np.where(stride < 0, np.nan, record.phase[rows])
-    return replace(record, time=record.time[rows] - record.time[rows][0], phase=phase, stride=stride, **arrays)
+    return replace(record, time=record.time[rows] - record.time[rows][0], phase=phase, stride=stride,
+                   per_kg=record.per_kg[rows], **arrays)  # fmt: skip
 
 
 def short_trials(record, strides=3):

@@ -3,6 +3,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from changed_trials import with_column, with_stream
+from made_joint import cut_record
 
 from gaitdisc.channel import Channel, vocabulary
 from gaitdisc.cohort.marker_trial import marker_trial
@@ -109,16 +110,8 @@ def walk_angles(walk):
 
 
 def test_short_trials_joined_are_one_record_with_a_sample_outside_between(record):
-    rows = slice(100, 400)
-    count = int(record.stride[rows].max()) + 1
-    part = replace(
-        record,
-        **{
-            name: getattr(record, name)[rows]
-            for name in ("time", "seen", "angle", "rate", "speedup", "moment", "phase")
-        },
-        **{name: getattr(record, name)[rows] for name in ("envelopes", "stride", "per_kg")},
-    )
+    part = cut_record(record, slice(100, 400), 0)
+    count = int(part.stride.max()) + 1
     fewer = replace(part, muscles=part.muscles[1:], envelopes=part.envelopes[:, 1:])
     joined = join_trials([part, fewer, part])
     np.testing.assert_allclose(np.diff(joined.time), 0.01, rtol=1e-9)
