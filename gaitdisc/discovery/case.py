@@ -95,18 +95,19 @@ class Case:
         """Whether what a model leaves is no larger than the noise of the sensors.
 
         Where this is not known (a filtered record whose file does not say it), whether it is autocorrelated no further
-        than by the filter; where the simulation itself errs, and its errors with it, whether it is a small share of the
-        spread.
+        than by the filter, and not surely larger than what the spectrum shows; where the simulation itself errs, and
+        its errors with it, whether it is a small share of the spread.
         """
         if self.search.base.inexact and self.scale.relative(now.fit) < CRITERIA.inexact:
             return True
         if not np.isfinite(self.sensor_noise).all():
-            return not now.noise.is_autocorrelated
+            left = np.sqrt(np.nanmean(now.fit.residual**2, axis=(0, 1)))
+            return not now.noise.is_autocorrelated and bool((self.record_filter.at_most_noise(left) == left).all())
         return leaves(now, self.sensor_noise) < CRITERIA.mere_noise
 
     def noise_floor(self, noise: Values) -> Values:
         """Return the size of the sensors' noise (channel,); where it is not known, of what a simulation leaves."""
-        return np.where(np.isnan(self.sensor_noise), noise, self.sensor_noise)
+        return np.where(np.isnan(self.sensor_noise), self.record_filter.at_most_noise(noise), self.sensor_noise)
 
     def noting(self, finding: Finding) -> Case:
         """Return the case with one finding more."""

@@ -69,7 +69,8 @@ def find_record_filter(
     if cutoffs and max(cutoffs.values()) < ALIKE * min(cutoffs.values()):  # one filter
         cutoffs = dict.fromkeys(cutoffs, geometric_mean(cutoffs.values()))
     passed = RecordFilter(tuple(cutoffs.get(number, cutoff) for number, cutoff in enumerate(stated)), measured.rate)
-    findings = []
+    noise = {number: one.noise * float(passed.gains[number]) for number, one in seen.items() if one.signal <= FELT}
+    passed, findings = replace(passed, noise=noise), []
     for number, hz in cutoffs.items():
         what = f"assumed to be low-passed at {hz:.3g} Hz without lag (order 2, run twice), because of its spectrum"
         spoils = "results that depend on this filter; state lowpass in the simulation file if you know the cut-off"

@@ -203,7 +203,7 @@ def with_noise(runs: OwnRuns, fit: EngineFit) -> OwnRuns:
     runs = replace(runs, floor=sensor_noise(data.observed))
     if passed.margin:  # a filter hides the size of the noise: what is within windows shows it
         runs = replace(runs, every=passed.every, memory=passed.autocorrelation(runs.at.length))
-        hidden = np.sqrt(np.nanmean(runs.variances(runs.before)[1], axis=(0, 1)))
+        hidden = passed.at_most_noise(np.sqrt(np.nanmean(runs.variances(runs.before)[1], axis=(0, 1))))
         runs = replace(runs, floor=np.where([one is None for one in passed.cutoffs_hz], runs.floor, hidden))
         given = given * passed.gains
     return replace(runs, floor=np.where(np.isnan(given), runs.floor, given))

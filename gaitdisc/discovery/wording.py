@@ -100,7 +100,7 @@ def _nothing(discovery: Discovery) -> str:
         return f"No effect is named: {stated}."
     first = discovery.rivals[0] if discovery.rivals else None
     if first is None or not first.bic >= CRITERIA.support:
-        if may_be_left(discovery.held_out.before, discovery.held_out):
+        if discovery.verdict == "no_gap" and may_be_left(discovery.held_out.before, discovery.held_out):
             return "Simulation and data agree within the noise: these data show no missing effect."
         if discovery.verdict == "no_gap":
             return (

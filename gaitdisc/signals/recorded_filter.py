@@ -20,6 +20,7 @@ WINDOW = 512  # samples
 FEWEST = 128  # samples of a trial whose spectrum is looked at
 FEWEST_LINES = 24
 BLACKMAN_HARRIS = (0.35875, -0.48829, 0.14128, -0.01168)
+WINDOW_POWER = float(np.square(BLACKMAN_HARRIS) @ [1.0, 0.5, 0.5, 0.5])  # mean square
 SIGNAL = 1e-2  # of the strongest line: above it all is signal
 BEGINNINGS = (0.02, 0.04, 0.07, 0.11, 0.17)  # cut-offs that a search begins from, of the rate
 LEAST = 1e-32  # power, of the strongest line: beyond the digits of a number
@@ -50,6 +51,7 @@ class RecordedFilter:
     likelihood: float  # log likelihood with it, of the same lines whatever the signal is taken to be like
     # power of the signal over that of the noise at the cut-off: where it is far above 1, the number is rough
     signal: float
+    noise: float = float("nan")  # standard deviation of the white noise before the filter [the channel's unit]
 
 
 def find_filter(
@@ -94,7 +96,8 @@ def find_filter(
     falls_far = bool(near.size) and np.median(near) > FALLEN * np.median(above.power[-12:])
     if gained < enough or cutoff > HIGHEST or not falls_far or steeper:
         return None
-    return RecordedFilter(cutoff * rate_hz, likelihood, best[2])
+    density = best[3] * above.power.max() / (2 * (len(spectrum.power) - 1)) / WINDOW_POWER
+    return RecordedFilter(cutoff * rate_hz, likelihood, best[2], float(np.sqrt(density)))
 
 
 def mean_spectrum(trials: Sequence[Values]) -> Spectrum | None:
@@ -127,7 +130,7 @@ def _may_be_filtered(spectrum: Spectrum, trials: Sequence[Values]) -> bool:
     steps = np.abs(np.concatenate([np.diff(finite_values(trial)) for trial in trials]))
     step = float(steps[steps > 0].min()) if (steps > 0).any() else 0.0
     length = 2 * (len(spectrum.frequency) - 1)
-    return end < ROUNDED * step**2 / 12 * length * float(np.square(BLACKMAN_HARRIS) @ [1.0, 0.5, 0.5, 0.5])
+    return end < ROUNDED * step**2 / 12 * length * WINDOW_POWER
 
 
 class _Fit:
@@ -141,8 +144,8 @@ class _Fit:
         self.power = np.maximum(spectrum.power / spectrum.power.max(), LEAST)
         self.tan, self.beyond = np.tan(np.pi * spectrum.frequency), spectrum.frequency - spectrum.frequency[0]
 
-    def best(self, cutoff: tuple[float, ...], held: bool = False) -> tuple[float, float, float]:
-        """Likelihood of a window, cut-off (sought, or held), and the signal over the noise there; or of no filter."""
+    def best(self, cutoff: tuple[float, ...], held: bool = False) -> tuple[float, float, float, float]:
+        """Likelihood of a window, cut-off (sought, or held), signal over noise there, noise; or of no filter."""
         from scipy.optimize import minimize
 
         begun = self._begun(cutoff)
@@ -152,7 +155,7 @@ class _Fit:
         at = float(np.exp(optimum.x[4])) if cutoff else float(self.frequency[-1])
         shape = float(np.interp(at, self.frequency, self.shape))
         over = signal - noise - np.exp(decay) * (at - self.frequency[0]) + np.log(max(shape, 1e-300))
-        return -float(optimum.fun), at, float(np.exp(np.clip(over, -99, 99)))
+        return -float(optimum.fun), at, float(np.exp(np.clip(over, -99, 99))), float(np.exp(noise))
 
     def _begun(self, cutoff: tuple[float, ...]) -> Values:
         low = self.frequency < 2 * cutoff[0] if cutoff else np.zeros(len(self.power), bool)

@@ -1,14 +1,16 @@
 from dataclasses import replace
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
 from hidden_in_a_mass import Experiment, mass, record, with_load
+from scipy.signal import butter, sosfiltfilt
 
 from gaitdisc.discovery.case import SHORT, hangs_on_step, set_up_case, split_in_time
 from gaitdisc.discovery.catalogue import Request, Shape
 from gaitdisc.discovery.discover import discover
 from gaitdisc.discovery.folder import save_discovery
-from gaitdisc.discovery.noise import sensor_noise
+from gaitdisc.discovery.noise import sensor_noise, white_noise
 from gaitdisc.discovery.page import write_discovery_report
 from gaitdisc.discovery.record_filter import RecordFilter
 from gaitdisc.discovery.scored_model import Part, score
@@ -111,6 +113,19 @@ def test_the_noise_of_the_sensors_is_what_the_file_says_behind_the_filter():
     assert plain.sensor_noise == pytest.approx(sensor_noise(measured.observed))
     silent = replace(plain, record_filter=RecordFilter((3.0,), measured.rate))
     assert np.isnan(silent.sensor_noise).all() and silent.noise_floor(np.array([0.5])) == 0.5
+    shown = replace(silent, record_filter=RecordFilter((3.0,), measured.rate, noise={0: 0.2}))
+    assert shown.noise_floor(np.array([0.3])) == 0.3 and shown.noise_floor(np.array([0.5])) == 0.2
+
+
+def test_white_residuals_larger_than_the_spectrums_noise_are_not_noise():
+    case = set_up_case(mass(), record(mass(), 3, Experiment(trials=2, seconds=6.0)))
+    passed = RecordFilter((3.0,), case.measured.rate)
+    raw = np.random.default_rng(0).normal(size=(4, 200, 1))
+    residual = sosfiltfilt(butter(2, 3.0, fs=case.measured.rate, output="sos"), raw, axis=1)
+    now = SimpleNamespace(noise=white_noise(np.ones(1)), fit=SimpleNamespace(residual=residual))
+    for size, noise in ((0.9 * np.std(residual), True), (0.4 * np.std(residual), False)):
+        shown = replace(case, record_filter=replace(passed, noise={0: float(size)}))
+        assert shown.leaves_noise(now) == noise
 
 
 def test_a_trial_too_short_for_whole_margins_is_cut_all_the_same():

@@ -64,3 +64,10 @@ def test_the_memory_of_filtered_noise_is_that_of_its_samples():
     measured = [np.mean(noise[: len(noise) - lag] * noise[lag:]) / noise.var() for lag in range(5)]
     np.testing.assert_allclose(passed.autocorrelation(4)[:, 0], measured, atol=0.03)
     assert RecordFilter((None,), 100.0).autocorrelation(2)[:, 0].tolist() == [1.0, 0.0, 0.0]
+
+
+def test_what_is_twice_the_noise_that_the_spectrum_shows_is_more_than_noise():
+    """Of channels whose noise no spectrum shows, any size may be noise."""
+    passed = RecordFilter((6.0, 6.0, None), 100.0, noise={0: 0.1})
+    np.testing.assert_array_equal(passed.at_most_noise(np.array([0.19, 9.0, 9.0])), [0.19, 9.0, 9.0])
+    np.testing.assert_array_equal(passed.at_most_noise(np.array([0.21, 9.0, 9.0])), [0.1, 9.0, 9.0])

@@ -72,6 +72,8 @@ def test_where_nothing_meets_the_criteria_the_listed_explanation_that_removes_mo
     said = sentence(**none, explanations=listed)
     assert says(said, "no tested explanation meets the criteria", "removes most", "hysteresis", "88 %", "New trials")
     assert "removes most" not in sentence(**none, explanations=listed[:1])
+    none["held_out"] = GapSize(0.01, 0.01, 0.02, 1.0, {"theta": (0.01, 0.01, 0.02)}, 14)
+    assert "agree within the noise" not in sentence(**none)
 
 
 def test_what_stays_unexplained_is_said_where_it_is_more_than_a_few_percent():

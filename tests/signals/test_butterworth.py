@@ -225,6 +225,7 @@ def test_the_cut_off_is_found(cutoff, noise):
     found = find_filter(_trials(noise, cutoff), RATE)
     assert found.cutoff_hz == pytest.approx(cutoff, rel=0.06)
     assert found.signal < 0.1
+    assert found.noise == pytest.approx(noise, rel=0.2)
 
 
 def test_gaps_and_written_digits_do_not_matter():
