@@ -167,7 +167,8 @@ def weigh_rivals(search: Search, now: ScoredModel, found: tuple[ScoredModel, ...
     for one in found:
         if one.parts and sorted(one.labels) != own:
             others.setdefault(tuple(sorted(one.labels)), one)
-    listed = list(others.values())[:MOST_RIVALS]
+    adding = {labels for labels in others if own and set(own) < set(labels)}  # what only adds to it is no other answer
+    listed = [others[labels] for labels in sorted(others, key=lambda labels: labels in adding)][:MOST_RIVALS]
     if not own:
         return tuple(Rival(model, model.gained, False) for model in listed)
     fitted: dict[tuple[str, ...], ScoredModel] = {}
@@ -181,7 +182,7 @@ def weigh_rivals(search: Search, now: ScoredModel, found: tuple[ScoredModel, ...
         fitted.setdefault(tuple(sorted(best.labels)), best)
     rivals = []
     for model in fitted.values():
-        behind, adds = model.bic - now.bic, set(own) < set(model.labels)  # what only adds to it is no other answer
+        behind, adds = model.bic - now.bic, set(own) < set(model.labels)
         rivals.append(Rival(model, gained - behind, behind < CRITERIA.tie and not adds))
     return tuple(sorted(rivals, key=lambda rival: -rival.gained))
 

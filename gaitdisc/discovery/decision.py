@@ -60,6 +60,7 @@ def decide(case: Case, as_read: ScoredModel) -> Verdict:
     exact = case.leaves_noise(named)
     plain = None if exact else plainest(case, named)
     if plain:
+        plain = replace(plain, rivals=(*plain.rivals, *rivals))
         return shape_that_leaves_noise(case, as_read, fit_shape(case, as_read), plain) or plain
     names = len(named.parts)
     suspect = named.noise.is_autocorrelated and not (exact and case.search.base.inexact)
