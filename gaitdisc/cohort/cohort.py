@@ -7,8 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from gaitdisc.cohort.other_people import PATTERNS, walking_with
-from gaitdisc.cohort.person import STIFFNESS, Person, Spring, draw_one
+from gaitdisc.cohort.person import PATTERNS, STIFFNESS, Person, Spring, draw_one, walking_with
 from gaitdisc.errors import SchemaError
 from gaitdisc.recording import Trial
 
