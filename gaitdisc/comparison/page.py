@@ -179,11 +179,6 @@ def channels_table(mismatch: Mismatch) -> Table:
     return Table("channels", caption, (*_CHANNEL, f"gap {other_way} shift"), rows, mismatch.summary)
 
 
-def sort_findings(mismatch: Mismatch) -> Table:
-    """What was seen on the way, the severest first."""
-    return tabulate_findings(mismatch.findings, f"Findings in both walks, n = {len(mismatch.findings)}.")
-
-
 def mismatch_text(mismatch: Mismatch) -> rich.table.Table:
     """Table for a terminal of 80 columns: what differs, then what does not."""
     from rich import box
@@ -241,7 +236,7 @@ def write_mismatch_report(mismatch: Mismatch, folder: Path) -> Path:
     tables = {
         "regions": regions_table(mismatch),
         "channels": channels_table(mismatch),
-        "findings": sort_findings(mismatch),
+        "findings": tabulate_findings(mismatch.findings, f"Findings in both walks, n = {len(mismatch.findings)}."),
         **provenance_tables(mismatch.provenance),
     }
     save_tables(tables.values(), folder)

@@ -13,6 +13,7 @@ from gaitdisc.saved.kind import CSV, Kind, Saved, plain
 from gaitdisc.saved.provenance import Refusal
 from gaitdisc.saved.unit_folder import load_unit, save_unit, with_words
 
+ALL = "all inputs"  # name of the variant that leaves none away
 VARIANT_COLUMNS = ("variant", "variable", "model", "kind", "r2", "n")
 VARIANT_TEST_COLUMNS = ("variant", "model", *TEST_COLUMNS)
 
