@@ -49,13 +49,6 @@ def test_medians_over_variables(quantity):
     assert medians.loc[10.0, "exo"] == pytest.approx(0.85)
 
 
-def test_it_comes_back_as_it_was(quantity, tmp_path):
-    QUANTITY.save(quantity, tmp_path, "key")
-    loaded, key = QUANTITY.load_keyed(tmp_path)
-    assert (loaded.participant, loaded.part, loaded.left_away, key) == ("P01", "first", {500.0: "too long"}, "key")
-    pd.testing.assert_frame_equal(loaded.table, quantity.table, check_dtype=False)
-
-
 def test_one_pair_of_models(pair_tests):
     assert pair_tests.of_pair("augmented", "exo")["variable"].tolist() == ["hip_flexion_r"]
     assert not len(pair_tests.of_pair("exo", "perfect"))
