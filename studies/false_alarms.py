@@ -1,7 +1,7 @@
 """What is said of people without faults: those at hand with all their trials, and made ones, half of them patients.
 
 Made people walk over two plates; a static trial stands on both. Patterns are hallmarks of the clinic, planted into the
-habit (gaitdisc/cohort/other_people.py; equinus and Trendelenburg here). `faults_on_pages.py` runs this.
+habit (gaitdisc/cohort/person.py; equinus and Trendelenburg here). `faults_on_pages.py` runs this.
 """
 
 from __future__ import annotations
@@ -17,8 +17,7 @@ from as_a_user import Answer, answer_of, told
 from markdown_table import markdown_table
 
 import gaitdisc as gd
-from gaitdisc.cohort.other_people import PATTERNS, Pattern, somebody, walking_with
-from gaitdisc.cohort.person import Person, draw_one
+from gaitdisc.cohort.person import PATTERNS, Pattern, Person, draw_one, somebody, walking_with
 
 Files = dict[str, list[Path]]  # static, walk, turn
 COLUMNS = ("person", "kind", "trials", "cycles", "alarms", "sentences", "said")

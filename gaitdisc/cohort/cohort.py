@@ -7,8 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from gaitdisc.cohort.other_people import PATTERNS, walking_with
-from gaitdisc.cohort.person import STIFFNESS, Person, Spring, draw_one
+from gaitdisc.cohort.person import PATTERNS, STIFFNESS, Person, Spring, draw_one, walking_with
 from gaitdisc.errors import SchemaError
 from gaitdisc.recording import Trial
 
@@ -63,14 +62,9 @@ def make_walks(person: Person, duration_s: float = WALK_S, hidden: str = "spring
     person = replace(person, change_s=person.change_s * duration_s / WALK_S)
     spring, changed, late_s = _with_effect(person, hidden)
     whose = round(person.mass_kg * 1e6)
-    seeds = {
-        word: int(np.random.SeedSequence([whose, number]).generate_state(1)[0])
-        for number, word in enumerate(CONDITIONS)
-    }
-    walks = {
-        "nominal": walked(person, None, duration_s, seeds["nominal"]),
-        "exo": walked(changed, spring, duration_s, seeds["exo"]),
-    }
+    seeds = [int(np.random.SeedSequence([whose, number]).generate_state(1)[0]) for number in range(len(CONDITIONS))]
+    both = walked(person, None, duration_s, seeds[0]), walked(changed, spring, duration_s, seeds[1])
+    walks = dict(zip(CONDITIONS, both, strict=True))
     trials = {}
     for word, walk in walks.items():
         trial = measure(walk, f"{person.name}_{word}", word, late_s if word == "exo" else 0.0)

@@ -42,8 +42,15 @@ FORCE_N = 2.0
 BELT_M = (2.0, 0.5)  # length, width of a belt
 TO_LABORATORY = np.array([[1.0, 0.0, 0.0], [0.0, 0.0, -1.0], [0.0, 1.0, 0.0]])  # from forwards, up, right
 Segments = dict[str, tuple[Values, Values]]  # origin and rotation over time
-# (forwards, down, outwards) of the joint above; down in shares of the segment, the rest in shares of height
+# (forwards, down, outwards) of the joint above or the middle of the front spines; down in shares of the segment, the
+# rest in shares of height
 PLACES = {
+    "pelvis": {
+        "RASI": (0.0, 0.0, ASIS_WIDTH / 2),
+        "LASI": (0.0, 0.0, -ASIS_WIDTH / 2),
+        "RPSI": (-PELVIS_DEPTH, 0.0, 0.025),
+        "LPSI": (-PELVIS_DEPTH, 0.0, -0.025),
+    },
     "thigh": {
         "TH1": (0.00, 0.45, 0.055),
         "TH2": (0.045, 0.40, 0.012),
@@ -181,16 +188,8 @@ def _markers(
 def _places(person: Person, leg: Leg, part: str, side: str) -> dict[str, Values]:
     """Markers of a segment in its frame [m]."""
     height = person.height_m
-    if part == "pelvis":
-        width, depth = ASIS_WIDTH * height / 2, PELVIS_DEPTH * height
-        return {
-            "RASI": np.array([0.0, 0.0, width]),
-            "LASI": np.array([0.0, 0.0, -width]),
-            "RPSI": np.array([-depth, 0.0, 0.025 * height]),
-            "LPSI": np.array([-depth, 0.0, -0.025 * height]),
-        }
-    length = {"thigh": leg.thigh_m, "shank": leg.shank_m, "foot": height}[part]
-    sign = 1.0 if side == "r" else -1.0
+    length = {"thigh": leg.thigh_m, "shank": leg.shank_m}.get(part, height)
+    sign = -1.0 if side == "l" else 1.0
     return {
         f"{side.upper()}{label}": np.array([x * height, -y * length, sign * z * height])
         for label, (x, y, z) in PLACES[part].items()

@@ -62,10 +62,8 @@ class Strength(NamedTuple):
     # (muscle, joint) [s/rad], lengthening, of the fastest shortening, for each rad/s of the joint
     pace: Values
     bend: Values  # (muscle, joint) [1/rad], relative gain of the moment with the joint's angle
-    # (muscle, joint) [1/(N m)], excitation for a change of the command towards flexion (dorsiflexion), and against it
-    take_up: Values
-    # (muscle, joint) [1/(N m)], excitation for a change of the command towards flexion (dorsiflexion), and against it
-    take_down: Values
+    take_up: Values  # (muscle, joint) [1/(N m)], excitation for a change of the command towards flexion (dorsiflexion)
+    take_down: Values  # the same for a change against it
     abduction: float  # of gluteus medius [N m]
 
 

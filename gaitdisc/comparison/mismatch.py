@@ -10,10 +10,10 @@ import numpy as np
 import pandas as pd
 
 from gaitdisc.channel import Channel
-from gaitdisc.errors import ShapeError
+from gaitdisc.errors import SchemaError, ShapeError
 from gaitdisc.recording import PERCENT, Finding
 from gaitdisc.recording.arrays import Values, read_only
-from gaitdisc.saved.kind import CSV, Kind, Saved, check_columns
+from gaitdisc.saved.kind import CSV, Kind, Saved
 from gaitdisc.saved.provenance import Provenance
 from gaitdisc.words import as_html
 
@@ -136,8 +136,10 @@ class Mismatch(Saved, file="mismatch.json"):
             shape = np.shape(self.curves[name]) if name in self.curves else "none"
             if shape != wanted:
                 raise ShapeError(f"{name!r} of a mismatch must have shape {wanted}", f"found {shape}", AGAIN)
-        columns = {"regions": REGION_COLUMNS, "summary": CHANNEL_COLUMNS}
-        check_columns(self, columns, "a mismatch must have", AGAIN)
+        for name, columns in (("regions", REGION_COLUMNS), ("summary", CHANNEL_COLUMNS)):
+            if missing := [column for column in columns if column not in getattr(self, name)]:
+                needed = f"a mismatch must have the columns {', '.join(columns)} in {name}"
+                raise SchemaError(needed, f"{name} lacks {', '.join(missing)}", AGAIN)
         curves = {name: np.asarray(self.curves[name], float) for name in CURVES}
         if np.nansum(curves["gap"] * (curves["second"] - curves["first"])) < 0:  # saved as first minus second
             curves |= {"gap": -curves["gap"], "t": -curves["t"], "low": -curves["high"], "high": -curves["low"]}

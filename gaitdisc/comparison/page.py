@@ -163,25 +163,9 @@ def channels_table(mismatch: Mismatch) -> Table:
     alignment = mismatch.alignment
     other_way = "without" if alignment.applied else "with"
     others = map(amount, alignment.otherwise) if alignment.otherwise else [NONE] * len(mismatch.names)  # older folder
+    summary = map(mismatch.summary_of, mismatch.names)
     rows = tuple(
-        (
-            spoken(str(row["channel"])),
-            "yes" if row["differs"] else "too small" if row["too_small"] else "no",
-            _sign_number(float(row["largest_gap"]), str(row["unit"])),
-            f"{row['at_percent']:.0f}",
-            amount(float(row["rms_gap"])),
-            amount(float(row["rms_sd"])),
-            p_cell(float(row["p"])),
-            amount(float(row["within"])),
-            amount(float(row["visible"])),
-            f"{row['shift_percent']:+.0f}" if row["shift_percent"] else "0",
-            amount(float(row["rms_shifted"])),
-            _sign_number(float(row["offset"]), str(row["unit"])),
-            amount(float(row["shape"])),
-            amount(float(row["limit"])),
-            other,
-        )
-        for row, other in zip(map(mismatch.summary_of, mismatch.names), others, strict=True)
+        (*(write(row) for write in _CHANNEL.values()), other) for row, other in zip(summary, others, strict=True)
     )
     caption = (
         f"All {counted(len(rows), 'channel')}. rms: root mean square over the stride, of the gap and of the "
@@ -192,16 +176,7 @@ def channels_table(mismatch: Mismatch) -> Table:
         f"difference that is named; last column: the largest gap {other_way} the common shift of {mismatch.first}, "
         f"{alignment.percent:+.1f} % of the stride, which was {'' if alignment.applied else 'not '}applied."
     )
-    headings = (
-        "channel", "differs", "largest gap", "at [%]", "rms gap", "rms SD", "p", "agrees within", "visible",
-        "shift [%]", "rms after shift", "offset", "shape", "named from", f"gap {other_way} shift",
-    )  # fmt: skip
-    return Table("channels", caption, headings, rows, mismatch.summary)
-
-
-def sort_findings(mismatch: Mismatch) -> Table:
-    """What was seen on the way, the severest first."""
-    return tabulate_findings(mismatch.findings, f"Findings in both walks, n = {len(mismatch.findings)}.")
+    return Table("channels", caption, (*_CHANNEL, f"gap {other_way} shift"), rows, mismatch.summary)
 
 
 def mismatch_text(mismatch: Mismatch) -> rich.table.Table:
@@ -238,12 +213,30 @@ def _sign_number(gap: float, unit: str) -> str:
     return with_unit(f"{'−' if gap < 0 else '+'}{amount(abs(gap))}", unit)
 
 
+_CHANNEL: dict[str, Callable[[dict[str, Any]], str]] = {  # headings, and how each writes a row of `Mismatch.summary`
+    "channel": lambda row: spoken(str(row["channel"])),
+    "differs": lambda row: "yes" if row["differs"] else "too small" if row["too_small"] else "no",
+    "largest gap": lambda row: _sign_number(float(row["largest_gap"]), str(row["unit"])),
+    "at [%]": lambda row: f"{row['at_percent']:.0f}",
+    "rms gap": lambda row: amount(float(row["rms_gap"])),
+    "rms SD": lambda row: amount(float(row["rms_sd"])),
+    "p": lambda row: p_cell(float(row["p"])),
+    "agrees within": lambda row: amount(float(row["within"])),
+    "visible": lambda row: amount(float(row["visible"])),
+    "shift [%]": lambda row: f"{row['shift_percent']:+.0f}" if row["shift_percent"] else "0",
+    "rms after shift": lambda row: amount(float(row["rms_shifted"])),
+    "offset": lambda row: _sign_number(float(row["offset"]), str(row["unit"])),
+    "shape": lambda row: amount(float(row["shape"])),
+    "named from": lambda row: amount(float(row["limit"])),
+}
+
+
 def write_mismatch_report(mismatch: Mismatch, folder: Path) -> Path:
     """Write the report of a mismatch: `report.html`, `figures/`, `tables/`, and `channels/` with a CSV a channel."""
     tables = {
         "regions": regions_table(mismatch),
         "channels": channels_table(mismatch),
-        "findings": sort_findings(mismatch),
+        "findings": tabulate_findings(mismatch.findings, f"Findings in both walks, n = {len(mismatch.findings)}."),
         **provenance_tables(mismatch.provenance),
     }
     save_tables(tables.values(), folder)

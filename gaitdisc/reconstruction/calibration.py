@@ -39,19 +39,12 @@ class Corrected(OfOne):
         return states + (_columns(self.model, x, states) - self.mean) @ self.weights + self.offset
 
 
-@dataclass(frozen=True, eq=False)
-class FirstStrides:
-    """The first strides of a person, and what comes after them."""
+def first_strides(trials: Sequence[Samples], count: int, reach_s: float) -> tuple[Samples, NDArray[np.bool_]]:
+    """Part a person's first strides from the rest, with a gap as long as a window (`reach_s`) and 0.3 s.
 
-    strides: Samples
-    # (window,), which windows of all trials, stacked, come after these and share no reading with them
-    rest: NDArray[np.bool_]
-
-
-def first_strides(trials: Sequence[Samples], count: int, reach_s: float) -> FirstStrides:
-    """Part a person's first strides from the rest, with a gap as long as a window (`reach_s`) and 0.3 s."""
-    filled = [t for t in trials if len(t)]
-    windows, stride = stacked(filled), stride_numbers(filled)
+    returns rest (window,): which windows of all trials, stacked, come after these and share no reading with them
+    """
+    windows, stride = stacked(trials), stride_numbers(trials)
     first, rest = (stride >= 0) & (stride < count), stride >= count
     if not first.any() or not rest.any():
         raise StrideError(
@@ -60,9 +53,9 @@ def first_strides(trials: Sequence[Samples], count: int, reach_s: float) -> Firs
             "Calibrate on fewer strides, or record longer.",
         )
     last = int(np.flatnonzero(first)[-1])
-    trial = np.repeat(np.arange(len(filled)), [len(t) for t in filled])
+    trial = np.repeat(np.arange(len(trials)), [len(t) for t in trials])
     near = (trial == trial[last]) & (windows.time < windows.time[last] + reach_s + SEAM_S - 1e-9)
-    return FirstStrides(windows.rows(first), rest & ~near)
+    return windows.rows(first), rest & ~near
 
 
 def calibrate(done: WindowModel, strides: Samples, penalty: float = USUAL_PENALTY) -> WindowModel:
@@ -81,9 +74,9 @@ def rehearse(done: WindowModel, trials: Sequence[Samples], count: int) -> tuple[
 
     returns: the penalty, and the errors on that person's further strides (window, state) [each state's unit]
     """
-    parted = first_strides(trials, count, done.sensing.reach_s)
-    rest = stacked([trial for trial in trials if len(trial)]).rows(parted.rest)
-    missed = [model(rest) - rest.y for model in _calibrated(done, parted.strides, PENALTIES)]
+    strides, after = first_strides(trials, count, done.sensing.reach_s)
+    rest = stacked(trials).rows(after)
+    missed = [model(rest) - rest.y for model in _calibrated(done, strides, PENALTIES)]
     best = int(np.argmin([np.mean((error / done.model.y_scale.sd) ** 2) for error in missed]))
     return PENALTIES[best], missed[best]
 

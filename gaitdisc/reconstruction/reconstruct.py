@@ -209,8 +209,9 @@ Fitted = tuple[WindowModel, Values]  # and the half widths of its interval
 def _fitted(parts: Parts, what: Sensing, fits: Fits) -> tuple[list[Fitted], list[_Prediction], NDArray[np.bool_]]:
     """Every kind of model, its states as it is and calibrated, and which windows are tested."""
     training, check, test = parts.fitted(), parts.checked(), parts.tested()
-    first = first_strides(parts.test, fits.calibration, what.reach_s) if fits.calibration else None
-    fitted, predictions = [], []
+    strides, tested, fitted, predictions = None, np.ones(len(test), bool), [], []
+    if fits.calibration:
+        strides, tested = first_strides(parts.test, fits.calibration, what.reach_s)
     for kind in fits.kinds:
         done = fit_reconstructor(kind, what, training, check, fits.seed, fits.device)
         missed = done(check) - check.y
@@ -218,17 +219,17 @@ def _fitted(parts: Parts, what: Sensing, fits: Fits) -> tuple[list[Fitted], list
         half = half_widths(missed) if alone else cross_widths(kind, what, parts, missed, fits.seed)
         fitted.append((done, half))
         predictions.append(_Prediction(kind, done(test), missed, half, done.n_fitted, done.seconds))
-        if first is not None:
+        if strides is not None:
             penalty, missed = rehearse(done, parts.check, fits.calibration)
-            states, name = calibrate(done, first.strides, penalty)(test), CALIBRATED.format(kind)
+            states, name = calibrate(done, strides, penalty)(test), CALIBRATED.format(kind)
             predictions.append(_Prediction(name, states, missed, half_widths(missed), done.n_fitted, done.seconds))
-    return fitted, predictions, np.ones(len(test), bool) if first is None else first.rest
+    return fitted, predictions, tested
 
 
 def _baselines(parts: Parts, what: Sensing) -> list[_Prediction]:
     """What a forecast has to beat; errors of fitted and checked part, the latter may be shorter than the time ahead."""
     ahead_s = what.lags.ahead / what.rate_hz
-    known = [trial for trial in (*parts.training, *parts.check) if len(trial)]
+    known = (*parts.training, *parts.check)
     predictions = []
     for name, forecast in ((PERSISTENCE, persistence), (PHASE_AVERAGE, phase_average(parts.training).forecast)):
         missed = finite_rows(forecast(known, ahead_s) - stacked(known).y)

@@ -190,14 +190,13 @@ class ReconstructedRecording:
     path: Path
     rmse: dict[str, float]  # of every state that the recording has itself [its unit]; empty where it has sensors alone
     coverage: dict[str, float]  # share of these inside the model's interval
-    level: float  # share that the interval was made for
 
     def lines(self) -> list[str]:
         """Return what is said of it."""
         lines = [f"{len(self.states.names)} states of {self.states.duration_s:.2f} s: {self.path}"]
         for channel in self.states.channels:
             if channel.name in self.rmse:
-                inside = f"{100 * self.coverage[channel.name]:.0f} % inside the {100 * self.level:.0f} % interval"
+                inside = f"{100 * self.coverage[channel.name]:.0f} % inside the {100 * INTERVAL_LEVEL:.0f} % interval"
                 lines.append(f"  {channel.name}: RMSE {self.rmse[channel.name]:.3g} {channel.unit}, {inside}")
         return lines
 
@@ -239,4 +238,4 @@ def reconstruct_recording(
             error = states[name][both] - filtered[name][both]
             rmse[name] = float(np.sqrt(np.mean(error**2)))
             inside[name] = float(coverage(error[:, None], saved.half_widths[column : column + 1])[0])
-    return ReconstructedRecording(trimmed, out, rmse, inside, INTERVAL_LEVEL)
+    return ReconstructedRecording(trimmed, out, rmse, inside)

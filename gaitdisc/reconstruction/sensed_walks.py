@@ -109,8 +109,9 @@ def read_walks(study: Study, sensors: Sequence[str], condition: str = "", target
             f"all walks are refused. The first: {refusals[0].reason}" if refusals else "the study has no walks",
             "Correct what the message names, or choose other sensors.",
         )
-    _refuse_units([walk for person_walks in walks.values() for walk in person_walks])
-    channels, left_out = _moving([walk for person_walks in walks.values() for walk in person_walks], sensors)
+    every = [walk for person_walks in walks.values() for walk in person_walks]
+    _refuse_units(every)
+    channels, left_out = _moving(every, sensors)
     names = [channel.name for channel in channels]
     people = {
         name: tuple(replace(walk, recording=walk.recording.selected(names)) for walk in person_walks)

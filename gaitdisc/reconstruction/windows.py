@@ -105,9 +105,9 @@ def present(samples: Samples, sensors: Sequence[str]) -> Samples:
 
 def stacked(samples: Sequence[Samples]) -> Samples:
     """Put windows of several trials one below the other; each window still belongs to one trial."""
-    first = samples[0]
-    joined = {name: np.concatenate([getattr(s, name) for s in samples]) for name in ("x", "y", "time", "phi")}
-    subjects = {s.subject for s in samples}
+    filled = [trial for trial in samples if len(trial)] or samples
+    first, subjects = filled[0], {s.subject for s in filled}
+    joined = {name: np.concatenate([getattr(s, name) for s in filled]) for name in ("x", "y", "time", "phi")}
     return replace(first, **joined, subject=first.subject if len(subjects) == 1 else f"{len(subjects)} people")
 
 
@@ -138,15 +138,15 @@ class Parts:
 
     def fitted(self) -> Samples:
         """Windows that models are fitted to."""
-        return stacked([trial for trial in self.training if len(trial)])
+        return stacked(self.training)
 
     def checked(self) -> Samples:
         """Windows that models are chosen by."""
-        return stacked([trial for trial in self.check if len(trial)])
+        return stacked(self.check)
 
     def tested(self) -> Samples:
         """Windows that models are tested on."""
-        return stacked([trial for trial in self.test if len(trial)])
+        return stacked(self.test)
 
 
 def split_within(trials: Sequence[Samples], rule: str, reach_s: float, seed: int = 0) -> Parts:

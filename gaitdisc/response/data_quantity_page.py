@@ -12,13 +12,12 @@ from gaitdisc.report.panels import MODELS, Room, in_style, legend, panels
 from gaitdisc.report.table import Table
 from gaitdisc.response.participant_response import DataQuantity, ResponseRun
 from gaitdisc.response.participants_result import WHOLE
-from gaitdisc.response.r2_tables import LOWEST, models_key, tail_words
+from gaitdisc.response.r2_tables import GROUPS, LOWEST, grouped_variables, models_key, tail_words
 from gaitdisc.words import counted, label, number
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
-GROUPS = {"angles": "joint angles", "EMG": "EMG envelopes"}
 HEIGHT = 2.3  # of a panel [inch]
 APART = 1.4  # least ratio of two lengths that are both written at the axis
 ENOUGH = 0.01  # as near to the whole training part as this
@@ -58,8 +57,7 @@ def quantity_numbers(run: ResponseRun) -> pd.DataFrame:
     tables = []
     for quantity in run.quantities:
         chosen = quantity.table[(quantity.table["kind"] == "network") & (quantity.table["walk"] == "exo")]
-        group = np.where(chosen["variable"].str.startswith("emg_"), "EMG", "angles")
-        grouped = chosen.assign(variables=group).groupby(["variables", "length_s", "model"], sort=True)["r2"]
+        grouped = grouped_variables(chosen).groupby(["variables", "length_s", "model"], sort=True)["r2"]
         table = grouped.agg(r2="median", count="count").reset_index()
         tables.append(table.assign(participant=quantity.participant))
     columns = ["variables", "participant", "length_s", "model", "r2", "count"]

@@ -142,16 +142,6 @@ class DataQuantity:
     # length [s] -> why there is no row of it: longer than the training part, or too short to fit
     left_away: Mapping[float, str]
 
-    def __post_init__(self) -> None:
-        """Check columns once."""
-        missing = [column for column in QUANTITY_COLUMNS if column not in self.table.columns]
-        if missing:
-            raise SchemaError(
-                f"a table of R2 by length must have the columns {', '.join(QUANTITY_COLUMNS)}",
-                f"the table of {self.participant} lacks {', '.join(missing)}",
-                "Compute it again with `gaitdisc ablate`.",
-            )
-
     def medians(self, walk: str = "exo", kind: str = "network") -> pd.DataFrame:
         """Median R2 over variables: one row a length, one column a model."""
         chosen = self.table[(self.table["walk"] == walk) & (self.table["kind"] == kind)]

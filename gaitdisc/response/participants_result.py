@@ -8,7 +8,7 @@ from typing import Any
 
 import pandas as pd
 
-from gaitdisc.saved.kind import CSV, Kind, check_columns
+from gaitdisc.saved.kind import CSV, Kind
 
 PAIRS = (("nominal", "augmented"), ("nominal", "exo"), ("augmented", "exo"), ("exo", "perfect"))
 FAMILIES = ("pair", "all", "variable")
@@ -52,11 +52,6 @@ class PairTests:
     # the three pairs of models, the three pairs of a variable. critical: level at which the family stopped
     families: pd.DataFrame
 
-    def __post_init__(self) -> None:
-        """Check columns once."""
-        columns = {"tests": TEST_COLUMNS, "families": FAMILY_COLUMNS}
-        check_columns(self, columns, "paired tests must have", "Compare the models again: `gaitdisc run` on the study.")
-
     def of_pair(self, first: str, second: str) -> pd.DataFrame:
         """Tests of one pair of models, one row a variable."""
         return self.tests[(self.tests["first"] == first) & (self.tests["second"] == second)]
@@ -80,11 +75,6 @@ class OverParticipants:
     responders: pd.DataFrame  # Sub-group of each participant, 0 where there are none, columns `RESPONDER_COLUMNS`
     lengths_said: str  # why there is no test of the lengths; empty where there is one, or nothing was ablated
     responders_said: str  # the verdict on sub-groups in a sentence
-
-    def __post_init__(self) -> None:
-        """Check columns once."""
-        again = "Compare the participants again: run `gaitdisc run` on the study."
-        check_columns(self, TABLES, "comparisons over participants must have", again)
 
     def enough_length(self, second: str = WHOLE) -> float | None:
         """Shortest length [s] from which no variable is shown to differ (no proof of equality); None without."""

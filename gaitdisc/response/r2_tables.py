@@ -19,6 +19,7 @@ if TYPE_CHECKING:
     from matplotlib.artist import Artist
     from matplotlib.axes import Axes
 
+GROUPS = {"angles": "joint angles", "EMG": "EMG envelopes"}  # of variables
 _TESTED = (("nominal", "nominal"), ("nominal", "exo"), ("augmented", "exo"), ("exo", "exo"))
 LOWEST = -0.25  # R2 below this is drawn at the edge of the axis, with its value
 FEWEST_FOR_BOXES = 5
@@ -81,6 +82,11 @@ def quartiles_over_participants(run: ResponseRun) -> pd.DataFrame:
             q1, median, q3 = np.quantile(values, [0.25, 0.5, 0.75]) if len(values) else (np.nan,) * 3
             rows.append((variable, column.key, median, q1, q3, len(values)))
     return pd.DataFrame(rows, columns=pd.Index(["variable", "column", "median", "q1", "q3", "n"]))
+
+
+def grouped_variables(table: pd.DataFrame) -> pd.DataFrame:
+    """Table with the group of each of its variables: a key of `GROUPS`."""
+    return table.assign(variables=np.where(table["variable"].str.startswith("emg_"), "EMG", "angles"))
 
 
 def variables(run: ResponseRun) -> tuple[str, ...]:

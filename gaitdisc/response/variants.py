@@ -8,13 +8,12 @@ from pathlib import Path
 
 import pandas as pd
 
-from gaitdisc.errors import SchemaError
-from gaitdisc.response.participant_response import QUESTIONS
 from gaitdisc.response.participants_result import TEST_COLUMNS, table_of_people
 from gaitdisc.saved.kind import CSV, Kind, Saved, plain
 from gaitdisc.saved.provenance import Refusal
 from gaitdisc.saved.unit_folder import load_unit, save_unit, with_words
 
+ALL = "all inputs"  # name of the variant that leaves none away
 VARIANT_COLUMNS = ("variant", "variable", "model", "kind", "r2", "n")
 VARIANT_TEST_COLUMNS = ("variant", "model", *TEST_COLUMNS)
 
@@ -28,17 +27,6 @@ class Variants:
     # columns `VARIANT_COLUMNS`: variant (in words), variable, model, kind, r2, n (held-out samples)
     table: pd.DataFrame
     left_away: Mapping[str, str]  # variant -> why there is no row of it
-
-    def __post_init__(self) -> None:
-        """Check question and columns once."""
-        missing = [column for column in VARIANT_COLUMNS if column not in self.table.columns]
-        if missing or self.question not in QUESTIONS:
-            defect = f"lacks {', '.join(missing)}" if missing else f"belongs to the question {self.question!r}"
-            raise SchemaError(
-                f"variants must have the columns {', '.join(VARIANT_COLUMNS)} and a question: {', '.join(QUESTIONS)}",
-                f"the table of {self.participant} {defect}",
-                "Compute it again: `gaitdisc modalities` or `gaitdisc sensitivity`.",
-            )
 
 
 @dataclass(frozen=True, eq=False)

@@ -11,10 +11,10 @@ from gaitdisc.report.figure import Figure, save_figures
 from gaitdisc.report.page import write_page
 from gaitdisc.report.panels import MODELS, Room, in_style, legend, legend_lines, panels
 from gaitdisc.report.table import Table, save_table, save_tables
-from gaitdisc.response.variants import VariantRun
+from gaitdisc.response.r2_tables import grouped_variables
+from gaitdisc.response.variants import ALL, VariantRun
 from gaitdisc.words import MODEL_WORDS, counted, label, listing, number
 
-ALL = "all inputs"
 GROUPS = {"angles": "joint angles predicted", "EMG": "EMG predicted"}
 SHOWN = ("augmented", "exo")
 ROW = 0.19  # inch
@@ -70,7 +70,7 @@ def modalities_figure(run: VariantRun) -> Figure | None:
 
 def falls(run: VariantRun) -> pd.DataFrame:
     """Variables (`angles` or `EMG`), family left out, network, participant, median fall of R2 over the variables."""
-    table = _group(run)
+    table = grouped_variables(run.r2_table())
     table = table[table["kind"] == "network"]
     keys = ["variables", "model", "participant", "variable"]
     full = table[table["variant"] == ALL].set_index(keys)["r2"]
@@ -78,12 +78,6 @@ def falls(run: VariantRun) -> pd.DataFrame:
     fall = full.reindex(pd.MultiIndex.from_frame(others[keys])).to_numpy() - others["r2"].to_numpy()
     grouped = others.assign(fall=fall).groupby(["variables", "variant", "model", "participant"], sort=False)["fall"]
     return grouped.median().reset_index().rename(columns={"variant": "without"})
-
-
-def _group(run: VariantRun) -> pd.DataFrame:
-    """R2 of every participant, with the group of each variable: `angles` or `EMG`."""
-    table = run.r2_table()
-    return table.assign(variables=np.where(table["variable"].str.startswith("emg_"), "EMG", "angles"))
 
 
 def modalities_table(run: VariantRun) -> Table:
@@ -140,7 +134,7 @@ def setting_medians(run: VariantRun) -> pd.DataFrame:
         ("augmented", "ridge"): "ridge_augmented",
         ("nominal", "null"): "null",
     }
-    table = _group(run)
+    table = grouped_variables(run.r2_table())
     table["column"] = [columns.get(key, "") for key in zip(table["model"], table["kind"], strict=True)]
     people = table.pivot_table(
         "r2", ["variant", "variables", "participant"], "column", aggfunc="median", sort=False

@@ -26,10 +26,9 @@ from gaitdisc.response.fit_response import (
 )
 from gaitdisc.response.over_participants import FEWEST, by_participant, compare_columns
 from gaitdisc.response.participant_response import QUANTITY_COLUMNS, DataQuantity, ParticipantResponse
-from gaitdisc.response.variants import VARIANT_COLUMNS, VARIANT_TEST_COLUMNS, Variants
+from gaitdisc.response.variants import ALL, VARIANT_COLUMNS, VARIANT_TEST_COLUMNS, Variants
 from gaitdisc.statistics.r2 import r2
 
-ALL = "all inputs"
 MODELS = ("augmented", "exo")
 LENGTHS_S = (1.0, 10.0, 20.0, 30.0, 45.0, 60.0, 90.0, 120.0, 180.0)
 ANGLES_HZ = (4.0, 6.0, 8.0, 10.0, 12.0)

@@ -165,16 +165,6 @@ def load_word(word: str) -> Any:
     return getattr(import_module(module), name)
 
 
-def check_columns(noun: object, columns: Mapping[str, Sequence[str]], needing: str, do: str) -> None:
-    """Refuse a result of which a table lacks columns; columns: name of the table -> those that it must have."""
-    for name, needed in columns.items():
-        missing = [column for column in needed if column not in getattr(noun, name)]
-        if missing:
-            raise SchemaError(
-                f"{needing} the columns {', '.join(needed)} in {name}", f"{name} lacks {', '.join(missing)}", do
-            )
-
-
 def pick_arrays(arrays: Arrays, prefix: str) -> dict[str, Values]:
     """Arrays whose names begin with a prefix, by what follows it."""
     return {key.removeprefix(prefix): values for key, values in arrays.items() if key.startswith(prefix)}

@@ -34,10 +34,6 @@ UNITS = {  # folder of the units of a kind, which is also their key in run.json,
     "over": "gaitdisc.response.participants_result:OVER",
     "cycles": "gaitdisc.processing.pooled_cycles:CYCLES",
 }
-KEYS = (  # of run.json, in its order
-    "format", "title", "conditions", "walks", "responses", "refusals", "provenance",
-    "tests", "quantities", "over", "cycles", "unfitted",
-)  # fmt: skip
 OTHERS = ("refused", "modalities", "sensitivity")  # folders that a run also writes, and mends
 
 
@@ -131,16 +127,17 @@ def _describe(run: StudyRun) -> dict[str, Any]:
         place: len(run.of(kind)) > 0 if kind.unit is None else [kind.unit(unit) for unit in run.of(kind)]
         for place, kind in _kinds().items()
     }
-    description = {
+    return {
         "format": FORMAT,
         "title": run.title,
         "conditions": {"nominal": run.nominal, "exo": run.exo},
+        "walks": units.pop("walks"),
+        "responses": units.pop("responses"),
         "refusals": [asdict(refusal) for refusal in run.refusals],
         "provenance": asdict(run.provenance),
         **units,
         "unfitted": [asdict(refusal) for refusal in run.unfitted],
     }
-    return {key: description[key] for key in KEYS}
 
 
 def load_run_as(noun: type[R], folder: Path) -> R:

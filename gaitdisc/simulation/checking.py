@@ -5,7 +5,7 @@ from __future__ import annotations
 import keyword
 import math
 import re
-from collections.abc import Collection, Iterable, Iterator
+from collections.abc import Collection, Iterable
 from functools import lru_cache
 from typing import TYPE_CHECKING
 
@@ -21,6 +21,7 @@ MOST_PARTS = 500  # states, inputs, parameters, ports, definitions and effects t
 MOST_CHARACTERS = 200_000  # of all expressions
 _NAME = re.compile(r"[A-Za-z][A-Za-z0-9_]{0,63}\Z")
 _KEYWORDS = frozenset(keyword.kwlist)
+_NAMED = ("states", "inputs", "parameters", "ports")
 
 
 def check(simulation: Simulation) -> None:
@@ -38,11 +39,8 @@ def check(simulation: Simulation) -> None:
 def _check_size(simulation: Simulation) -> None:
     if not simulation.states:
         raise SimulationError("a simulation must have at least one state", "there is none", "Add [states.<name>].")
-    n_parts = sum(
-        len(group)
-        for group in (simulation.states, simulation.driving, simulation.parameters, simulation.ports,
-                     simulation.definitions, simulation.observations, simulation.effects)
-    )  # fmt: skip
+    sections = ("states", "driving", "parameters", "ports", "definitions", "observations", "effects")
+    n_parts = sum(len(getattr(simulation, section)) for section in sections)
     if n_parts > MOST_PARTS:
         raise SimulationError(
             f"a simulation file may have at most {MOST_PARTS} parts",
@@ -60,7 +58,8 @@ def _check_size(simulation: Simulation) -> None:
 
 def _check_names(simulation: Simulation) -> None:
     owner: dict[str, str] = {}
-    for section, name in _name(simulation):
+    parts = [(section, part.name) for section in _NAMED for part in getattr(simulation, section)]
+    for section, name in [*parts, *(("definitions", name) for name, _ in simulation.definitions)]:
         if not _NAME.match(name) or name in _KEYWORDS:
             raise SimulationError(
                 "a name must be a letter followed by letters, digits and _ (at most 64), and not a Python keyword",
@@ -89,14 +88,6 @@ def _check_names(simulation: Simulation) -> None:
             "Rename one of them.",
             ("observations",),
         )
-
-
-def _name(simulation: Simulation) -> Iterator[tuple[str, str]]:
-    for section in ("states", "inputs", "parameters", "ports"):
-        for part in getattr(simulation, section):
-            yield section, part.name
-    for name, _ in simulation.definitions:
-        yield "definitions", name
 
 
 def _check_numbers(simulation: Simulation) -> None:

@@ -5,10 +5,11 @@ from __future__ import annotations
 import math
 import re
 from collections.abc import Mapping
+from dataclasses import fields
 from pathlib import Path
 from typing import Any
 
-from gaitdisc.channel import nearest_word
+from gaitdisc.channel import did_you_mean
 from gaitdisc.errors import MissingFileError, ReadError, SchemaError, SimulationError
 from gaitdisc.regular_file import check_regular
 from gaitdisc.simulation.evaluating import refuse_delays
@@ -21,18 +22,16 @@ from gaitdisc.toml_text import parse_toml
 LARGEST = 256 * 1024  # bytes
 MODELS = (".xml", ".mjcf", ".osim")  # endings of what an engine reads
 MOST_TABLES = 1000  # the library that parses takes a time that grows with their square
-ERRORS = ("gain", "sd", "wander")  # of an input
+_PARTS: dict[str, Any] = {"states": State, "inputs": Input, "parameters": Parameter, "ports": Port}
+# keys of each part: the fields of its class after its name, but for what an engine says of an input
 TABLES = {
-    "states": ("unit", "meaning", "initial"),
-    "inputs": ("unit", "meaning", *ERRORS),
-    "parameters": ("value", "unit", "low", "high", "meaning"),
-    "ports": ("unit", "meaning"),
+    section: tuple(item.name for item in fields(part)[1:] if item.name != "computed")
+    for section, part in _PARTS.items()
 }
-_PARTS = {"states": State, "inputs": Input, "parameters": Parameter, "ports": Port}
 _EXPRESSIONS = ("definitions", "equations", "observations")
 _SECTIONS = ("title", "model", *TABLES, *_EXPRESSIONS, "effects")
 _EFFECT = ("port", "equation", "name", "term")
-SENSOR = ("unit", "sd", "lowpass")
+SENSOR = tuple(item.name for item in fields(Sensor)[1:])
 _FOLDER = Path(__file__).parent / "systems"
 
 
@@ -201,13 +200,9 @@ def _effect(entry: Any, number: int) -> Term:
 def _check_keys(table: Mapping[str, Any], known: tuple[str, ...], place: tuple[str, ...]) -> None:
     for key in table:
         if key not in known:
-            nearest = nearest_word(key, known)
-            remedy = f"Did you mean {nearest!r}? " if nearest else ""
+            remedy = f"{did_you_mean(key, known)} Known: {', '.join(known)}.".lstrip()
             raise SimulationError(
-                "only keys of the simulation file are allowed",
-                f"found {key[:60]!r}",
-                f"{remedy}Known: {', '.join(known)}.",
-                place or (key,),
+                "only keys of the simulation file are allowed", f"found {key[:60]!r}", remedy, place or (key,)
             )
 
 
@@ -292,11 +287,6 @@ def bundled(name: str) -> Simulation:
     0.8
     """
     if name not in list_bundled():
-        nearest = nearest_word(name, list_bundled())
-        hint = f"Did you mean {nearest!r}? " if nearest else ""
-        raise ReadError(
-            "the simulation must be one that is included in the package",
-            f"there is no {name!r}",
-            f"{hint}Known: {', '.join(list_bundled())}.",
-        )
+        remedy = f"{did_you_mean(name, list_bundled())} Known: {', '.join(list_bundled())}.".lstrip()
+        raise ReadError("the simulation must be one that is included in the package", f"there is no {name!r}", remedy)
     return read_simulation(_FOLDER / f"{name}.toml")

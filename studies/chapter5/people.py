@@ -249,12 +249,12 @@ def few(quick: bool) -> Iterator[Number]:
     windows = [what.windows(walk.recording, walk.phi) for walk in both]
     for place, walk in enumerate(both):
         parts = split_by_trial(windows, [place], what.reach_s)
-        first = first_strides(parts.test, STRIDES, what.reach_s)
-        test, column = parts.tested().rows(first.rest), f"{walk.recording.condition} tested"
+        strides, rest = first_strides(parts.test, STRIDES, what.reach_s)
+        test, column = parts.tested().rows(rest), f"{walk.recording.condition} tested"
         for kind in ("delay ridge", "fourier ridge") if quick else ("delay ridge", "fourier ridge", "shred"):
             done = fit_reconstructor(kind, what, parts.fitted(), parts.checked())
-            found = {"as it is": done, "linear correction": calibrate(done, first.strides)}
-            inner = first.strides.last_block(0.2, what.reach_s)
+            found = {"as it is": done, "linear correction": calibrate(done, strides)}
+            inner = strides.last_block(0.2, what.reach_s)
             if isinstance(done.model, TrainedNetwork):
                 found["descended further"] = replace(done, model=descended(done.model, *inner))
             else:

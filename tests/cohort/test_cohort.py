@@ -9,8 +9,7 @@ from gaitdisc.cohort.cohort import CALIBRATION_SEED, CHANGES, HIDDEN, REPORTED_S
 from gaitdisc.cohort.habit import BURSTS, STANCE, activity, habitual
 from gaitdisc.cohort.leg_path import habit_angles
 from gaitdisc.cohort.measurement import measure
-from gaitdisc.cohort.other_people import PEOPLE, somebody, walking_with
-from gaitdisc.cohort.person import GROUPS, SYNERGIES, Spring, draw_one
+from gaitdisc.cohort.person import GROUPS, PEOPLE, SYNERGIES, Spring, draw_one, somebody, walking_with
 from gaitdisc.cohort.walk import walked
 from gaitdisc.errors import SchemaError
 from gaitdisc.ingest.study import Conditions, Models, Participant, Quality, Study

@@ -96,36 +96,36 @@ def changed(trials):
 
 
 def test_the_rest_shares_no_reading_with_the_first_strides(pair):
-    parted = first_strides(pair.parts.training, 3, pair.what.reach_s)
+    strides, after = first_strides(pair.parts.training, 3, pair.what.reach_s)
     windows = pair.parts.fitted()
-    gap = windows.time[parted.rest][0] - parted.strides.time[-1]
+    gap = windows.time[after][0] - strides.time[-1]
     assert gap == pytest.approx(pair.what.reach_s + 0.3, abs=0.02)
-    assert len(np.unique(np.floor(parted.strides.time))) == 3
+    assert len(np.unique(np.floor(strides.time))) == 3
 
 
 def test_the_gap_is_left_in_the_trial_of_the_last_stride_alone(pair):
     one = pair.parts.fitted()
-    parted = first_strides([one.rows(one.time < 3.0), one], 3, pair.what.reach_s)
+    _, after = first_strides([one.rows(one.time < 3.0), one], 3, pair.what.reach_s)
     before = int((one.time < 3.0).sum())
-    assert parted.rest[before:].all()
-    assert not parted.rest[:before].any()
+    assert after[before:].all()
+    assert not after[:before].any()
 
 
 def test_another_linear_mixture_is_learnt_from_a_few_strides(pair, delayed):
     windows = changed(pair.parts.training)
-    parted = first_strides(windows, 8, pair.what.reach_s)
-    rest = windows[0].rows(parted.rest)
+    strides, after = first_strides(windows, 8, pair.what.reach_s)
+    rest = windows[0].rows(after)
     before = np.sqrt(np.mean((delayed(rest) - rest.y) ** 2))
-    after = np.sqrt(np.mean((calibrate(delayed, parted.strides, PENALTIES[0])(rest) - rest.y) ** 2))
+    after = np.sqrt(np.mean((calibrate(delayed, strides, PENALTIES[0])(rest) - rest.y) ** 2))
     assert before > 4.0
     assert after < 0.01 * before
 
 
 def test_a_large_penalty_takes_the_mean_error_off_and_nothing_else(pair, delayed):
     windows = changed(pair.parts.training)
-    parted = first_strides(windows, 8, pair.what.reach_s)
-    found = calibrate(delayed, parted.strides, 1e12)(windows[0])
-    offset = (parted.strides.y - delayed(parted.strides)).mean(axis=0)
+    strides, _ = first_strides(windows, 8, pair.what.reach_s)
+    found = calibrate(delayed, strides, 1e12)(windows[0])
+    offset = (strides.y - delayed(strides)).mean(axis=0)
     assert np.allclose(found, delayed(windows[0]) + offset)
 
 

@@ -13,7 +13,7 @@ from gaitdisc.comparison.mismatch import MISMATCH
 from gaitdisc.errors import SchemaError
 from gaitdisc.processing.pooled_cycles import CYCLES, WALK, cycles_name
 from gaitdisc.processing.walk_pair import walk_pair
-from gaitdisc.response.participant_response import RESPONSE
+from gaitdisc.response.participant_response import QUANTITY, QUANTITY_COLUMNS, RESPONSE, DataQuantity
 from gaitdisc.response.participants_result import OVER, TABLES, TESTS, OverParticipants, join_rows
 from gaitdisc.response.variants import (
     VARIANT_COLUMNS,
@@ -64,6 +64,7 @@ TABLE = pd.DataFrame(
     [("EMG", "knee_angle_r", "exo", "network", 0.1 + 0.2, 99), ("EMG", "knee_angle_r", "exo", "ridge", -3.5, 99)],
     columns=pd.Index(VARIANT_COLUMNS),
 )
+QUANTITIES = TABLE.assign(length_s=1.5, n_training=100, walk="exo")[list(QUANTITY_COLUMNS)]
 
 
 def test_what_was_found_over_the_participants_is_loaded(tmp_path):
@@ -135,6 +136,7 @@ def assert_same(one, other, typed):
         (TESTS, "pair_tests"),
         (OVER, "over"),
         (VARIANTS, Variants("P01", "sensitivity", TABLE, {"angles 4 Hz": "too short"})),
+        (QUANTITY, DataQuantity("P01", "first", QUANTITIES, {500.0: "too long"})),
         (MISMATCH, "mismatch"),
     ],
 )
