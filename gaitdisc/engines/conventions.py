@@ -76,8 +76,7 @@ def refuse_other_units(mapping: Simulation, engine: Engine, measured: Measured, 
 
 def refuse_other_conventions(mapping: Simulation, engine: Engine, measured: Measured, states: Values) -> None:
     """Refuse a record that the model follows with other signs or units of some columns, and does not as it stands."""
-    factors = np.ones(len(engine.coordinates))
-    misfit = _Misfit(mapping, engine, measured, states)
+    factors, misfit = np.ones(len(engine.coordinates)), _Misfit(mapping, engine, measured, states)
     as_read = now = misfit.with_factors(factors)
     corrections: list[tuple[list[Coordinate], _Convention]] = []
     while now > MISFIT and len(corrections) < len(factors):

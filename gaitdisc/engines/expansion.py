@@ -43,7 +43,6 @@ def expand(
     """Simulation that is expanded along a record, and the record with what the engine computed along it.
 
     simulation: as the mapping file has it: the names, the observations, the ports
-    measured: driven by its inputs
     states (trial, sample, state): smoothed: coordinates, then speeds
     values: parameters around which to expand; the simulation's own where absent
     """
@@ -53,9 +52,8 @@ def expand(
     at = Motion(*(np.concatenate([getattr(motion, name) for motion in motions]) for name in fields))
     paths = [np.gradient(motion.v, 1 / drive.rate, axis=0) for motion in motions]
     stride = 1 if at.z is None else max(round(drive.rate / SLOPES_HZ), 1)
-    ends = np.cumsum(drive.samples)
+    ends, columns = np.cumsum(drive.samples), _Columns(engine)
     points = [np.unique(np.r_[end - n : end : stride, end - 1]) for end, n in zip(ends, drive.samples, strict=True)]
-    columns = _Columns(engine)
     _expand(columns, simulation, _Along(at, np.concatenate(paths), np.concatenate(points)), parameters)
     inputs = (*simulation.inputs, *(Input(name, "", "computed along the record", True) for name in columns.values))
     trials = np.split(np.column_stack([at.u, *columns.values.values()]), ends[:-1])
@@ -155,9 +153,8 @@ def _expand(columns: _Columns, simulation: Simulation, along: _Along, values: Ma
     columns.add("rate", rest)
     ports = {port.name for port in simulation.ports}
     for number, coordinate in enumerate(engine.coordinates):
-        force = np.zeros_like(few)
+        force, acting = np.zeros_like(few), [coordinate.port] if coordinate.port in ports else []
         force[:, number] = 1.0
-        acting = [coordinate.port] if coordinate.port in ports else []
         for name in simulation.values():
             alike = engine.as_force(name)
             if alike and alike[0] == number:
@@ -210,8 +207,7 @@ def _slow_speeds(damping: Values) -> tuple[Values, Values]:
     as it may be without a change of slow motion, as it acts on the deviation from the recorded motion alone.
     """
     rates, ways = np.linalg.eig(damping)
-    heavy = np.maximum(np.real(rates) / FASTEST, 1.0)
-    inverse = np.linalg.inv(ways)
+    heavy, inverse = np.maximum(np.real(rates) / FASTEST, 1.0), np.linalg.inv(ways)
     factor, more = (np.real(ways @ (each[..., None] * inverse)) for each in (1.0 / heavy, heavy - 1.0))
     return factor, more
 

@@ -28,10 +28,7 @@ SAME = 1e-5  # by which a number of the mapping may differ from the model's, as 
 
 
 def draft(engine: Engine, degrees: bool = False) -> Simulation:
-    """Mapping of a model: every free coordinate measured in a column of its name, every control another.
-
-    degrees: whether the columns of angles are in degrees
-    """
+    """Mapping of a model: every free coordinate measured in a column of its name, every control another."""
     free = engine.coordinates
     if len(free) + len(engine.controls) > MOST:
         raise SchemaError(
@@ -43,8 +40,7 @@ def draft(engine: Engine, degrees: bool = False) -> Simulation:
     states += [State(coordinate.speed, f"{coordinate.unit}/s") for coordinate in free]
     parameters = [parameter for parameter in engine.parameters if parameter.name in engine.offered]
     ports = [Port(q.port, q.force_unit, f"on {q.called}, in its positive direction") for q in free]
-    turned = {coordinate.name for coordinate in free if degrees and coordinate.unit == "rad"}
-    scale = repr(float(np.rad2deg(1.0)))
+    scale, turned = repr(float(np.rad2deg(1.0))), {q.name for q in free if degrees and q.unit == "rad"}
     return Simulation(
         title=f"{engine.path.name}, a model of {engine.called}",
         states=tuple(states),

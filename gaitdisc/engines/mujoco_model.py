@@ -94,8 +94,7 @@ class MujocoModel:
         """Accelerations (point, coordinate), with other values of some parameters and forces besides."""
         model, data, forward = self.with_values(values)._model, self._data, self._mujoco.mj_forward
         qacc, stateful = np.empty_like(at.q), self._stateful
-        acts = model.actuator_actadr[stateful]
-        qpos, qvel = to_positions(self.balls, at.q, at.v)
+        (qpos, qvel), acts = to_positions(self.balls, at.q, at.v), model.actuator_actadr[stateful]
         forces = None if forces is None else to_forces(self.balls, at.q, forces)
         for point in range(len(at.q)):
             data.qpos[:], data.qvel[:] = qpos[point], qvel[point]
@@ -129,8 +128,7 @@ class MujocoModel:
         model, data, steps = self._model, self._data, self._steps(rate)
         h, acts = 1.0 / (rate * steps), model.actuator_actadr[self._stateful]
         qpos, _ = to_positions(self.balls, q, v)
-        data.qvel[:] = 0.0
-        data.act[acts] = controls[0, self._stateful]
+        data.qvel[:], data.act[acts] = 0.0, controls[0, self._stateful]
         for sample in range(len(controls)):
             acting[sample, self._stateful] = data.act[acts]
             after = controls[min(sample + 1, len(controls) - 1)]
@@ -194,8 +192,7 @@ class MujocoModel:
 
     def text_with_value(self, text: str, name: str, value: float) -> str | None:
         """Text of the model with another value of a parameter."""
-        kind, number = self._places[name].part
-        model = self._model
+        (kind, number), model = self._places[name].part, self._model
         share = value / (read_number(model, name, self._places[name]) or 1.0)
         numbers = {"pos": model.body_ipos, "quat": model.body_iquat, "diaginertia": share * model.body_inertia}
         inertia = {word: each[number] for word, each in numbers.items()} if name.endswith("_mass") else {}
@@ -224,8 +221,7 @@ class MujocoModel:
 
     def text_with_effect(self, text: str, effect: ByHand) -> str | None:
         """Text of the model with an effect on a joint."""
-        coordinate = self.coordinates[effect.coordinate]
-        values = {each.name: each.value for each in self.parameters}
+        coordinate, values = self.coordinates[effect.coordinate], {each.name: each.value for each in self.parameters}
         passive = {word: values.get(f"{coordinate.name}_{word}", 0.0) for word in PASSIVE}
         return with_effect(text, effect, coordinate.called, passive)
 
@@ -254,8 +250,8 @@ class MujocoModel:
         return [new_name(self._called(known, k) or f"{kind}_{k + 1}", kind, taken) for k in range(count)]
 
     def _called(self, kind: str, number: int) -> str:
-        name = self._mujoco.mj_id2name(self._model, getattr(self._mujoco.mjtObj, f"mjOBJ_{kind.upper()}"), number)
-        return name or ""
+        of = getattr(self._mujoco.mjtObj, f"mjOBJ_{kind.upper()}")
+        return self._mujoco.mj_id2name(self._model, of, number) or ""
 
     def with_values(self, values: Mapping[str, float]) -> MujocoModel:
         """Model with other values of some parameters; itself where none differs."""

@@ -52,7 +52,6 @@ def with_value(text: str, name: str, value: float, kind: str, called: str, shape
 def with_effect(text: str, effect: ByHand, joint: str, passive: Mapping[str, float]) -> str | None:
     """Text with an effect on a joint; None where MuJoCo has no form of it.
 
-    joint: its name in the file
     passive: stiffness, damping and frictionloss that the joint has, which may come from a default class
     """
     tag, name = _find(text, "joint", joint), effect.term.name
@@ -112,8 +111,7 @@ _Tag = tuple[str, int, int, int]  # name, where it begins and ends, where its pa
 def _tags(text: str) -> list[_Tag]:
     """Every opening tag of the text, by characters."""
     whole = text.encode("utf-8")
-    tags: list[_Tag] = []
-    above: list[int] = []
+    tags, above = list[_Tag](), list[int]()
     parser = expat.ParserCreate("utf-8")
 
     def opened(name: str, _: object) -> None:

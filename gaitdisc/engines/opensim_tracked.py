@@ -75,8 +75,7 @@ class _Tracked:
         self.osim, self.path, self.model = osim, path, osim.Model(path)
 
     def loaded(self, loads: Path, data: Path, actuators: Path | None, values: Any = ()) -> None:
-        osim, model = self.osim, self.model
-        self.files = loads, data, actuators
+        osim, model, self.files = self.osim, self.model, (loads, data, actuators)
         if actuators:
             for actuator in osim.ForceSet(str(actuators)):
                 model.updForceSet().cloneAndAppend(actuator)
@@ -113,8 +112,7 @@ class _Tracked:
             coordinate.setSpeedValue(self.state, float(speeds.get(name, 0.0)))
 
     def described(self) -> dict[str, Any]:
-        osim, model = self.osim, self.model
-        base = []
+        osim, model, base = self.osim, self.model, list[str]()
         for joint in model.getJointSet():
             if joint.getParentFrame().findBaseFrame().getName() == "ground" and joint.numCoordinates() > 1:
                 base += [joint.get_coordinates(i).getName() for i in range(joint.numCoordinates())]

@@ -131,17 +131,15 @@ def couplers(model: Any, osim: Any) -> dict[str, tuple[list[str], Any, float]]:
     for constraint in model.getConstraintSet():
         coupler = osim.CoordinateCouplerConstraint.safeDownCast(constraint)
         if coupler is not None and coupler.get_isEnforced():
-            names = coupler.getIndependentCoordinateNames()
+            names, scale = coupler.getIndependentCoordinateNames(), coupler.getPropertyByName("scale_factor").toString()
             leading = [names.get(number) for number in range(names.getSize())]
-            scale = float(coupler.getPropertyByName("scale_factor").toString())
-            followers[coupler.getDependentCoordinateName()] = leading, coupler.getFunction(), scale
+            followers[coupler.getDependentCoordinateName()] = leading, coupler.getFunction(), float(scale)
     return followers
 
 
 def _list_numbers(model: Any, osim: Any) -> dict[str, tuple[float, str, Callable[[float], None]]]:
     """Every number of a model that may be changed by name: its value, its unit, and what puts another in."""
-    numbers = dict[str, tuple[float, str, Callable[[float], None]]]()
-    gravity = model.getGravity().to_numpy().copy()
+    numbers, gravity = dict[str, tuple[float, str, Callable[[float], None]]](), model.getGravity().to_numpy().copy()
     size = float(np.linalg.norm(gravity))
     if size:
         numbers["gravity"] = size, "m/s^2", lambda value: model.setGravity(osim.Vec3(*(gravity * value / size)))
@@ -214,18 +212,18 @@ class _Answers:
         return rates
 
     def equilibria(self, q: Any, u: Any) -> Any:
-        """Lengths of fibres at rest (point, fibre)."""
+        """Lengths of fibres at rest (point, fibre); NaN where no equilibrium exists."""
         ready = self.with_values({})
-        lengths = np.empty((len(q), len(ready.fibres)))
+        lengths = np.full((len(q), len(ready.fibres)), np.nan)
         for point in range(len(q)):
-            ready.tense(q[point], 0.0 * q[point], u[point])
-            lengths[point] = ready.state.getZ().to_numpy()[ready.fibres]
+            with suppress(RuntimeError):
+                ready.tense(q[point], 0.0 * q[point], u[point])
+                lengths[point] = ready.state.getZ().to_numpy()[ready.fibres]
         return lengths
 
     def along(self, q: Any, v: Any, controls: Any, rate: float) -> Any:
         """Activations in the place of excitations, and lengths of fibres, along a motion that sets out from rest."""
-        time = np.arange(len(q)) / rate
-        early = BEFORE * np.arange(-STEPS, 0)[:, None] / STEPS
+        time, early = np.arange(len(q)) / rate, BEFORE * np.arange(-STEPS, 0)[:, None] / STEPS
         whole = np.concatenate([q[0] + v[0] * (early + early**2 / (2 * BEFORE)), q])
         motion = np.concatenate([early[:, 0], time]), whole
         ready = self.fresh({}, (time, controls), motion)
@@ -241,10 +239,11 @@ class _Answers:
         return u, states[:, ready.fibres]
 
     def run(self, q: Any, v: Any, u: Any, z: Any, controls: Any, rate: float) -> Any:
-        states = np.empty((*controls.shape[:2], 2 * q.shape[1]))
-        ready: dict[bytes, Ready] = {}
-        time = np.arange(controls.shape[1]) / rate
+        states = np.full((*controls.shape[:2], 2 * q.shape[1]), np.inf)
+        ready, time = dict[bytes, Ready](), np.arange(controls.shape[1]) / rate
         for run, driven in enumerate(controls):
+            if z is not None and np.isnan(z[run]).any():  # muscles without an equilibrium: no run begins there
+                continue
             prepared = ready.get(driven.tobytes()) or self.fresh({}, (time, driven))
             ready[driven.tobytes()] = prepared
             prepared.state.setTime(0.0)

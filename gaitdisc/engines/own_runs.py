@@ -145,6 +145,29 @@ def spread_stretches(measured: Measured, period: float, fewer: bool = False, mar
     return Stretches(trial, first, length + 2 * margin, period, margin)
 
 
+def cut_stretches(
+    model: Driven, measured: Measured, states: Values, period: float, margin: int, factor: float, most: float = np.inf
+) -> Stretches:
+    """Runs so short that no small change of a start grows by a factor: beyond, the misfit has many minima.
+
+    Source: Voss, Timmer & Kurths 2004, Int J Bifurcation Chaos 14, 1905. Not of fibres, whose runs take long.
+    """
+    engine, least = model.engine, most
+    at = spread_stretches(measured, min(period, (most - 2 * margin) / PERIODS), engine.fibres, margin)
+    steps = NUDGE * np.maximum(states.std(axis=(0, 1)), NUDGE)
+    changes = np.vstack([0 * steps, np.diag(steps)])
+    for trial, first in () if engine.fibres else zip(at.trial, at.first, strict=True):
+        motion = compute_motion(engine, measured.drive, states, trial).at(np.full(len(changes), first))
+        start = engine.near(motion, *np.split(states[trial, first] + changes, 2, axis=1))
+        driven = np.repeat(model.controls[None, trial, first : first + at.length], len(changes), axis=0)
+        run = engine.run(start, driven, measured.rate)
+        grown = np.nan_to_num((run[1:] - run[0]) / steps, nan=1e9, posinf=1e9, neginf=1e9)
+        least = min([least, *np.flatnonzero(np.linalg.norm(grown, 2, axis=(0, 2)) > factor)[:1]])
+    if least < most:
+        return cut_stretches(model, measured, states, period, margin, factor, least)
+    return replace(at, period=period)
+
+
 def trial_called(measured: Measured, name: str) -> int:
     """Number of a trial by the name that a search gave it: its own, its number, or that of a part of the only one."""
     if len(measured.trials) == 1:
@@ -165,9 +188,8 @@ def residual_by(
     recorded = {trial: compute_motion(engine, drive, states, trial) for trial in np.unique(at.trial)}
     plain, expressions = replace(model.mapping, model=""), dict(model.mapping.observations)
     seen_as = [expressions[name] for name in measured.channels]
-    size = np.nanstd(measured.observed, axis=(0, 1))
+    size, reported = np.nanstd(measured.observed, axis=(0, 1)), time.monotonic()
     residual = np.full((len(at.trial), at.length, len(size)), np.nan)
-    reported = time.monotonic()
     for row, (trial, first) in enumerate(zip(at.trial, at.first, strict=True)):
         if time.monotonic() - reported > SILENT_S:
             model.progress(f"{row} of {len(at.trial)} runs by {engine.called} done")

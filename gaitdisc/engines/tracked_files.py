@@ -138,8 +138,7 @@ def read_tracked_motion(
         v, a = derivative(q, smooth.rate_hz, 1), derivative(q, smooth.rate_hz, 2)
     pulls = on_time(forces[:, 0], forces[:, 1:]) if names else np.zeros((len(time), 0))
     inside &= np.isfinite(q).all(axis=1) & np.isfinite(v).all(axis=1) & np.isfinite(a).all(axis=1)
-    kept = np.flatnonzero(inside)
-    kept = np.arange(kept[0], kept[-1] + 1)
+    kept = np.arange(inside.argmax(), len(inside) - inside[::-1].argmax())
     forces, span = pulls[kept], (float(time[0]), float(time[-1]))
     return TrackedMotion(
         time[kept], q[kept], v[kept], a[kept], actuators=names, forces=forces, differentiated=not rates, span=span
@@ -149,8 +148,7 @@ def read_tracked_motion(
 def _coordinates(path: Path, coordinates: tuple[Coordinate, ...], word: str) -> tuple[Values, Values]:
     """Times and free coordinates (sample, coordinate) of a file, in radians and metres."""
     streams = list(read_storage(path).streams.values())
-    turning = {coordinate.called for coordinate in coordinates if coordinate.unit == "rad"}
-    columns = {}
+    turning, columns = {coordinate.called for coordinate in coordinates if coordinate.unit == "rad"}, {}
     for stream in streams:
         for k, channel in enumerate(stream.channels):
             name, unit = channel.name.removesuffix(word), channel.unit

@@ -49,8 +49,7 @@ def write_model(engine: Engine, augmented: Simulation, native: bool = True) -> W
     native: whether effects and limits are written at all; else each acts so
     """
     text, notes, absent, current = engine.path.read_text(encoding="utf-8"), list[str](), list[str](), engine
-    forces, by_hand = (), ()
-    values, held = dict[str, float](), dict[str, float]()
+    forces, by_hand, values, held = (), (), dict[str, float](), dict[str, float]()
     before = {parameter.name: parameter.value for parameter in engine.parameters}
     added = {state.name for state in augmented.states[2 * len(engine.coordinates) :]}
     prescribed = engine.fibres or any("delay(" in term.term for term in augmented.effects)
@@ -142,8 +141,7 @@ def _ranged(engine: MujocoModel, augmented: Simulation, text: str, name: str) ->
     number, probes = controls.index(control), FAR * np.linspace(-1, 1, PROBED) ** 3  # densest where limits are
     u, still = np.tile(probes[:, None], len(controls)), np.zeros((PROBED, len(engine.coordinates)))
     clipped = replace_inputs(augmented, probes, u, PROBED_HZ)
-    low, high = clipped[[0, -1], number].tolist()
-    expression = dict(augmented.definitions)[name]
+    (low, high), expression = clipped[[0, -1], number].tolist(), dict(augmented.definitions)[name]
     if control in engine.servos and _of_force(augmented, expression):
         gain, constant, _ = engine.servos[control]
         low, high = sorted((gain * low + constant, gain * high + constant))
