@@ -98,7 +98,7 @@ def discover_engine(
         *_report_saturation(answer.written.engine, data),
         *_list_warnings(engine, answer.written.engine),
         *(Finding("note", "written back", "model", what, "") for what in answer.written.notes),
-        Finding("note", "own runs", "model", answer.runs.said, ""),
+        Finding("note", "own runs", "model", answer.runs.sentence, ""),
     )
     made = found.provenance and replace(found.provenance, section=ENGINE)
     return replace(answer, found=replace(found, findings=findings, provenance=made))

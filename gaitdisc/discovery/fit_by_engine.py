@@ -23,7 +23,7 @@ from gaitdisc.discovery.wording import write_sentence
 from gaitdisc.engines.engine import Engine
 from gaitdisc.engines.mapping import replace_inputs, with_input_changed, with_strength
 from gaitdisc.engines.motion import Values
-from gaitdisc.engines.own_runs import Driven, OwnRuns, residual_by, root_mean_square, spread_stretches, trial_called
+from gaitdisc.engines.own_runs import Driven, OwnRuns, cut_stretches, residual_by, root_mean_square, trial_called
 from gaitdisc.engines.written import WrittenModel, forces_at, write_model
 from gaitdisc.processing.kept_parts import hash_content
 from gaitdisc.recording import Finding
@@ -181,10 +181,10 @@ def errs_less(runs: OwnRuns, without: Values, held: NDArray[np.bool_]) -> bool:
 def base_runs(engine: Engine, fit: EngineFit) -> OwnRuns:
     """Run a model as read along every trial."""
     mapping, data = fit.mapping, fit.measured
-    at = spread_stretches(data, find_rhythm(data.observed, data.rate).samples, engine.fibres, fit.low_pass.margin)
     given = hash_content((mapping, data, data.drive, fit.low_pass), engine.path.read_text(encoding="utf-8"))
     driven = Driven(engine, mapping, data.drive.inputs, recorded=fit.low_pass.filtered, progress=fit.progress)
-    left, starts = [], []
+    left, starts, period = [], [], find_rhythm(data.observed, data.rate).samples
+    at = cut_stretches(driven, data, fit.states, period, fit.low_pass.margin, CRITERIA.chaotic)
     for trial in np.unique(at.trial):  # each is kept as it ends
         known = recall(given, str(trial))
         if known is None:

@@ -52,23 +52,23 @@ CONVENTIONS = {
 def refuse_other_units(mapping: Simulation, engine: Engine, measured: Measured, states: Values) -> None:
     """Refuse angles that can be no radians: degrees that nobody said are degrees; a wheel may turn on and on."""
     largest, as_read = np.nanmax(np.abs(states), axis=(0, 1)), np.ones(len(engine.coordinates))
-    far = [k for k, one in enumerate(engine.coordinates) if one.unit == "rad" and largest[k] > _limit(one)]
+    far = [k for k, q in enumerate(engine.coordinates) if q.unit == "rad" and largest[k] > _limit(q)]
     steep = [k + 1 for k in getattr(engine, "balls", ()) if largest[k + 1] > STEEPEST]
     if steep:
-        one = engine.coordinates[steep[0]]
+        coordinate = engine.coordinates[steep[0]]
         raise SchemaError(
-            f"the angle {one.called!r} must stay within {STEEPEST:g} rad: at a right angle two axes coincide",
-            f"column {_column(mapping, one)!r} reaches {largest[steep[0]]:.4g} rad",
+            f"the angle {coordinate.called!r} must stay within {STEEPEST:g} rad: at a right angle two axes coincide",
+            f"column {_column(mapping, coordinate)!r} reaches {largest[steep[0]]:.4g} rad",
             "State degrees in the mapping if these are degrees. Otherwise turn the model's axes: x must point ahead.",
         )
     misfit, degrees = _Misfit(mapping, engine, measured, states), as_read.copy()
     degrees[far] = np.pi / 180
     for k in far:
-        one = engine.coordinates[k]
-        if np.isfinite(one.high) or misfit.with_factors(degrees) < misfit.with_factors(as_read):
+        coordinate = engine.coordinates[k]
+        if np.isfinite(coordinate.high) or misfit.with_factors(degrees) < misfit.with_factors(as_read):
             raise SchemaError(
-                f"coordinate {one.called!r} must stay within {_limit(one):.3g} rad",
-                f"column {_column(mapping, one)!r} reaches {largest[k]:.4g} rad; it may be in degrees",
+                f"coordinate {coordinate.called!r} must stay within {_limit(coordinate):.3g} rad",
+                f"column {_column(mapping, coordinate)!r} reaches {largest[k]:.4g} rad; it may be in degrees",
                 f"State degrees in the mapping: gaitdisc new {engine.path.with_suffix('.toml').name} --from "
                 f"{engine.path.name} --degrees.",
             )
@@ -76,21 +76,20 @@ def refuse_other_units(mapping: Simulation, engine: Engine, measured: Measured, 
 
 def refuse_other_conventions(mapping: Simulation, engine: Engine, measured: Measured, states: Values) -> None:
     """Refuse a record that the model follows with other signs or units of some columns, and does not as it stands."""
-    factors = np.ones(len(engine.coordinates))
-    misfit = _Misfit(mapping, engine, measured, states)
+    factors, misfit = np.ones(len(engine.coordinates)), _Misfit(mapping, engine, measured, states)
     as_read = now = misfit.with_factors(factors)
-    found: list[tuple[list[Coordinate], _Convention]] = []
-    while now > MISFIT and len(found) < len(factors):
+    corrections: list[tuple[list[Coordinate], _Convention]] = []
+    while now > MISFIT and len(corrections) < len(factors):
         tried = [(misfit.with_factors(each), which, how, each) for which, how, each in misfit.others(factors)]
-        best = min(tried, key=lambda one: one[0], default=None)
+        best = min(tried, key=lambda attempt: attempt[0], default=None)
         if best is None or not best[0] < EASED * now:
             break
         now, which, how, factors = best
-        found.append(([one for one, turned in zip(engine.coordinates, which, strict=True) if turned], how))
-    if not found or not (now < FITS * as_read and (now < 1.0 or now < BEYOND_DOUBT * as_read)):
+        corrections.append(([q for q, turned in zip(engine.coordinates, which, strict=True) if turned], how))
+    if not corrections or not (now < FITS * as_read and (now < 1.0 or now < BEYOND_DOUBT * as_read)):
         return
-    columns = [(_column(mapping, one), how) for some, how in found for one in some]
-    (column, how), one = columns[0], found[0][0][0]
+    columns = [(_column(mapping, coordinate), how) for some, how in corrections for coordinate in some]
+    (column, how), coordinate = columns[0], corrections[0][0][0]
     more = "".join(
         f", and so {'does' if how is _TURNED else 'is'} {name!r}" if other is how else f", and {name!r} {other.is_so}"
         for name, other in columns[1:]
@@ -99,7 +98,7 @@ def refuse_other_conventions(mapping: Simulation, engine: Engine, measured: Meas
         "the columns must have the units and signs that the mapping states",
         f"column {column!r} {how.is_so}{more}: the accelerations of {engine.called} differ from the record by "
         f"{as_read**0.5:.3g} times their size, and with this correction by {now**0.5:.2g} times",
-        f"{how.mend.format(column=column, expression=dict(mapping.observations)[column], name=one.name)} "
+        f"{how.mend.format(column=column, expression=dict(mapping.observations)[column], name=coordinate.name)} "
         f"To write a mapping: gaitdisc new {engine.path.with_suffix('.toml').name} --from {engine.path.name}.",
     )
 
@@ -110,7 +109,7 @@ class _Misfit:
     def __init__(self, mapping: Simulation, engine: Engine, measured: Measured, states: Values) -> None:
         self.engine, self.values, self.rate = engine, mapping.values(), measured.rate
         count, samples = len(engine.coordinates), measured.drive.samples
-        moved = [np.ptp(one[:n, :count], axis=0).sum() for one, n in zip(states, samples, strict=True)]
+        moved = [np.ptp(trajectory[:n, :count], axis=0).sum() for trajectory, n in zip(states, samples, strict=True)]
         trial = int(np.argmax(moved))  # one is enough: a unit or a sign is the same in all
         along = states[trial, : samples[trial]]
         self.q, self.v = along[:, :count], along[:, count:]
@@ -120,28 +119,28 @@ class _Misfit:
         """Share of the accelerations' squares that is missed, mean over coordinates times factors (coordinate,)."""
         q, v = self.q * factors, self.v * factors
         points = np.linspace(0, len(q) - 1, min(POINTS, len(q))).round().astype(np.intp)
-        own = np.gradient(v, 1 / self.rate, axis=0)[points]
+        recorded = np.gradient(v, 1 / self.rate, axis=0)[points]
         at = self.engine.along(q, v, self.controls, self.rate).at(points)
-        missed = own - self.engine.accelerations(at, self.values)
-        return float(np.mean(np.mean(missed**2, axis=0) / np.maximum(np.mean(own**2, axis=0), TINY)))
+        missed = recorded - self.engine.accelerations(at, self.values)
+        return float(np.mean(np.mean(missed**2, axis=0) / np.maximum(np.mean(recorded**2, axis=0), TINY)))
 
     def others(self, factors: Values) -> Iterator[tuple[NDArray[np.bool_], _Convention, Values]]:
         """Return each other convention of a coordinate, and the other sign of all: which, how, and factors with it."""
         every = np.ones(len(factors), bool)
         if len(factors) > 1 and (factors == 1.0).all():
             yield every, _TURNED, -factors
-        for number, one in enumerate(self.engine.coordinates):
-            for how in CONVENTIONS[one.unit]:
-                inside = abs(how.factor) * np.abs(self.q[:, number]).max() <= _limit(one)
+        for number, coordinate in enumerate(self.engine.coordinates):
+            for how in CONVENTIONS[coordinate.unit]:
+                inside = abs(how.factor) * np.abs(self.q[:, number]).max() <= _limit(coordinate)
                 if factors[number] == 1.0 and inside:
                     which = np.arange(len(factors)) == number
                     yield which, how, np.where(which, how.factor, factors)
 
 
-def _limit(one: Coordinate) -> float:
+def _limit(coordinate: Coordinate) -> float:
     """Largest size of a coordinate that a record can have [rad, m]."""
-    return SPUN if not np.isfinite(one.high) else 1.5 * max(abs(one.low), abs(one.high))
+    return SPUN if not np.isfinite(coordinate.high) else 1.5 * max(abs(coordinate.low), abs(coordinate.high))
 
 
-def _column(mapping: Simulation, one: Coordinate) -> str:
-    return next((name for name, text in mapping.observations if one.name in text), one.name)
+def _column(mapping: Simulation, coordinate: Coordinate) -> str:
+    return next((name for name, text in mapping.observations if coordinate.name in text), coordinate.name)

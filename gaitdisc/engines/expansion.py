@@ -43,20 +43,18 @@ def expand(
     """Simulation that is expanded along a record, and the record with what the engine computed along it.
 
     simulation: as the mapping file has it: the names, the observations, the ports
-    measured: driven by its inputs
     states (trial, sample, state): smoothed: coordinates, then speeds
     values: parameters around which to expand; the simulation's own where absent
     """
-    own, drive = simulation.values() | dict(values or {}), measured.drive
+    parameters, drive = simulation.values() | dict(values or {}), measured.drive
     motions = [compute_motion(engine, drive, states, trial) for trial in range(len(states))]
     fields = ("q", "v", "u") if motions[0].z is None else ("q", "v", "u", "z")
-    at = Motion(*(np.concatenate([getattr(one, name) for one in motions]) for name in fields))
-    paths = [np.gradient(one.v, 1 / drive.rate, axis=0) for one in motions]
+    at = Motion(*(np.concatenate([getattr(motion, name) for motion in motions]) for name in fields))
+    paths = [np.gradient(motion.v, 1 / drive.rate, axis=0) for motion in motions]
     stride = 1 if at.z is None else max(round(drive.rate / SLOPES_HZ), 1)
-    ends = np.cumsum(drive.samples)
+    ends, columns = np.cumsum(drive.samples), _Columns(engine)
     points = [np.unique(np.r_[end - n : end : stride, end - 1]) for end, n in zip(ends, drive.samples, strict=True)]
-    columns = _Columns(engine)
-    _expand(columns, simulation, _Along(at, np.concatenate(paths), np.concatenate(points)), own)
+    _expand(columns, simulation, _Along(at, np.concatenate(paths), np.concatenate(points)), parameters)
     inputs = (*simulation.inputs, *(Input(name, "", "computed along the record", True) for name in columns.values))
     trials = np.split(np.column_stack([at.u, *columns.values.values()]), ends[:-1])
     lines = tuple((state.name, columns.equations[state.name]) for state in simulation.states)
@@ -81,12 +79,12 @@ class _Columns:
         self.engine = engine
         self.values: dict[str, Values] = {}
         self.slowed: Values | None = None  # (point, coordinate, coordinate)
-        self._terms: dict[str, dict[str, list[str]]] = {one.speed: {} for one in engine.coordinates}
+        self._terms: dict[str, dict[str, list[str]]] = {coordinate.speed: {} for coordinate in engine.coordinates}
 
     @property
     def equations(self) -> dict[str, str]:
         """Time derivative of each state."""
-        rates = {one.name: one.speed for one in self.engine.coordinates}
+        rates = {coordinate.name: coordinate.speed for coordinate in self.engine.coordinates}
         for speed, sums in self._terms.items():
             parts = (f"({' + '.join(terms)}){away}" for away, terms in sums.items())
             rates[speed] = " + ".join(parts) or "0"
@@ -101,17 +99,17 @@ class _Columns:
         if self.slowed is not None:
             column = np.einsum("pij,pj->pi", self.slowed, column)
         size = max(float(np.abs(column).max()), 1e-12)
-        for number, one in enumerate(self.engine.coordinates):
-            own, word = column[:, number], f"{one.speed}_{name}"
+        for number, coordinate in enumerate(self.engine.coordinates):
+            entries, word = column[:, number], f"{coordinate.speed}_{name}"
             if len(word) > LONGEST:
                 word = f"computed_{len(self.values)}"
-            if np.ptp(own) > STILL * size:
-                self.values[word] = own
-            elif abs(own[0]) > STILL * size:
-                word = repr(float(own.mean()))
+            if np.ptp(entries) > STILL * size:
+                self.values[word] = entries
+            elif abs(entries[0]) > STILL * size:
+                word = repr(float(entries.mean()))
             else:
                 continue
-            self._terms[one.speed].setdefault(away, []).append(f"{word}*{factor}" if factor else word)
+            self._terms[coordinate.speed].setdefault(away, []).append(f"{word}*{factor}" if factor else word)
 
 
 @dataclass(frozen=True)
@@ -145,26 +143,25 @@ def _expand(columns: _Columns, simulation: Simulation, along: _Along, values: Ma
     base = engine.accelerations(at, values)
     few, rest = base[along.points], base.copy()
     slopes = _slopes(engine, along, values)
-    damping = -np.stack([slopes[one.speed] for one in engine.coordinates], axis=2)
+    damping = -np.stack([slopes[coordinate.speed] for coordinate in engine.coordinates], axis=2)
     if np.linalg.norm(damping, axis=(1, 2)).max() > FASTEST:
         columns.slowed, heavier = _slow_speeds(damping)
         rest += np.einsum("pij,pj->pi", heavier, along.accelerations)
-    for (name, slope), own in zip(slopes.items(), np.hstack([at.q, at.v, at.u]).T, strict=True):
+    for (name, slope), variable in zip(slopes.items(), np.hstack([at.q, at.v, at.u]).T, strict=True):
         columns.add(f"by_{name}", slope, name)
-        rest -= slope * own[:, None]
+        rest -= slope * variable[:, None]
     columns.add("rate", rest)
     ports = {port.name for port in simulation.ports}
-    for number, one in enumerate(engine.coordinates):
-        force = np.zeros_like(few)
+    for number, coordinate in enumerate(engine.coordinates):
+        force, acting = np.zeros_like(few), [coordinate.port] if coordinate.port in ports else []
         force[:, number] = 1.0
-        acting = [one.port] if one.port in ports else []
         for name in simulation.values():
             alike = engine.as_force(name)
             if alike and alike[0] == number:
                 acting.append(f"({alike[1]})*({name} - {values[name]!r})")
         if acting:
             changed = along.spread(engine.accelerations(along.few, values, force) - few)
-            columns.add(f"by_{one.port}", changed, acting[0] if len(acting) == 1 else f"({' + '.join(acting)})")
+            columns.add(f"by_{coordinate.port}", changed, acting[0] if len(acting) == 1 else f"({' + '.join(acting)})")
     _expand_parameters(columns, simulation, along, few, values)
 
 
@@ -174,15 +171,15 @@ def _slopes(engine: Engine, along: _Along, values: Mapping[str, float]) -> dict[
     Differences are to both sides: a muscle's stiffness is a small rest of that of its tendon less that of its fibre.
     """
     few, count = along.few, len(engine.coordinates)
-    found: dict[str, Values] = {}
+    slopes: dict[str, Values] = {}
     for name, _, ahead, behind, size in _nudge(engine, few, "qvuz"):
-        found[name] = along.without_jumps((engine.rates(ahead, values) - engine.rates(behind, values)) / (2 * size))
-    fibres = [found.pop(name) for name in _fibres(few)]
-    moves = _following(engine, {name: slope[:, count:] for name, slope in found.items()}, fibres)
-    for name, slope in found.items():
+        slopes[name] = along.without_jumps((engine.rates(ahead, values) - engine.rates(behind, values)) / (2 * size))
+    fibres = [slopes.pop(name) for name in _fibres(few)]
+    moves = _following(engine, {name: slope[:, count:] for name, slope in slopes.items()}, fibres)
+    for name, slope in slopes.items():
         by_fibres = sum(fibre[:, :count] * moves[name][:, [k]] for k, fibre in enumerate(fibres))
-        found[name] = along.spread(slope[:, :count] + by_fibres)
-    return found
+        slopes[name] = along.spread(slope[:, :count] + by_fibres)
+    return slopes
 
 
 def _fibres(at: Motion) -> list[str]:
@@ -194,13 +191,13 @@ def _following(engine: Engine, speeds: Mapping[str, Values], fibres: list[Values
 
     A fibre settles within milliseconds: its length is that at which its speed is the one with which that length moves.
     """
-    count, found = len(engine.coordinates), {}
+    count, moves = len(engine.coordinates), {}
     back = [np.minimum(fibre[:, count + number], -SLOWEST) for number, fibre in enumerate(fibres)]
     settling = np.stack(back, axis=1) if back else np.empty((1, 0))
-    for one in engine.coordinates:
-        found[one.name] = -speeds[one.name] / settling
-        found[one.speed] = (found[one.name] - speeds[one.speed]) / settling
-    return found | {one.name: -speeds[one.name] / settling for one in engine.controls}
+    for coordinate in engine.coordinates:
+        moves[coordinate.name] = -speeds[coordinate.name] / settling
+        moves[coordinate.speed] = (moves[coordinate.name] - speeds[coordinate.speed]) / settling
+    return moves | {control.name: -speeds[control.name] / settling for control in engine.controls}
 
 
 def _slow_speeds(damping: Values) -> tuple[Values, Values]:
@@ -210,8 +207,7 @@ def _slow_speeds(damping: Values) -> tuple[Values, Values]:
     as it may be without a change of slow motion, as it acts on the deviation from the recorded motion alone.
     """
     rates, ways = np.linalg.eig(damping)
-    heavy = np.maximum(np.real(rates) / FASTEST, 1.0)
-    inverse = np.linalg.inv(ways)
+    heavy, inverse = np.maximum(np.real(rates) / FASTEST, 1.0), np.linalg.inv(ways)
     factor, more = (np.real(ways @ (each[..., None] * inverse)) for each in (1.0 / heavy, heavy - 1.0))
     return factor, more
 
@@ -227,13 +223,13 @@ def _expand_parameters(
     names = [name for name in simulation.values() if engine.as_force(name) is None]
     mixed = at.z is None and 0 < len(names) * len(engine.coordinates) ** 2 <= MOST_MIXED
     beside = list(_nudge(engine, at, "q")) if mixed else []
-    own = [engine.accelerations(ahead, values) for _, _, ahead, _, _ in beside]
+    unchanged = [engine.accelerations(ahead, values) for _, _, ahead, _, _ in beside]
     for name in names:
         size = NUDGE * max(abs(values[name]), 1e-2)
         far = {**values, name: values[name] + size}
         slope = along.without_jumps((engine.accelerations(at, far) - here) / size)
         away, rest = f"*({name} - {values[name]!r})", slope
-        for (other, value, ahead, _, step), before in zip(beside, own, strict=True):
+        for (other, value, ahead, _, step), before in zip(beside, unchanged, strict=True):
             both = ((engine.accelerations(ahead, far) - before) / size - slope) / step
             columns.add(f"by_{name}_and_{other}", along.spread(both), other, away)
             rest = rest - both * value[:, None]
@@ -242,8 +238,8 @@ def _expand_parameters(
 
 def _nudge(engine: Engine, at: Motion, fields: str) -> Iterator[tuple[str, Values, Motion, Motion, float]]:
     """Yield each coordinate, speed, control and fibre with the motion a little to either side."""
-    names = {"q": [one.name for one in engine.coordinates], "v": [one.speed for one in engine.coordinates]}
-    names |= {"u": [one.name for one in engine.controls], "z": _fibres(at)}
+    names = {"q": [q.name for q in engine.coordinates], "v": [q.speed for q in engine.coordinates]}
+    names |= {"u": [control.name for control in engine.controls], "z": _fibres(at)}
     for field in fields:
         whole = getattr(at, field)
         for column, name in enumerate(names[field]):

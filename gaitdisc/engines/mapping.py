@@ -28,23 +28,19 @@ SAME = 1e-5  # by which a number of the mapping may differ from the model's, as 
 
 
 def draft(engine: Engine, degrees: bool = False) -> Simulation:
-    """Mapping of a model: every free coordinate measured in a column of its name, every control another.
-
-    degrees: whether the columns of angles are in degrees
-    """
-    found = engine.coordinates
-    if len(found) + len(engine.controls) > MOST:
+    """Mapping of a model: every free coordinate measured in a column of its name, every control another."""
+    free = engine.coordinates
+    if len(free) + len(engine.controls) > MOST:
         raise SchemaError(
             f"a model must have at most {MOST} free coordinates and controls together",
-            f"{engine.path.name} has {len(found)} coordinates and {len(engine.controls)} controls",
+            f"{engine.path.name} has {len(free)} coordinates and {len(engine.controls)} controls",
             "Lock the joints that your record does not show (MuJoCo: remove these joints).",
         )
-    states = [State(one.name, one.unit, f"coordinate {one.called}") for one in found]
-    states += [State(one.speed, f"{one.unit}/s") for one in found]
-    parameters = [one for one in engine.parameters if one.name in engine.offered]
-    ports = [Port(one.port, one.force_unit, f"on {one.called}, in its positive direction") for one in found]
-    turned = {one.name for one in found if degrees and one.unit == "rad"}
-    scale = repr(float(np.rad2deg(1.0)))
+    states = [State(coordinate.name, coordinate.unit, f"coordinate {coordinate.called}") for coordinate in free]
+    states += [State(coordinate.speed, f"{coordinate.unit}/s") for coordinate in free]
+    parameters = [parameter for parameter in engine.parameters if parameter.name in engine.offered]
+    ports = [Port(q.port, q.force_unit, f"on {q.called}, in its positive direction") for q in free]
+    scale, turned = repr(float(np.rad2deg(1.0))), {q.name for q in free if degrees and q.unit == "rad"}
     return Simulation(
         title=f"{engine.path.name}, a model of {engine.called}",
         states=tuple(states),
@@ -53,8 +49,8 @@ def draft(engine: Engine, degrees: bool = False) -> Simulation:
         ports=tuple(ports),
         definitions=(),
         equations=any_equations(states, (*engine.controls, *parameters, *ports)),
-        observations=tuple((one.name, f"{scale}*{one.name}" if one.name in turned else one.name) for one in found),
-        sensors=tuple(Sensor(one.name, "deg" if one.name in turned else one.unit) for one in found),
+        observations=tuple((q.name, f"{scale}*{q.name}" if q.name in turned else q.name) for q in free),
+        sensors=tuple(Sensor(q.name, "deg" if q.name in turned else q.unit) for q in free),
         model=engine.path.name,
     )
 
@@ -94,14 +90,14 @@ def check_mapping(mapping: Simulation, engine: Engine) -> None:
     """Refuse a mapping whose names are not the model's."""
     file, free = engine.path.name, engine.coordinates
     known = {
-        "coordinate or speed": (mapping.states, (*(one.name for one in free), *(one.speed for one in free))),
-        "control": (mapping.inputs, tuple(one.name for one in engine.controls)),
-        "parameter": (mapping.parameters, tuple(one.name for one in engine.parameters)),
-        "port": (mapping.ports, tuple(one.port for one in free)),
+        "coordinate or speed": (mapping.states, (*(q.name for q in free), *(q.speed for q in free))),
+        "control": (mapping.inputs, tuple(control.name for control in engine.controls)),
+        "parameter": (mapping.parameters, tuple(parameter.name for parameter in engine.parameters)),
+        "port": (mapping.ports, tuple(coordinate.port for coordinate in free)),
     }
     for kind, (parts, has) in known.items():
-        given = tuple(one.name for one in parts)
-        for name in (one for one in given if one not in has):
+        given = tuple(part.name for part in parts)
+        for name in (absent for absent in given if absent not in has):
             hint = f"Did you mean {near!r}? " if (near := nearest_word(name, has)) else ""
             raise SchemaError(
                 f"each {kind} of a mapping must exist in the model",
@@ -118,31 +114,31 @@ def check_mapping(mapping: Simulation, engine: Engine) -> None:
 
 def other_values(mapping: Simulation, engine: Engine) -> tuple[Finding, ...]:
     """Say which parameters have another value in the mapping than in the model; the mapping's is used."""
-    own, found = {one.name: one.value for one in engine.parameters}, []
+    of_model, findings = {parameter.name: parameter.value for parameter in engine.parameters}, []
     for name, value in mapping.values().items():
-        if abs(value - own[name]) > SAME * max(abs(own[name]), 1e-9):
-            what = f"{name} is {value:g} in the mapping and {own[name]:g} in the model"
-            found.append(Finding("note", "value", "model", what, "", name))
-    return tuple(found)
+        if abs(value - of_model[name]) > SAME * max(abs(of_model[name]), 1e-9):
+            what = f"{name} is {value:g} in the mapping and {of_model[name]:g} in the model"
+            findings.append(Finding("note", "value", "model", what, "", name))
+    return tuple(findings)
 
 
 def with_input_changed(mapping: Simulation, name: str, expression: str) -> Simulation:
     """Mapping in which a control is replaced by an expression of the recorded one, inside what replaces it already."""
-    known, own = dict(mapping.definitions), f"{REPLACED}{name}"
-    changed = substitute(parse(known.get(own, name)), {name: parse(expression)}, mapping.signals)
-    return replace(mapping, definitions=tuple((known | {own: written(changed)}).items()))
+    known, definition = dict(mapping.definitions), f"{REPLACED}{name}"
+    changed = substitute(parse(known.get(definition, name)), {name: parse(expression)}, mapping.signals)
+    return replace(mapping, definitions=tuple((known | {definition: written(changed)}).items()))
 
 
 def with_strength(mapping: Simulation, engine: Engine, name: str, gain: float) -> Simulation:
     """Mapping in which a control does so many times as much: by the motor's own number, where that is the same."""
-    column, n = [one.name for one in engine.controls].index(name), len(engine.coordinates)
-    own = next((one for one in engine.parameters if one.name in (f"{name}_gear", f"{name}_optimal_force")), None)
-    if own is not None:
+    column, n = [control.name for control in engine.controls].index(name), len(engine.coordinates)
+    gear = next((part for part in engine.parameters if part.name in (f"{name}_gear", f"{name}_optimal_force")), None)
+    if gear is not None:
         u = np.full((1, len(engine.controls)), 0.1)
         half = np.where(np.arange(u.shape[1]) == column, 0.5 * u, u)
         at, less = (Motion(np.full((1, n), 0.2), np.full((1, n), 0.3), each) for each in (u, half))
-        if np.allclose(engine.accelerations(less, {}), engine.accelerations(at, {own.name: own.value / 2}), 1e-9):
-            return mapping.with_parameter(replace(own, value=gain * mapping.values().get(own.name, own.value)))
+        if np.allclose(engine.accelerations(less, {}), engine.accelerations(at, {gear.name: gear.value / 2}), 1e-9):
+            return mapping.with_parameter(replace(gear, value=gain * mapping.values().get(gear.name, gear.value)))
     return with_input_changed(mapping, name, f"{gain!r}*{name}")
 
 
@@ -153,7 +149,7 @@ def replace_inputs(mapping: Simulation, time: Values, u: Values, rate: float, x:
     """
     plain = replace(mapping, model="", effects=(), definitions=())
     points = Points(time, np.zeros((len(time), len(plain.states))) if x is None else x, u, rate=rate)
-    changed, called = u.copy(), [one.name for one in mapping.inputs]
+    changed, called = u.copy(), [control.name for control in mapping.inputs]
     for name, expression in mapping.definitions:
         changed[:, called.index(name.removeprefix(REPLACED))] = evaluate(plain, expression, points)
     return changed

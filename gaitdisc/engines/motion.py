@@ -97,8 +97,8 @@ class Pushes:
 
     def begun(self, start: Motion) -> Values:
         """All states (point, state) where runs begin."""
-        own = np.zeros((len(start.q), len(self.machine.states) - 2 * self.count)) if start.own is None else start.own
-        return np.hstack([start.q, start.v, own])
+        states = np.zeros((len(start.q), len(self.machine.states) - 2 * self.count)) if start.own is None else start.own
+        return np.hstack([start.q, start.v, states])
 
 
 @dataclass(frozen=True)

@@ -71,19 +71,19 @@ class MujocoModel:
         ranges = np.where(limited, model.jnt_range, (-np.inf, np.inf)).tolist()
         words = [self._called("joint", k) for k in range(model.njnt)]
         self.coordinates = tuple(
-            Coordinate(new_name(name + way, "joint", taken), unit, (called or name) + way if way else called, *own)
-            for name, called, kind, own in zip(names, words, kinds, ranges, strict=True)
+            Coordinate(new_name(name + way, "joint", taken), unit, (called or name) + way if way else called, *limits)
+            for name, called, kind, limits in zip(names, words, kinds, ranges, strict=True)
             for unit, way in WAYS[kind]
         )
         parts = list_of_parts(mujoco, model, self._names)
-        taken = {"gravity", *parts} | {each for one in self.coordinates for each in (one.name, one.speed, one.port)}
+        taken = {"gravity", *parts} | {each for q in self.coordinates for each in (q.name, q.speed, q.port)}
         self.controls = tuple(Input(name, "1", "actuator") for name in self._names("control", model.nu, taken))
         self._places = parts | list_of_controls(mujoco, model, self.controls)
         values = {name: read_number(model, name, at) for name, at in self._places.items()}
         self.parameters = tuple(Parameter(name, value, self._places[name].unit) for name, value in values.items())
         at_zero = {("joint", k) for k in np.flatnonzero(kinds < 2)} | {("tendon", k) for k in range(model.ntendon)}
-        said = ((name, values[name] and "gear" not in name, at.part in at_zero) for name, at in self._places.items())
-        self.offered = tuple(name for name, there, free in said if there or (free and "loss" not in name))
+        flags = ((name, values[name] and "gear" not in name, at.part in at_zero) for name, at in self._places.items())
+        self.offered = tuple(name for name, there, free in flags if there or (free and "loss" not in name))
         limited = model.actuator_ctrllimited[:, None]
         self.control_ranges = np.where(limited, model.actuator_ctrlrange, (-np.inf, np.inf))  # (control, low and high)
         self._stateful = self._model.actuator_actadr >= 0
@@ -93,29 +93,28 @@ class MujocoModel:
     def accelerations(self, at: Motion, values: Mapping[str, float], forces: Values | None = None) -> Values:
         """Accelerations (point, coordinate), with other values of some parameters and forces besides."""
         model, data, forward = self.with_values(values)._model, self._data, self._mujoco.mj_forward
-        found, own = np.empty_like(at.q), self._stateful
-        acts = model.actuator_actadr[own]
-        qpos, qvel = to_positions(self.balls, at.q, at.v)
+        qacc, stateful = np.empty_like(at.q), self._stateful
+        (qpos, qvel), acts = to_positions(self.balls, at.q, at.v), model.actuator_actadr[stateful]
         forces = None if forces is None else to_forces(self.balls, at.q, forces)
         for point in range(len(at.q)):
             data.qpos[:], data.qvel[:] = qpos[point], qvel[point]
-            data.ctrl[~own], data.act[acts] = at.u[point, ~own], at.u[point, own]
+            data.ctrl[~stateful], data.act[acts] = at.u[point, ~stateful], at.u[point, stateful]
             data.qfrc_applied[:] = 0.0 if forces is None else forces[point]
             data.qacc_warmstart[:] = 0.0
             forward(model, data)
-            found[point] = data.qacc
+            qacc[point] = data.qacc
             self.contacts = max(self.contacts, data.ncon)
         data.qfrc_applied[:] = 0.0
-        return to_accelerations(self.balls, at.q, at.v, found)
+        return to_accelerations(self.balls, at.q, at.v, qacc)
 
     def as_force(self, parameter: str) -> tuple[int, str] | None:
         """Springs, dampers and friction of joints are forces on their coordinates."""
         part, _, word = parameter.rpartition("_")
-        number = next((k for k, one in enumerate(self.coordinates) if one.name == part), -1)
+        number = next((k for k, coordinate in enumerate(self.coordinates) if coordinate.name == part), -1)
         if number < 0 or word not in PASSIVE:
             return None
-        one, rest = self.coordinates[number], self._model.qpos_spring[number + sum(k < number for k in self.balls)]
-        return number, PASSIVE[word][2].format(rest=float(rest), name=one.name, speed=one.speed)
+        joint, rest = self.coordinates[number], self._model.qpos_spring[number + sum(k < number for k in self.balls)]
+        return number, PASSIVE[word][2].format(rest=float(rest), name=joint.name, speed=joint.speed)
 
     rates = accelerations  # no fibre has a state of its own
 
@@ -123,23 +122,22 @@ class MujocoModel:
     def along(self, q: Values, v: Values, controls: Values, rate: float) -> Motion:
         """Return a prescribed motion with activations, integrated from equilibrium with the first controls."""
         controls = np.clip(controls, *self.control_ranges.T)
-        found = np.array(controls, float)
+        acting = np.array(controls, float)
         if not self._stateful.any():
-            return Motion(q, v, found)
+            return Motion(q, v, acting)
         model, data, steps = self._model, self._data, self._steps(rate)
         h, acts = 1.0 / (rate * steps), model.actuator_actadr[self._stateful]
         qpos, _ = to_positions(self.balls, q, v)
-        data.qvel[:] = 0.0
-        data.act[acts] = controls[0, self._stateful]
+        data.qvel[:], data.act[acts] = 0.0, controls[0, self._stateful]
         for sample in range(len(controls)):
-            found[sample, self._stateful] = data.act[acts]
+            acting[sample, self._stateful] = data.act[acts]
             after = controls[min(sample + 1, len(controls) - 1)]
             data.qpos[:] = qpos[sample]
             for step in range(steps):
                 data.ctrl[:] = controls[sample] + (after - controls[sample]) * step / steps
                 self._mujoco.mj_forward(model, data)
                 data.act[:] += h * data.act_dot
-        return Motion(q, v, found)
+        return Motion(q, v, acting)
 
     def near(self, known: Motion, q: Values, v: Values) -> Motion:
         """Return other coordinates and speeds near a known motion."""
@@ -155,14 +153,14 @@ class MujocoModel:
         driven = given[:, :-1, None] + np.arange(steps)[:, None] * np.diff(given, axis=1)[:, :, None] / steps
         driven = driven.reshape(len(given), driven.shape[1] * steps, given.shape[2])
         driven[:, :, :nu] = np.clip(driven[:, :, :nu], *self.control_ranges.T)
-        found = np.empty((len(controls), driven.shape[1] + 1, model.nq + model.nv))
-        found[:, 0] = begun = np.hstack(to_positions(balls, start.q, start.v))
+        reached = np.empty((len(controls), driven.shape[1] + 1, model.nq + model.nv))
+        reached[:, 0] = begun = np.hstack(to_positions(balls, start.q, start.v))
         halted = np.ones(len(controls), bool)
         if self.pushes is None and driven.shape[1]:  # all at once, each halted where MuJoCo warns
-            whole = np.array([self._begin(*one) for one in zip(begun, start.u, strict=True)])
+            whole = np.array([self._begin(*pair) for pair in zip(begun, start.u, strict=True)])
             kind = int(kinds.mjSTATE_CTRL) | (forces is not None) * int(kinds.mjSTATE_QFRC_APPLIED)
             states, _ = self._mujoco.rollout.rollout(model, data, whole, driven, control_spec=kind)
-            found[:, 1:] = states[:, :, 1 : 1 + begun.shape[1]]
+            reached[:, 1:] = states[:, :, 1 : 1 + begun.shape[1]]
             halted = states[:, -1, 0] < (driven.shape[1] - 0.5) * model.opt.timestep
         for run in np.flatnonzero(halted):
             self._begin(begun[run], start.u[run])
@@ -178,9 +176,9 @@ class MujocoModel:
                     data.qfrc_applied[:] = to_forces(balls, q, acting)[0]
                     pushed[:, 2 * model.nv :] += model.opt.timestep * rates
                 self._mujoco.mj_step(model, data)
-                found[run, step + 1] = *data.qpos, *data.qvel
+                reached[run, step + 1] = *data.qpos, *data.qvel
         model.opt.timestep = kept
-        return to_coordinates(balls, found[:, ::steps, : model.nq], found[:, ::steps, model.nq :], start.q)
+        return to_coordinates(balls, reached[:, ::steps, : model.nq], reached[:, ::steps, model.nq :], start.q)
 
     def _begin(self, state: Values, acting: Values) -> Values:
         """Put the model into positions and velocities with what acts through each control, and give its whole state."""
@@ -194,8 +192,7 @@ class MujocoModel:
 
     def text_with_value(self, text: str, name: str, value: float) -> str | None:
         """Text of the model with another value of a parameter."""
-        kind, number = self._places[name].part
-        model = self._model
+        (kind, number), model = self._places[name].part, self._model
         share = value / (read_number(model, name, self._places[name]) or 1.0)
         numbers = {"pos": model.body_ipos, "quat": model.body_iquat, "diaginertia": share * model.body_inertia}
         inertia = {word: each[number] for word, each in numbers.items()} if name.endswith("_mass") else {}
@@ -204,8 +201,8 @@ class MujocoModel:
     @property
     def servos(self) -> dict[str, tuple[float, float, str]]:
         """Of each control that is no force itself: its gain, and its force at 0 and that by its joint's motion."""
-        model, enums, found = self._model, self._mujoco, dict[str, tuple[float, float, str]]()
-        for number, one in enumerate(self.controls):
+        model, enums, servos = self._model, self._mujoco, dict[str, tuple[float, float, str]]()
+        for number, control in enumerate(self.controls):
             joint, gear = model.actuator_trnid[number, 0], model.actuator_gear[number, 0]
             on_joint = model.actuator_trntype[number] == enums.mjtTrn.mjTRN_JOINT and model.jnt_type[joint] > 1
             gains = model.actuator_gaintype[number], model.actuator_biastype[number]
@@ -213,8 +210,8 @@ class MujocoModel:
                 at = self.coordinates[model.jnt_dofadr[joint]]
                 constant, position, speed = model.actuator_biasprm[number, :3].tolist()
                 moved = f"{float(gear * position)!r}*{at.name} + {float(gear * speed)!r}*{at.speed}"
-                found[one.name] = float(model.actuator_gainprm[number, 0]), constant, moved
-        return found
+                servos[control.name] = float(model.actuator_gainprm[number, 0]), constant, moved
+        return servos
 
     def text_with_range(self, text: str, control: int, low: float, high: float, of: str = "ctrl") -> str | None:
         """Text of the model with a narrower range of a control, or of its force."""
@@ -224,10 +221,9 @@ class MujocoModel:
 
     def text_with_effect(self, text: str, effect: ByHand) -> str | None:
         """Text of the model with an effect on a joint."""
-        one = self.coordinates[effect.coordinate]
-        values = {each.name: each.value for each in self.parameters}
-        own = {word: values.get(f"{one.name}_{word}", 0.0) for word in PASSIVE}
-        return with_effect(text, effect, one.called, own)
+        coordinate, values = self.coordinates[effect.coordinate], {each.name: each.value for each in self.parameters}
+        passive = {word: values.get(f"{coordinate.name}_{word}", 0.0) for word in PASSIVE}
+        return with_effect(text, effect, coordinate.called, passive)
 
     @_heard
     def _read(self) -> Any:
@@ -240,8 +236,8 @@ class MujocoModel:
                 "Correct the part that the message names: this version may not know it, or a mesh file may be missing.",
             ) from None
 
-    def _hear(self, said: str) -> None:
-        sentence = " ".join(said.partition(" Time = ")[0].split())
+    def _hear(self, warning: str) -> None:
+        sentence = " ".join(warning.partition(" Time = ")[0].split())
         self.warnings = tuple(dict.fromkeys((*self.warnings, sentence)))
 
     def _steps(self, rate: float) -> int:
@@ -254,8 +250,8 @@ class MujocoModel:
         return [new_name(self._called(known, k) or f"{kind}_{k + 1}", kind, taken) for k in range(count)]
 
     def _called(self, kind: str, number: int) -> str:
-        found = self._mujoco.mj_id2name(self._model, getattr(self._mujoco.mjtObj, f"mjOBJ_{kind.upper()}"), number)
-        return found or ""
+        of = getattr(self._mujoco.mjtObj, f"mjOBJ_{kind.upper()}")
+        return self._mujoco.mj_id2name(self._model, of, number) or ""
 
     def with_values(self, values: Mapping[str, float]) -> MujocoModel:
         """Model with other values of some parameters; itself where none differs."""

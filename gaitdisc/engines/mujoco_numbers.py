@@ -52,25 +52,25 @@ def list_of_parts(mujoco: Any, model: Any, name_parts: Callable[..., list[str]])
 def list_of_controls(mujoco: Any, model: Any, controls: Sequence[Input]) -> dict[str, Number]:
     """Every muscle's force, and every motor's gear."""
     places: dict[str, Number] = {}
-    for number, one in enumerate(controls):
+    for number, control in enumerate(controls):
         muscle = model.actuator_gaintype[number] == int(mujoco.mjtGain.mjGAIN_MUSCLE)
         word, array, place, unit = ("force", "gainprm", 2, "N") if muscle else ("gear", "gear", 0, "1")
-        places[f"{one.name}_{word}"] = Number(f"actuator_{array}", (number, place), unit, ("actuator", number))
+        places[f"{control.name}_{word}"] = Number(f"actuator_{array}", (number, place), unit, ("actuator", number))
     return places
 
 
 def read_number(model: Any, name: str, at: Number) -> float:
     """Length of gravity; of several equal numbers the first; of a muscle that has only a scale, what that makes."""
-    own = attrgetter(at.array)(model)[at.index]
-    if at.unit == "N" and name.endswith("_force") and own < 0:
-        own = model.actuator_gainprm[at.index[0], 3] / model.actuator_acc0[at.index[0]]
-    return float(np.linalg.norm(own) if name == "gravity" else np.ravel(own)[0])
+    value = attrgetter(at.array)(model)[at.index]
+    if at.unit == "N" and name.endswith("_force") and value < 0:
+        value = model.actuator_gainprm[at.index[0], 3] / model.actuator_acc0[at.index[0]]
+    return float(np.linalg.norm(value) if name == "gravity" else np.ravel(value)[0])
 
 
 def with_numbers(model: Any, places: Mapping[str, Number], values: Mapping[str, float]) -> Any:
     """Model with other values of some numbers; itself where none differs."""
-    own = {name: read_number(model, name, places[name]) for name in values}
-    shares = {name: values[name] / (size or 1.0) for name, size in own.items() if size != values[name]}
+    sizes = {name: read_number(model, name, places[name]) for name in values}
+    shares = {name: values[name] / (size or 1.0) for name, size in sizes.items() if size != values[name]}
     model = copy(model) if shares else model
     for name, share in shares.items():
         array, index, *_ = places[name]

@@ -29,7 +29,7 @@ def with_value(text: str, name: str, value: float, kind: str, called: str, shape
     shape: attributes of a body's inertia, as MuJoCo has computed it from shapes that have no mass of their own
     """
     if name == "gravity":
-        tags = [one for one in _tags(text) if one[0] == "option"]
+        tags = [tag for tag in _tags(text) if tag[0] == "option"]
         given = _attribute(text, tags[0], "gravity") if tags else None
         vector = np.array([float(each) for each in given.split()]) if given else np.array([0.0, 0.0, -9.81])
         words = " ".join(repr(float(each)) for each in vector * (value / np.linalg.norm(vector)))
@@ -44,25 +44,24 @@ def with_value(text: str, name: str, value: float, kind: str, called: str, shape
         return _with_mass(text, tag, value, inertial)
     if tag[0] == "freejoint" and text[tag[2] - 2] == "/":
         text = text[: tag[1]] + AS_FREE + text[tag[1] + len("<freejoint") :]
-        tag = next(one for one in _tags(text) if one[1] == tag[1])
+        tag = next(other for other in _tags(text) if other[1] == tag[1])
     rest = (_attribute(text, tag, "gear") or "1").split()[1:] if word == "gear" else []
     return _with_attributes(text, tag, {word: " ".join([repr(value), *rest])})
 
 
-def with_effect(text: str, effect: ByHand, joint: str, own: Mapping[str, float]) -> str | None:
+def with_effect(text: str, effect: ByHand, joint: str, passive: Mapping[str, float]) -> str | None:
     """Text with an effect on a joint; None where MuJoCo has no form of it.
 
-    joint: its name in the file
-    own: stiffness, damping and frictionloss that the joint has, which may come from a default class
+    passive: stiffness, damping and frictionloss that the joint has, which may come from a default class
     """
     tag, name = _find(text, "joint", joint), effect.term.name
     if not joint or tag is None:
         return None
     at_one, at_speed_one = -effect.at(1.0, 0.0), -effect.at(0.0, 1.0)
     if name == "linear_stiffness":
-        return _with_spring(text, tag, at_one, own["stiffness"])
+        return _with_spring(text, tag, at_one, passive["stiffness"])
     attribute, words = MORE_OF.get(name, ""), ""
-    first, *rest = (_attribute(text, tag, attribute or "damping") or repr(own[attribute or "damping"])).split()
+    first, *rest = (_attribute(text, tag, attribute or "damping") or repr(passive[attribute or "damping"])).split()
     if attribute:
         words = " ".join([repr(float(first) + at_speed_one), *rest])
     elif name == "cubic_stiffness" and _attribute(text, tag, "stiffness") is None:
@@ -81,11 +80,11 @@ def with_effect(text: str, effect: ByHand, joint: str, own: Mapping[str, float])
 
 def _with_mass(text: str, body: _Tag, value: float, inertial: str) -> str | None:
     """Another mass of a body's own inertia, or of its one shape with a mass; else an inertia of its own."""
-    inner = [one for one in _tags(text) if one[3] == body[1] and one[0] in ("inertial", "geom")]
-    own = [one for one in inner if one[0] == "inertial"] or inner
-    if len(own) != 1 or _attribute(text, own[0], "mass") is None:
-        return f"{text[: body[2]]}{inertial}{text[body[2] :]}" if inertial and len(own) == len(inner) else None
-    tag, values = own[0], {"mass": repr(value)}
+    inner = [part for part in _tags(text) if part[3] == body[1] and part[0] in ("inertial", "geom")]
+    massive = [part for part in inner if part[0] == "inertial"] or inner
+    if len(massive) != 1 or _attribute(text, massive[0], "mass") is None:
+        return f"{text[: body[2]]}{inertial}{text[body[2] :]}" if inertial and len(massive) == len(inner) else None
+    tag, values = massive[0], {"mass": repr(value)}
     for name in ("diaginertia", "fullinertia") if tag[0] == "inertial" else ():
         given = _attribute(text, tag, name)
         if given:  # of the same shape: the inertia goes with the mass
@@ -96,12 +95,12 @@ def _with_mass(text: str, body: _Tag, value: float, inertial: str) -> str | None
 
 def _with_spring(text: str, tag: _Tag, stiffness: float, before: float) -> str | None:
     """A linear spring about zero, together with the one that the joint has."""
-    own = (_attribute(text, tag, "stiffness") or repr(before)).split()
+    springs = (_attribute(text, tag, "stiffness") or repr(before)).split()
     rest = float(_attribute(text, tag, "springref") or 0.0)
-    if len(own) > 1:
+    if len(springs) > 1:
         return None
-    both = float(own[0]) + stiffness
-    turned = {"springref": repr(float(own[0]) * rest / both)} if rest and both else {}
+    both = float(springs[0]) + stiffness
+    turned = {"springref": repr(float(springs[0]) * rest / both)} if rest and both else {}
     return _with_attributes(text, tag, {**turned, "stiffness": repr(both)})
 
 
@@ -112,45 +111,44 @@ _Tag = tuple[str, int, int, int]  # name, where it begins and ends, where its pa
 def _tags(text: str) -> list[_Tag]:
     """Every opening tag of the text, by characters."""
     whole = text.encode("utf-8")
-    found: list[_Tag] = []
-    above: list[int] = []
+    tags, above = list[_Tag](), list[int]()
     parser = expat.ParserCreate("utf-8")
 
     def opened(name: str, _: object) -> None:
         begin = len(whole[: parser.CurrentByteIndex].decode("utf-8"))
         tag = _TAG.match(text, begin)
         assert tag is not None
-        found.append((name, begin, tag.end(), above[-1] if above else -1))
+        tags.append((name, begin, tag.end(), above[-1] if above else -1))
         above.append(begin)
 
     parser.StartElementHandler = opened
     parser.EndElementHandler = lambda _: above.pop()
     parser.Parse(whole, True)
-    return found
+    return tags
 
 
 def _find(text: str, kind: str, called: str) -> _Tag | None:
     """The one tag of an element, None where there is none or more; those of actuators and tendons have many names."""
     group, tags = kind in ("actuator", "tendon"), _tags(text)
-    own = (one for one in tags if (text[one[3] :].startswith(f"<{kind}") if group else one[0] in (kind, f"free{kind}")))
-    found = [one for one in own if _attribute(text, one, "name") == called]
-    return found[0] if len(found) == 1 else None
+    alike = (t for t in tags if (text[t[3] :].startswith(f"<{kind}") if group else t[0] in (kind, f"free{kind}")))
+    named = [tag for tag in alike if _attribute(text, tag, "name") == called]
+    return named[0] if len(named) == 1 else None
 
 
 def _attribute(text: str, tag: _Tag, name: str) -> str | None:
-    found = re.search(rf"\s{name}\s*=\s*(\"[^\"]*\"|'[^']*')", text[tag[1] : tag[2]])
-    return found[1][1:-1] if found else None
+    match = re.search(rf"\s{name}\s*=\s*(\"[^\"]*\"|'[^']*')", text[tag[1] : tag[2]])
+    return match[1][1:-1] if match else None
 
 
 def _with_attributes(text: str, tag: _Tag, values: Mapping[str, str]) -> str:
-    own = text[tag[1] : tag[2]]
+    element = text[tag[1] : tag[2]]
     for name, value in values.items():
         if _attribute(text, tag, name) is not None:
             known = rf"(\s{name}\s*=\s*)(\"[^\"]*\"|'[^']*')"
-            own = re.sub(known, rf'\g<1>"{value}"', own, count=1)
+            element = re.sub(known, rf'\g<1>"{value}"', element, count=1)
         else:
-            own = re.sub(r"\s*(/?>)$", rf' {name}="{value}"\g<1>', own)
-    return text[: tag[1]] + own + text[tag[2] :]
+            element = re.sub(r"\s*(/?>)$", rf' {name}="{value}"\g<1>', element)
+    return text[: tag[1]] + element + text[tag[2] :]
 
 
 def _before_end(text: str, more: str) -> str:

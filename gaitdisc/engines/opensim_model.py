@@ -67,7 +67,7 @@ class OpensimModel:
             for name, turns, low, high in described["coordinates"]
         )
         self._called = {new_name(name, "number", taken): name for name, *_ in described["parameters"]}
-        taken |= {each for one in self.coordinates for each in (one.speed, one.port)}
+        taken |= {each for coordinate in self.coordinates for each in (coordinate.speed, coordinate.port)}
         self.controls = tuple(
             Input(new_name(name, "control", taken), "1", kind) for name, kind in described["controls"]
         )
@@ -87,8 +87,8 @@ class OpensimModel:
 
     def rates(self, at: Motion, values: Mapping[str, float], forces: Values | None = None) -> Values:
         """Accelerations, then the speeds of the fibres (point, coordinate + fibre)."""
-        own = {one.name: one.value for one in self.parameters}
-        changed = {self._called[name]: value for name, value in values.items() if value != own[name]}
+        of_model = {parameter.name: parameter.value for parameter in self.parameters}
+        changed = {self._called[name]: value for name, value in values.items() if value != of_model[name]}
         push = np.zeros_like(at.q) if forces is None else forces
         return self._query("rates", at.q, at.v, at.u, at.z, changed, push)
 
@@ -115,19 +115,19 @@ class OpensimModel:
         t = np.zeros(len(start.q)) if start.t is None else start.t
 
         def rates(t: Values, x: Values, u: Values) -> Values:
-            forces, own = pushes.at(t, x, u)
+            forces, state_rates = pushes.at(t, x, u)
             at = Motion(x[:, :n], x[:, n : 2 * n], u)
-            return np.hstack([at.v, self.accelerations(at, {}, forces), own])
+            return np.hstack([at.v, self.accelerations(at, {}, forces), state_rates])
 
-        found = [pushes.begun(start)]
+        states = [pushes.begun(start)]
         for before, after in pairwise(np.swapaxes(controls, 0, 1)):
-            x, between = found[-1], (before + after) / 2
-            one = rates(t, x, before)
-            two = rates(t + h / 2, x + h / 2 * one, between)
-            three = rates(t + h / 2, x + h / 2 * two, between)
+            x, between = states[-1], (before + after) / 2
+            k1 = rates(t, x, before)
+            k2 = rates(t + h / 2, x + h / 2 * k1, between)
+            k3 = rates(t + h / 2, x + h / 2 * k2, between)
             t = t + h
-            found.append(x + h / 6 * (one + 2 * two + 2 * three + rates(t, x + h * three, after)))
-        return np.stack(found, axis=1)[:, :, : 2 * n]
+            states.append(x + h / 6 * (k1 + 2 * k2 + 2 * k3 + rates(t, x + h * k3, after)))
+        return np.stack(states, axis=1)[:, :, : 2 * n]
 
     def text_with_value(self, text: str, name: str, value: float) -> str | None:
         """Text of the model with another value of a parameter."""
@@ -177,7 +177,7 @@ def with_effect(text: str, effect: ByHand, coordinate: Coordinate) -> str | None
 
     None where the expression knows more than that coordinate.
     """
-    term, kind, found = effect.term, NATIVE.get(effect.term.name), re.search(FORCES, text, re.DOTALL)
+    term, kind, forces = effect.term, NATIVE.get(effect.term.name), re.search(FORCES, text, re.DOTALL)
     if kind == SPRING:
         numbers = {"stiffness": -effect.at(1.0, 0.0), "rest_length": 0.0, "viscosity": -effect.at(0.0, 1.0)}
     elif kind == LIMIT:
@@ -188,37 +188,37 @@ def with_effect(text: str, effect: ByHand, coordinate: Coordinate) -> str | None
     else:
         kind = "ExpressionBasedCoordinateForce"
         numbers = {"expression": _translate(parse(term.term), {coordinate.name: "q", coordinate.speed: "qdot"})}
-    if None in numbers.values() or found is None:
+    if None in numbers.values() or forces is None:
         return None
     words = {"coordinate": coordinate.called} | {word: str(value) for word, value in numbers.items()}
     inside = "".join(f"<{word}>{escape(value)}</{word}>" for word, value in words.items())
-    own = f"<{kind} name={quoteattr(f'{term.name}_{coordinate.called}')}>{inside}</{kind}>\n"
-    whole = found[0]
+    element = f"<{kind} name={quoteattr(f'{term.name}_{coordinate.called}')}>{inside}</{kind}>\n"
+    whole = forces[0]
     if "</objects>" not in whole:
         whole = re.sub(r"<objects\s*/>", "<objects>\n</objects>", whole, count=1)
     at = whole.rfind("</objects>")  # the last: the first ones are those of muscles' paths
-    return f"{text[: found.start()]}{whole[:at]}{own}{whole[at:]}{text[found.end() :]}" if at >= 0 else None
+    return f"{text[: forces.start()]}{whole[:at]}{element}{whole[at:]}{text[forces.end() :]}" if at >= 0 else None
 
 
 def with_value(text: str, name: str, value: float) -> str | None:
     """Text with a mass, an optimal force or gravity changed; None where the file does not say it."""
     if name == "gravity":
-        found = re.search(r"(?<=<gravity>)[^<]*(?=</gravity>)", text)
-        if not found:
+        match = re.search(r"(?<=<gravity>)[^<]*(?=</gravity>)", text)
+        if not match:
             return None
-        share = float(value / np.linalg.norm([float(word) for word in found[0].split()]))
-        return text[: found.start()] + _scale(found[0], share) + text[found.end() :]
-    word = next(one for one in ELEMENTS if name.endswith(f"_{one}"))
+        share = float(value / np.linalg.norm([float(word) for word in match[0].split()]))
+        return text[: match.start()] + _scale(match[0], share) + text[match.end() :]
+    word = next(element for element in ELEMENTS if name.endswith(f"_{element}"))
     kind, part = ELEMENTS[word], name.removesuffix(f"_{word}")
-    found = re.search(rf"<({kind}) name={re.escape(quoteattr(part))}>.*?</\1>", text, re.DOTALL)
-    own = re.search(rf"(<{word}>)([^<]*)(</{word}>)", found[0]) if found else None
-    if found is None or own is None:
+    match = re.search(rf"<({kind}) name={re.escape(quoteattr(part))}>.*?</\1>", text, re.DOTALL)
+    number = re.search(rf"(<{word}>)([^<]*)(</{word}>)", match[0]) if match else None
+    if match is None or number is None:
         return None
-    changed = f"{found[0][: own.start(2)]}{value!r}{found[0][own.end(2) :]}"
+    changed = f"{match[0][: number.start(2)]}{value!r}{match[0][number.end(2) :]}"
     if word == "mass":
-        share = value / float(own[2])
-        changed = re.sub(r"(?<=<inertia>)[^<]*(?=</inertia>)", lambda one: _scale(one[0], share), changed, count=1)
-    return text[: found.start()] + changed + text[found.end() :]
+        share = value / float(number[2])
+        changed = re.sub(r"(?<=<inertia>)[^<]*(?=</inertia>)", lambda old: _scale(old[0], share), changed, count=1)
+    return text[: match.start()] + changed + text[match.end() :]
 
 
 def _scale(numbers: str, share: float) -> str:
@@ -231,7 +231,7 @@ def _translate(tree: Tree, names: dict[str, str]) -> str | None:
         return repr(tree.value)
     if isinstance(tree, Name):
         return names.get(tree.name)
-    parts = [_translate(one, names) for one in tree.arguments]
+    parts = [_translate(argument, names) for argument in tree.arguments]
     if None in parts:
         return None
     symbol, given = tree.symbol, [f"({part})" for part in parts]

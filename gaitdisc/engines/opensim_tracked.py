@@ -75,11 +75,10 @@ class _Tracked:
         self.osim, self.path, self.model = osim, path, osim.Model(path)
 
     def loaded(self, loads: Path, data: Path, actuators: Path | None, values: Any = ()) -> None:
-        osim, model = self.osim, self.model
-        self.files = loads, data, actuators
+        osim, model, self.files = self.osim, self.model, (loads, data, actuators)
         if actuators:
-            for one in osim.ForceSet(str(actuators)):
-                model.updForceSet().cloneAndAppend(one)
+            for actuator in osim.ForceSet(str(actuators)):
+                model.updForceSet().cloneAndAppend(actuator)
         model.finalizeConnections()
         external = osim.ExternalLoads(str(loads), True)
         external.setDataFileName(str(data))
@@ -92,11 +91,11 @@ class _Tracked:
         scalar = osim.ScalarActuator.safeDownCast
         self.given = {name: scalar(model.getActuators().get(name)) for name in self.actuators}
         self.by_hand = [scalar(model.getActuators().get(PORT + name)) for name in self.names]
-        for one in (*self.given.values(), *self.by_hand):
-            one.overrideActuation(self.state, True)
-            one.setOverrideActuation(self.state, 0.0)
-            if osim.PathActuator.safeDownCast(one) is not None:
-                one.setAppliesForce(self.state, False)  # pulls come in as moments: no path is followed for nothing
+        for actuator in (*self.given.values(), *self.by_hand):
+            actuator.overrideActuation(self.state, True)
+            actuator.setOverrideActuation(self.state, 0.0)
+            if osim.PathActuator.safeDownCast(actuator) is not None:
+                actuator.setAppliesForce(self.state, False)  # pulls come in as moments: no path is followed for nothing
         self.place: dict[str, int] = {}  # where the engine keeps each speed: its order is not the files'
         for name in self.free:
             self._speeds({name: 1.0})
@@ -109,27 +108,26 @@ class _Tracked:
         return other
 
     def _speeds(self, speeds: Mapping[str, float]) -> None:
-        for name, one in self.free.items():
-            one.setSpeedValue(self.state, float(speeds.get(name, 0.0)))
+        for name, coordinate in self.free.items():
+            coordinate.setSpeedValue(self.state, float(speeds.get(name, 0.0)))
 
     def described(self) -> dict[str, Any]:
-        osim, model = self.osim, self.model
-        base = []
+        osim, model, base = self.osim, self.model, list[str]()
         for joint in model.getJointSet():
             if joint.getParentFrame().findBaseFrame().getName() == "ground" and joint.numCoordinates() > 1:
                 base += [joint.get_coordinates(i).getName() for i in range(joint.numCoordinates())]
         zero = np.zeros((1, len(self.names)))
         still = self.demanded({}, [0.0], zero, zero, zero, False)[0]
         weight = model.getTotalMass(self.state) * np.linalg.norm([model.getGravity().get(i) for i in range(3)])
-        own = [k for k, name in enumerate(self.names) if name in base]
-        sliding = [k for k in own if self.free[self.names[k]].getMotionType() == TRANSLATIONAL]
+        base_indices = [k for k, name in enumerate(self.names) if name in base]
+        sliding = [k for k in base_indices if self.free[self.names[k]].getMotionType() == TRANSLATIONAL]
         upward = [k for k in sliding if abs(still[k]) > 0.9 * weight]
         return {
             "coordinates": [(name, self.free[name].getMotionType() == ROTATIONAL) for name in self.names],
             "actuators": self.actuators,
-            "base": own,
+            "base": base_indices,
             "vertical": upward[0] if upward and weight > 0 else -1,
-            "paths": [name for name, one in self.given.items() if osim.PathActuator.safeDownCast(one) is not None],
+            "paths": [name for name, force in self.given.items() if osim.PathActuator.safeDownCast(force) is not None],
             "mass_kg": model.getTotalMass(self.state),
             "masses": [(body.getName(), body.getMass()) for body in model.getBodySet() if body.getMass()],
         }
@@ -139,38 +137,38 @@ class _Tracked:
         wanted = self.osim.Vector(self.state.getNU(), 0.0)
         for name, value in a.items():
             wanted.set(self.place[name], float(value))
-        for name, own in slopes.items():
-            wanted.set(self.place[name], sum(slope * float(a.get(other, 0.0)) for other, slope in own.items()))
+        for name, leads in slopes.items():
+            wanted.set(self.place[name], sum(slope * float(a.get(other, 0.0)) for other, slope in leads.items()))
         whole = self.solver.solve(self.state, wanted).to_numpy()
-        found = np.array([whole[self.place[name]] for name in self.names])
-        for name, own in slopes.items():
-            for other, slope in own.items():
-                found[self.names.index(other)] += slope * whole[self.place[name]]
-        return found
+        moments = np.array([whole[self.place[name]] for name in self.names])
+        for name, leads in slopes.items():
+            for other, slope in leads.items():
+                moments[self.names.index(other)] += slope * whole[self.place[name]]
+        return moments
 
     def demanded(self, values: dict[str, float], time: Any, q: Any, v: Any, a: Any, loaded: bool) -> Any:
         if values:
             return self._with_values(values).demanded({}, time, q, v, a, loaded)
-        found = np.empty_like(q)
-        for one in self.loads:
-            one.setAppliesForce(self.state, loaded)
+        moments = np.empty_like(q)
+        for load in self.loads:
+            load.setAppliesForce(self.state, loaded)
         for k, t in enumerate(time):
             self.state.setTime(float(t))
             slopes = self.placed(q[k], v[k])
-            found[k] = self._solved(dict(zip(self.names, a[k], strict=True)), slopes)
-        for one in self.loads:
-            one.setAppliesForce(self.state, True)
-        return found
+            moments[k] = self._solved(dict(zip(self.names, a[k], strict=True)), slopes)
+        for load in self.loads:
+            load.setAppliesForce(self.state, True)
+        return moments
 
     def arms(self, time: Any, q: Any, names: list[str]) -> Any:
-        osim, found = self.osim, np.zeros((len(q), len(names), len(self.names)))
+        osim, arms = self.osim, np.zeros((len(q), len(names), len(self.names)))
         paths, others, at = [], [], [""] * len(names)
         for number, name in enumerate(names):
             given = self.given.get(name)
             if given is None:  # a net moment, called after its coordinate
                 at[number] = name.rpartition("_")[0]
-            elif (own := osim.CoordinateActuator.safeDownCast(given)) is not None:
-                at[number] = own.getCoordinate().getName()
+            elif (motor := osim.CoordinateActuator.safeDownCast(given)) is not None:
+                at[number] = motor.getCoordinate().getName()
             elif (path := osim.PathActuator.safeDownCast(given)) is not None:
                 paths.append((number, path))
             else:
@@ -179,35 +177,35 @@ class _Tracked:
             self.state.setTime(float(t))
             slopes = self.placed(q[k], 0.0 * q[k])
             for column, name in enumerate(self.names):
-                with_it = {name: 1.0} | {other: own[name] for other, own in slopes.items() if name in own}
-                found[k, :, column] = [with_it.get(one, 0.0) for one in at]
+                with_it = {name: 1.0} | {other: leads[name] for other, leads in slopes.items() if name in leads}
+                arms[k, :, column] = [with_it.get(coordinate, 0.0) for coordinate in at]
                 self._speeds(with_it)
                 self.model.realizeVelocity(self.state)
                 for number, path in paths:
-                    found[k, number, column] = -path.getLengtheningSpeed(self.state)
+                    arms[k, number, column] = -path.getLengtheningSpeed(self.state)
             if others:
                 self._speeds({})
                 before = self._solved({}, slopes)
-                for number, one in others:
-                    one.setOverrideActuation(self.state, 1.0)
-                    found[k, number] = before - self._solved({}, slopes)
-                    one.setOverrideActuation(self.state, 0.0)
-        return found
+                for number, actuator in others:
+                    actuator.setOverrideActuation(self.state, 1.0)
+                    arms[k, number] = before - self._solved({}, slopes)
+                    actuator.setOverrideActuation(self.state, 0.0)
+        return arms
 
     def accelerations(self, values: dict[str, float], q: Any, v: Any, forces: Any) -> Any:
         if values:
             return self._with_values(values).accelerations({}, q, v, forces)
-        found = np.empty_like(q)
+        rates = np.empty_like(q)
         self.state.setTime(0.0)
         for k, force in enumerate(forces):
             self.placed(q[k], v[k])
-            for one, value in zip(self.by_hand, force, strict=True):
-                one.setOverrideActuation(self.state, float(value))
+            for actuator, value in zip(self.by_hand, force, strict=True):
+                actuator.setOverrideActuation(self.state, float(value))
             self.model.realizeAcceleration(self.state)
-            found[k] = [self.free[name].getAccelerationValue(self.state) for name in self.names]
-        for one in self.by_hand:
-            one.setOverrideActuation(self.state, 0.0)
-        return found
+            rates[k] = [self.free[name].getAccelerationValue(self.state) for name in self.names]
+        for actuator in self.by_hand:
+            actuator.setOverrideActuation(self.state, 0.0)
+        return rates
 
 
 if __name__ == "__main__":

@@ -29,7 +29,7 @@ class Ready:
         self.osim, self.model = osim, model
         for controller in model.getControllerSet():  # the controls of the question, and no others, drive it
             controller.setEnabled(False)
-        self.actuators = [one.getName() for one in self.model.getActuators()]
+        self.actuators = [actuator.getName() for actuator in self.model.getActuators()]
         self.numbers = _list_numbers(model, osim)
         for name, value in values.items():
             self.numbers[name][2](float(value))
@@ -46,7 +46,7 @@ class Ready:
         if profiles is not None:  # controls along time, linear between samples
             controller = osim.PrescribedController()
             lines = [*_follow(osim.PiecewiseLinearFunction, *profiles)]
-            ports = [PORT + one for one in free] if len(lines) > len(self.actuators) else []
+            ports = [PORT + coordinate for coordinate in free] if len(lines) > len(self.actuators) else []
             for name, line in zip([*self.actuators, *ports], lines, strict=True):
                 controller.addActuator(model.getActuators().get(name))
                 controller.prescribeControlForActuator(name, line)
@@ -57,16 +57,16 @@ class Ready:
                 every.get(name).setDefaultIsPrescribed(True)
         self.state = state = model.initSystem()
         self.free = [model.getCoordinateSet().get(name) for name in free]
-        self.dependent = [one.getName() for one in self.free if one.isDependent(state)]
+        self.dependent = [coordinate.getName() for coordinate in self.free if coordinate.isDependent(state)]
         self.activations, self.fibres, self.others = self._states_of_muscles()
 
     def _states_of_muscles(self) -> tuple[dict[int, int], list[int], list[str]]:
         """Place of each actuator's activation, and of the muscles' other states; actuators with yet other states."""
         activations, fibres, others = {}, [], []
         for number, name in enumerate(self.actuators):
-            one = self.model.getActuators().get(name)
-            paths = [one.getStateVariableNames().get(k) for k in range(one.getNumStateVariables())]
-            if paths and self.osim.Muscle.safeDownCast(one) is None:
+            actuator = self.model.getActuators().get(name)
+            paths = [actuator.getStateVariableNames().get(k) for k in range(actuator.getNumStateVariables())]
+            if paths and self.osim.Muscle.safeDownCast(actuator) is None:
                 others.append(name)
                 continue
             for path in paths:
@@ -83,17 +83,17 @@ class Ready:
     def placed(self, q: Any, v: Any) -> dict[str, dict[str, float]]:
         """Put a posture in; how far each coupled coordinate goes with each that leads it: follower, leader."""
         every, slopes = self.model.getCoordinateSet(), {}
-        for one, position, speed in zip(self.free, q, v, strict=True):
-            one.setValue(self.state, float(position), False)
-            one.setSpeedValue(self.state, float(speed))
+        for coordinate, position, speed in zip(self.free, q, v, strict=True):
+            coordinate.setValue(self.state, float(position), False)
+            coordinate.setSpeedValue(self.state, float(speed))
         for name, (others, function, scale) in self.couplers.items():
             leading = [every.get(other) for other in others]
-            where = self.osim.Vector.createFromMat(np.array([one.getValue(self.state) for one in leading]))
-            own = [scale * function.calcDerivative(self.osim.StdVectorInt([k]), where) for k in range(len(others))]
+            where = self.osim.Vector.createFromMat(np.array([q.getValue(self.state) for q in leading]))
+            gains = [scale * function.calcDerivative(self.osim.StdVectorInt([k]), where) for k in range(len(others))]
             every.get(name).setValue(self.state, scale * function.calcValue(where), False)
-            speeds = [one.getSpeedValue(self.state) for one in leading]
-            every.get(name).setSpeedValue(self.state, float(np.dot(own, speeds)))
-            slopes[name] = dict(zip(others, own, strict=True))
+            speeds = [coordinate.getSpeedValue(self.state) for coordinate in leading]
+            every.get(name).setSpeedValue(self.state, float(np.dot(gains, speeds)))
+            slopes[name] = dict(zip(others, gains, strict=True))
         return slopes
 
     def tense(self, q: Any, v: Any, u: Any, z: Any = None) -> None:
@@ -112,8 +112,8 @@ class Ready:
         self.model.realizeVelocity(self.state)
         self.model.setControls(self.state, self.osim.Vector.createFromMat(np.array(controls, float)))
         self.model.realizeAcceleration(self.state)
-        found = [one.getAccelerationValue(self.state) for one in self.free]
-        return [*found, *self.state.getZDot().to_numpy()[self.fibres]] if self.fibres else found
+        rates = [coordinate.getAccelerationValue(self.state) for coordinate in self.free]
+        return [*rates, *self.state.getZDot().to_numpy()[self.fibres]] if self.fibres else rates
 
 
 def _follow(kind: Callable[[], Any], time: Any, values: Any) -> Iterator[Any]:
@@ -127,35 +127,33 @@ def _follow(kind: Callable[[], Any], time: Any, values: Any) -> Iterator[Any]:
 
 def couplers(model: Any, osim: Any) -> dict[str, tuple[list[str], Any, float]]:
     """Coordinates that follow others by a function: these others, the function, and its scale."""
-    found = {}
+    followers = {}
     for constraint in model.getConstraintSet():
-        one = osim.CoordinateCouplerConstraint.safeDownCast(constraint)
-        if one is not None and one.get_isEnforced():
-            names = one.getIndependentCoordinateNames()
+        coupler = osim.CoordinateCouplerConstraint.safeDownCast(constraint)
+        if coupler is not None and coupler.get_isEnforced():
+            names, scale = coupler.getIndependentCoordinateNames(), coupler.getPropertyByName("scale_factor").toString()
             leading = [names.get(number) for number in range(names.getSize())]
-            scale = float(one.getPropertyByName("scale_factor").toString())
-            found[one.getDependentCoordinateName()] = leading, one.getFunction(), scale
-    return found
+            followers[coupler.getDependentCoordinateName()] = leading, coupler.getFunction(), float(scale)
+    return followers
 
 
 def _list_numbers(model: Any, osim: Any) -> dict[str, tuple[float, str, Callable[[float], None]]]:
     """Every number of a model that may be changed by name: its value, its unit, and what puts another in."""
-    found = dict[str, tuple[float, str, Callable[[float], None]]]()
-    gravity = model.getGravity().to_numpy().copy()
+    numbers, gravity = dict[str, tuple[float, str, Callable[[float], None]]](), model.getGravity().to_numpy().copy()
     size = float(np.linalg.norm(gravity))
     if size:
-        found["gravity"] = size, "m/s^2", lambda value: model.setGravity(osim.Vec3(*(gravity * value / size)))
+        numbers["gravity"] = size, "m/s^2", lambda value: model.setGravity(osim.Vec3(*(gravity * value / size)))
     for body in model.getBodySet():
         if body.getMass():
-            found[f"{body.getName()}_mass"] = body.getMass(), "kg", partial(_set_mass, osim, body)
+            numbers[f"{body.getName()}_mass"] = body.getMass(), "kg", partial(_set_mass, osim, body)
     for actuator in model.getActuators():
         name = actuator.getName()
-        own, muscle = osim.CoordinateActuator.safeDownCast(actuator), osim.Muscle.safeDownCast(actuator)
-        if own is not None:
-            found[f"{name}_optimal_force"] = own.getOptimalForce(), "N m", own.setOptimalForce
+        motor, muscle = osim.CoordinateActuator.safeDownCast(actuator), osim.Muscle.safeDownCast(actuator)
+        if motor is not None:
+            numbers[f"{name}_optimal_force"] = motor.getOptimalForce(), "N m", motor.setOptimalForce
         if muscle is not None:
-            found[f"{name}_max_isometric_force"] = muscle.getMaxIsometricForce(), "N", muscle.setMaxIsometricForce
-    return found
+            numbers[f"{name}_max_isometric_force"] = muscle.getMaxIsometricForce(), "N", muscle.setMaxIsometricForce
+    return numbers
 
 
 def _set_mass(osim: Any, body: Any, value: float) -> None:
@@ -180,84 +178,85 @@ class _Answers:
         return Ready(self.osim, self.osim.Model(self.path), values, profiles, motion)
 
     def described(self) -> dict[str, Any]:
-        one = self.with_values({})
-        actuators = one.model.getActuators()
-        controls = [(name, actuators.get(name).getConcreteClassName()) for name in one.actuators]
-        free = ((each, (each.getRangeMin(), each.getRangeMax())) for each in one.free)
+        ready = self.with_values({})
+        actuators = ready.model.getActuators()
+        controls = [(name, actuators.get(name).getConcreteClassName()) for name in ready.actuators]
+        free = ((each, (each.getRangeMin(), each.getRangeMax())) for each in ready.free)
         coordinates = [  # a range that is a default binds nothing
-            (each.getName(), each.getMotionType() == ROTATIONAL, *(own if each.getDefaultClamped() else UNBOUND))
-            for each, own in free
+            (each.getName(), each.getMotionType() == ROTATIONAL, *(limits if each.getDefaultClamped() else UNBOUND))
+            for each, limits in free
         ]
-        numbers = [(name, value, unit, self._moves(name, value)) for name, (value, unit, _) in one.numbers.items()]
-        described = {"coordinates": coordinates, "controls": controls, "parameters": numbers, "locked": one.locked}
-        muscles = bool(one.activations or one.fibres)
-        return described | {"muscles": muscles, "others": one.others, "dependent": one.dependent}
+        numbers = [(name, value, unit, self._moves(name, value)) for name, (value, unit, _) in ready.numbers.items()]
+        described = {"coordinates": coordinates, "controls": controls, "parameters": numbers, "locked": ready.locked}
+        muscles = bool(ready.activations or ready.fibres)
+        return described | {"muscles": muscles, "others": ready.others, "dependent": ready.dependent}
 
     def _moves(self, name: str, value: float) -> bool:
         """Whether another value changes an acceleration in one posture."""
-        found = []
+        rates = []
         for values in ({}, {name: 1.1 * value}):
-            one = self.with_values(values)
-            n, controls = len(one.free), [0.1] * len(one.actuators)
-            one.tense([each.getDefaultValue() + 0.1 for each in one.free], [0.5] * n, controls)
-            found.append(one.rates([*controls, *[0.0] * n])[:n])
-        return not np.allclose(*found, rtol=1e-9, atol=0.0)
+            ready = self.with_values(values)
+            n, controls = len(ready.free), [0.1] * len(ready.actuators)
+            ready.tense([each.getDefaultValue() + 0.1 for each in ready.free], [0.5] * n, controls)
+            rates.append(ready.rates([*controls, *[0.0] * n])[:n])
+        return not np.allclose(*rates, rtol=1e-9, atol=0.0)
 
     def rates(self, q: Any, v: Any, u: Any, z: Any, values: dict[str, float], forces: Any) -> Any:
         """Accelerations, then fibres' speeds (point, ...); NaN where lengths are sought and no equilibrium exists."""
-        one, without = self.with_values(values), (RuntimeError,) if z is None else ()
-        found = np.full((len(q), q.shape[1] + len(one.fibres)), np.nan)
+        ready, without = self.with_values(values), (RuntimeError,) if z is None else ()
+        rates = np.full((len(q), q.shape[1] + len(ready.fibres)), np.nan)
         for point in range(len(q)):
             with suppress(*without):
-                one.tense(q[point], v[point], u[point], None if z is None else z[point])
-                found[point] = one.rates([*u[point], *forces[point]])
-        return found
+                ready.tense(q[point], v[point], u[point], None if z is None else z[point])
+                rates[point] = ready.rates([*u[point], *forces[point]])
+        return rates
 
     def equilibria(self, q: Any, u: Any) -> Any:
-        """Lengths of fibres at rest (point, fibre)."""
-        one = self.with_values({})
-        found = np.empty((len(q), len(one.fibres)))
+        """Lengths of fibres at rest (point, fibre); NaN where no equilibrium exists."""
+        ready = self.with_values({})
+        lengths = np.full((len(q), len(ready.fibres)), np.nan)
         for point in range(len(q)):
-            one.tense(q[point], 0.0 * q[point], u[point])
-            found[point] = one.state.getZ().to_numpy()[one.fibres]
-        return found
+            with suppress(RuntimeError):
+                ready.tense(q[point], 0.0 * q[point], u[point])
+                lengths[point] = ready.state.getZ().to_numpy()[ready.fibres]
+        return lengths
 
     def along(self, q: Any, v: Any, controls: Any, rate: float) -> Any:
         """Activations in the place of excitations, and lengths of fibres, along a motion that sets out from rest."""
-        time = np.arange(len(q)) / rate
-        early = BEFORE * np.arange(-STEPS, 0)[:, None] / STEPS
+        time, early = np.arange(len(q)) / rate, BEFORE * np.arange(-STEPS, 0)[:, None] / STEPS
         whole = np.concatenate([q[0] + v[0] * (early + early**2 / (2 * BEFORE)), q])
         motion = np.concatenate([early[:, 0], time]), whole
-        one = self.fresh({}, (time, controls), motion)
-        one.state.setTime(-BEFORE)
-        one.tense(whole[0], 0.0 * whole[0], controls[0])
-        manager = self.osim.Manager(one.model)
+        ready = self.fresh({}, (time, controls), motion)
+        ready.state.setTime(-BEFORE)
+        ready.tense(whole[0], 0.0 * whole[0], controls[0])
+        manager = self.osim.Manager(ready.model)
         manager.setIntegratorAccuracy(ACCURACY[True])
-        manager.initialize(one.state)
-        found = np.array([manager.integrate(float(t)).getZ().to_numpy().copy() for t in time])
+        manager.initialize(ready.state)
+        states = np.array([manager.integrate(float(t)).getZ().to_numpy().copy() for t in time])
         u = np.array(controls, float)
-        for number, place in one.activations.items():
-            u[:, number] = found[:, place]
-        return u, found[:, one.fibres]
+        for number, place in ready.activations.items():
+            u[:, number] = states[:, place]
+        return u, states[:, ready.fibres]
 
     def run(self, q: Any, v: Any, u: Any, z: Any, controls: Any, rate: float) -> Any:
-        found = np.empty((*controls.shape[:2], 2 * q.shape[1]))
-        ready: dict[bytes, Ready] = {}
-        time = np.arange(controls.shape[1]) / rate
+        states = np.full((*controls.shape[:2], 2 * q.shape[1]), np.inf)
+        ready, time = dict[bytes, Ready](), np.arange(controls.shape[1]) / rate
         for run, driven in enumerate(controls):
-            one = ready.get(driven.tobytes()) or self.fresh({}, (time, driven))
-            ready[driven.tobytes()] = one
-            one.state.setTime(0.0)
-            one.tense(q[run], v[run], u[run], None if z is None else z[run])
-            manager = self.osim.Manager(one.model)
-            manager.setIntegratorAccuracy(ACCURACY[bool(one.activations)])
-            manager.initialize(one.state)
-            found[run, 0] = [*q[run], *v[run]]
+            if z is not None and np.isnan(z[run]).any():  # muscles without an equilibrium: no run begins there
+                continue
+            prepared = ready.get(driven.tobytes()) or self.fresh({}, (time, driven))
+            ready[driven.tobytes()] = prepared
+            prepared.state.setTime(0.0)
+            prepared.tense(q[run], v[run], u[run], None if z is None else z[run])
+            manager = self.osim.Manager(prepared.model)
+            manager.setIntegratorAccuracy(ACCURACY[bool(prepared.activations)])
+            manager.initialize(prepared.state)
+            states[run, 0] = [*q[run], *v[run]]
             for sample in range(1, len(time)):
                 state = manager.integrate(float(time[sample]))
-                reached = [(each.getValue(state), each.getSpeedValue(state)) for each in one.free]
-                found[run, sample] = np.transpose(reached).ravel()
-        return found
+                reached = [(each.getValue(state), each.getSpeedValue(state)) for each in prepared.free]
+                states[run, sample] = np.transpose(reached).ravel()
+        return states
 
 
 def serve(questions: BinaryIO, answers: BinaryIO, path: str, answering: Callable[[Any, str], Any] = _Answers) -> None:

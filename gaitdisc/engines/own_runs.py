@@ -115,15 +115,15 @@ class OwnRuns:
 
     def with_floor(self, hidden: list[float]) -> OwnRuns:
         """Return runs with the noise that a search saw (channel,), where these do not leave less."""
-        own = np.inf if self.memory is None else np.sqrt(np.nanmean(self.variances(self.after)[1], axis=(0, 1)))
-        return replace(self, floor=np.fmax(np.fmin(self.floor, own), np.fmin(hidden, root_mean_square(self.after))))
+        within = np.inf if self.memory is None else np.sqrt(np.nanmean(self.variances(self.after)[1], axis=(0, 1)))
+        return replace(self, floor=np.fmax(np.fmin(self.floor, within), np.fmin(hidden, root_mean_square(self.after))))
 
     @property
-    def said(self) -> str:
+    def sentence(self) -> str:
         """One sentence."""
         sizes = zip(self.units.items(), *map(root_mean_square, (self.before, self.after)), strict=True)
-        found = "; ".join(f"{name} {old:.3g} and {new:.3g} {unit}" for (name, unit), old, new in sizes)
-        return f"rms errors without and with the effects, in {len(self.before)} runs by {self.engine}: {found}"
+        errors = "; ".join(f"{name} {old:.3g} and {new:.3g} {unit}" for (name, unit), old, new in sizes)
+        return f"rms errors without and with the effects, in {len(self.before)} runs by {self.engine}: {errors}"
 
 
 def root_mean_square(left: Values) -> Values:
@@ -143,6 +143,29 @@ def spread_stretches(measured: Measured, period: float, fewer: bool = False, mar
     some = np.unique(np.linspace(0, len(every) - 1, FEWER if fewer else MOST_RUNS).round().astype(int))
     trial, first = np.array(every)[some].T
     return Stretches(trial, first, length + 2 * margin, period, margin)
+
+
+def cut_stretches(
+    model: Driven, measured: Measured, states: Values, period: float, margin: int, factor: float, most: float = np.inf
+) -> Stretches:
+    """Runs so short that no small change of a start grows by a factor: beyond, the misfit has many minima.
+
+    Source: Voss, Timmer & Kurths 2004, Int J Bifurcation Chaos 14, 1905. Not of fibres, whose runs take long.
+    """
+    engine, least = model.engine, most
+    at = spread_stretches(measured, min(period, (most - 2 * margin) / PERIODS), engine.fibres, margin)
+    steps = NUDGE * np.maximum(states.std(axis=(0, 1)), NUDGE)
+    changes = np.vstack([0 * steps, np.diag(steps)])
+    for trial, first in () if engine.fibres else zip(at.trial, at.first, strict=True):
+        motion = compute_motion(engine, measured.drive, states, trial).at(np.full(len(changes), first))
+        start = engine.near(motion, *np.split(states[trial, first] + changes, 2, axis=1))
+        driven = np.repeat(model.controls[None, trial, first : first + at.length], len(changes), axis=0)
+        run = engine.run(start, driven, measured.rate)
+        grown = np.nan_to_num((run[1:] - run[0]) / steps, nan=1e9, posinf=1e9, neginf=1e9)
+        least = min([least, *np.flatnonzero(np.linalg.norm(grown, 2, axis=(0, 2)) > factor)[:1]])
+    if least < most:
+        return cut_stretches(model, measured, states, period, margin, factor, least)
+    return replace(at, period=period)
 
 
 def trial_called(measured: Measured, name: str) -> int:
@@ -165,13 +188,12 @@ def residual_by(
     recorded = {trial: compute_motion(engine, drive, states, trial) for trial in np.unique(at.trial)}
     plain, expressions = replace(model.mapping, model=""), dict(model.mapping.observations)
     seen_as = [expressions[name] for name in measured.channels]
-    size = np.nanstd(measured.observed, axis=(0, 1))
-    found = np.full((len(at.trial), at.length, len(size)), np.nan)
-    said = time.monotonic()
+    size, reported = np.nanstd(measured.observed, axis=(0, 1)), time.monotonic()
+    residual = np.full((len(at.trial), at.length, len(size)), np.nan)
     for row, (trial, first) in enumerate(zip(at.trial, at.first, strict=True)):
-        if time.monotonic() - said > SILENT_S:
+        if time.monotonic() - reported > SILENT_S:
             model.progress(f"{row} of {len(at.trial)} runs by {engine.called} done")
-            said = time.monotonic()
+            reported = time.monotonic()
 
         def left_from(starts: Values, samples: int, trial: int = trial, first: int = first):
             some = slice(first, first + samples)
@@ -184,23 +206,23 @@ def residual_by(
             push = None if model.forces is None else np.repeat(model.forces[None, trial, some], len(starts), axis=0)
             run = engine.run(begun, driven, measured.rate, push)
             points = [Points(t, x, u, rate=measured.rate) for x, u in zip(run, driven, strict=True)]
-            simulated = np.stack([evaluate_many(plain, seen_as, one).T for one in points])
+            simulated = np.stack([evaluate_many(plain, seen_as, run_points).T for run_points in points])
             if samples < at.length:
                 return (seen - simulated) / size
             left = (seen - model.recorded(simulated, 1)) / size
             left[:, : at.margin], left[:, samples - at.margin :] = np.nan, np.nan
             return left
 
-        own = len(engine.pushes.machine.states) - 2 * n if engine.pushes else 0
-        known, left = near.get(row) if near else None, found[row]
-        start = np.append(states[trial, first], np.zeros(len(lags) + own)) if known is None else known
+        n_pushed = len(engine.pushes.machine.states) - 2 * n if engine.pushes else 0
+        known, left = near.get(row) if near else None, residual[row]
+        start = np.append(states[trial, first], np.zeros(len(lags) + n_pushed)) if known is None else known
         for share in SHARES if known is None else SHARES[-1:]:
             samples = max(int(share * at.length), min(16, at.length))
             start, left = _find_start(lambda starts, samples=samples: left_from(starts, samples), start)
-        found[row] = left * size
+        residual[row] = left * size
         if near is not None:
             near[row] = start
-    return found
+    return residual
 
 
 def _find_start(left_from: Callable[[Values], Values], start: Values) -> tuple[Values, Values]:

@@ -53,7 +53,7 @@ def draft_tracked(
 def check_loads(tracked: Tracked) -> None:
     """Refuse forces on a body that the model lacks, and columns that their file lacks."""
     loads, data = tracked.loads
-    bodies = [one.get("name", "") for one in read_xml(tracked.model).iter("Body")]
+    bodies = [body.get("name", "") for body in read_xml(tracked.model).iter("Body")]
     labels = parse_header(read_raw(data).lines(), data.name).labels
     for force in read_xml(loads).iter("ExternalForce"):
         body = (force.findtext("applied_to_body") or "").strip()
@@ -98,16 +98,16 @@ def read_tracked_motion(
             "Run OpenSim's inverse kinematics on the markers first, with this model, and give its .mot.",
         )
     time, q = _coordinates(kinematics, coordinates, "")
-    for k, one in enumerate(coordinates):
-        largest, limit = float(np.nanmax(np.abs(q[:, k]))), MOST_RAD if one.unit == "rad" else MOST_M
+    for k, coordinate in enumerate(coordinates):
+        largest, limit = float(np.nanmax(np.abs(q[:, k]))), MOST_RAD if coordinate.unit == "rad" else MOST_M
         if largest > limit:
             raise SchemaError(
-                f"coordinate {one.called!r} must stay within {limit:.3g} {one.unit}",
-                f"{kinematics.name} has {largest:.4g} {one.unit}, which may be "
-                f"{'degrees' if one.unit == 'rad' else 'millimetres'}",
-                "Write inDegrees=yes in the header of the file." if one.unit == "rad" else "Export metres.",
+                f"coordinate {coordinate.called!r} must stay within {limit:.3g} {coordinate.unit}",
+                f"{kinematics.name} has {largest:.4g} {coordinate.unit}, which may be "
+                f"{'degrees' if coordinate.unit == 'rad' else 'millimetres'}",
+                "Write inDegrees=yes in the header of the file." if coordinate.unit == "rad" else "Export metres.",
             )
-    turning = [k for k, one in enumerate(coordinates) if one.unit == "rad"]
+    turning = [k for k, coordinate in enumerate(coordinates) if coordinate.unit == "rad"]
     moved = np.ptp(q[:, turning], axis=0) if turning else np.ones(1)
     if moved.max() < np.radians(2.0):
         raise SchemaError(
@@ -116,30 +116,29 @@ def read_tracked_motion(
             "in radians",
             "Write inDegrees=no in the header of the file.",
         )
-    named = [(one, word) for one, word in ((tracked.speeds, "/speed"), (tracked.accelerations, "/accel")) if one]
-    rates = [_coordinates(one, coordinates, word) for one, word in named if len(named) == 2]
+    named = [(file, word) for file, word in ((tracked.speeds, "/speed"), (tracked.accelerations, "/accel")) if file]
+    rates = [_coordinates(file, coordinates, word) for file, word in named if len(named) == 2]
     names, forces = actuator_forces(tracked, known)
-    spans = {kinematics: time, **{one: at for (one, _), (at, _) in zip(named, rates, strict=False)}}
+    spans = {kinematics: time, **{file: at for (file, _), (at, _) in zip(named, rates, strict=False)}}
     spans[tracked.loads[1]] = _table(tracked.loads[1])[1][:, 0]
     if tracked.forces is not None:
         spans[tracked.forces] = forces[:, 0]
     inside = _select_shared(spans, time, tracked)
 
-    def on_time(own: Values, values: Values) -> Values:
-        return np.column_stack([np.interp(time, own, column) for column in values.T])
+    def on_time(times: Values, values: Values) -> Values:
+        return np.column_stack([np.interp(time, times, column) for column in values.T])
 
     if rates:
-        v, a = [on_time(*one) for one in rates]
+        v, a = [on_time(*rate) for rate in rates]
     else:
-        channels = tuple(Channel(one.called, "signal", one.unit) for one in coordinates)
+        channels = tuple(Channel(coordinate.called, "signal", coordinate.unit) for coordinate in coordinates)
         smooth = low_pass(Recording(time, q, channels), tracked.lowpass_hz)
         q, edge = np.array(smooth.values), int(EDGE_PERIODS * smooth.rate_hz / tracked.lowpass_hz)
         q[:edge], q[len(q) - edge :] = np.nan, np.nan
         v, a = derivative(q, smooth.rate_hz, 1), derivative(q, smooth.rate_hz, 2)
     pulls = on_time(forces[:, 0], forces[:, 1:]) if names else np.zeros((len(time), 0))
     inside &= np.isfinite(q).all(axis=1) & np.isfinite(v).all(axis=1) & np.isfinite(a).all(axis=1)
-    kept = np.flatnonzero(inside)
-    kept = np.arange(kept[0], kept[-1] + 1)
+    kept = np.arange(inside.argmax(), len(inside) - inside[::-1].argmax())
     forces, span = pulls[kept], (float(time[0]), float(time[-1]))
     return TrackedMotion(
         time[kept], q[kept], v[kept], a[kept], actuators=names, forces=forces, differentiated=not rates, span=span
@@ -149,8 +148,7 @@ def read_tracked_motion(
 def _coordinates(path: Path, coordinates: tuple[Coordinate, ...], word: str) -> tuple[Values, Values]:
     """Times and free coordinates (sample, coordinate) of a file, in radians and metres."""
     streams = list(read_storage(path).streams.values())
-    turning = {one.called for one in coordinates if one.unit == "rad"}
-    columns = {}
+    turning, columns = {coordinate.called for coordinate in coordinates if coordinate.unit == "rad"}, {}
     for stream in streams:
         for k, channel in enumerate(stream.channels):
             name, unit = channel.name.removesuffix(word), channel.unit
@@ -164,17 +162,17 @@ def _coordinates(path: Path, coordinates: tuple[Coordinate, ...], word: str) -> 
                     )
                 unit = "deg" if degrees else "rad"
             columns[name] = stream.values[:, k] * (np.pi / 180 if unit.startswith("deg") else 1.0)
-    for one in coordinates:
-        if one.called not in columns:
-            near = nearest_word(one.called, tuple(columns))
+    for coordinate in coordinates:
+        if coordinate.called not in columns:
+            near = nearest_word(coordinate.called, tuple(columns))
             raise ChannelError(
                 "every free coordinate of the model must be measured",
-                f"{path.name} has no column {one.called!r}",
+                f"{path.name} has no column {coordinate.called!r}",
                 f"Did you mean {near!r}? Rename this column, or lock the coordinate in the model."
                 if near
                 else "Add this column, or lock the coordinate in the model.",
             )
-    return streams[0].time, np.column_stack([columns[one.called] for one in coordinates])
+    return streams[0].time, np.column_stack([columns[coordinate.called] for coordinate in coordinates])
 
 
 def actuator_forces(tracked: Tracked, known: tuple[str, ...]) -> tuple[tuple[str, ...], Values]:
@@ -188,12 +186,12 @@ def actuator_forces(tracked: Tracked, known: tuple[str, ...]) -> tuple[tuple[str
     labels, values = _table(path)
     names = [label.rpartition("/")[2] for label in labels]
     recorded = [
-        f"{(one.findtext('applied_to_body') or '').strip().rpartition('/')[2]}_{one.get('name')}_"
-        for one in read_xml(tracked.loads[0]).iter("ExternalForce")
+        f"{(force.findtext('applied_to_body') or '').strip().rpartition('/')[2]}_{force.get('name')}_"
+        for force in read_xml(tracked.loads[0]).iter("ExternalForce")
     ]
     model = read_xml(tracked.model)
-    passive = [one.get("name", "") for one in model.iterfind(".//ForceSet/objects/*") if one.tag.endswith(PASSIVE)]
-    net = {f"{one.get('name')}_{word}" for one in model.iter("Coordinate") for word in ("moment", "force")}
+    passive = [part.get("name", "") for part in model.iterfind(".//ForceSet/objects/*") if part.tag.endswith(PASSIVE)]
+    net = {f"{element.get('name')}_{word}" for element in model.iter("Coordinate") for word in ("moment", "force")}
     again = tuple(name for name in (*recorded, *passive) if name)  # the model or the loads' file gives these anyway
     kept = [0, *(k for k, name in enumerate(names) if k and (name in net or not name.startswith(again)))]
     for name in (names[k] for k in kept[1:]):
@@ -214,7 +212,7 @@ def actuator_forces(tracked: Tracked, known: tuple[str, ...]) -> tuple[tuple[str
         )
     values = values[:, kept]
     if not np.isfinite(values).all():
-        row, column = (int(one[0]) for one in np.nonzero(~np.isfinite(values)))
+        row, column = (int(indices[0]) for indices in np.nonzero(~np.isfinite(values)))
         raise ReadError(
             "forces must have no gap", f"{path.name}: row {row + 1} of {names[kept[column]]!r} is empty", "Fill it."
         )
@@ -223,8 +221,8 @@ def actuator_forces(tracked: Tracked, known: tuple[str, ...]) -> tuple[tuple[str
 
 def _select_shared(spans: dict[Path, Values], time: Values, tracked: Tracked) -> NDArray[np.bool_]:
     """Samples of a time base that all files cover and that are to be tracked."""
-    first = max(spans, key=lambda one: spans[one][0])
-    last = min(spans, key=lambda one: spans[one][-1])
+    first = max(spans, key=lambda file: spans[file][0])
+    last = min(spans, key=lambda file: spans[file][-1])
     begin, end = float(spans[first][0]), float(spans[last][-1])
     if end - begin < SHORTEST_S:
         raise SamplingError(

@@ -38,7 +38,7 @@ class Tracked:
     def named(self) -> dict[str, Path]:
         """What the table names, by the words there."""
         some = (self.loads[0], self.forces, self.actuators, self.speeds, self.accelerations)
-        return {name: one for name, one in zip(FILES, some, strict=True) if one is not None}
+        return {name: file for name, file in zip(FILES, some, strict=True) if file is not None}
 
     @property
     def files(self) -> tuple[Path, ...]:

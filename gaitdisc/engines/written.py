@@ -49,10 +49,9 @@ def write_model(engine: Engine, augmented: Simulation, native: bool = True) -> W
     native: whether effects and limits are written at all; else each acts so
     """
     text, notes, absent, current = engine.path.read_text(encoding="utf-8"), list[str](), list[str](), engine
-    forces, by_hand = (), ()
-    values, held = dict[str, float](), dict[str, float]()
-    before = {one.name: one.value for one in engine.parameters}
-    own = {state.name for state in augmented.states[2 * len(engine.coordinates) :]}
+    forces, by_hand, values, held = (), (), dict[str, float](), dict[str, float]()
+    before = {parameter.name: parameter.value for parameter in engine.parameters}
+    added = {state.name for state in augmented.states[2 * len(engine.coordinates) :]}
     prescribed = engine.fibres or any("delay(" in term.term for term in augmented.effects)
     changes: list[tuple[str, Callable[[str], str | None], tuple[Term, ...], dict[str, float]]] = [
         (f"{name} = {value:.6g}", partial(engine.text_with_value, name=name, value=value), (), {name: value})
@@ -66,15 +65,15 @@ def write_model(engine: Engine, augmented: Simulation, native: bool = True) -> W
         wanted = (replace(augmented, definitions=()), (*forces, *more_forces), values | more_values)
         deviation, read = _deviation(engine, tried, *wanted)
         if tried is None or read is None or deviation > SAME:
-            said = "cannot be expressed in the model's own file"
+            outcome = "cannot be expressed in the model's own file"
             if tried is not None:
-                said = "is refused by the engine in the model's own form"
+                outcome = "is refused by the engine in the model's own form"
             if read is not None:
-                said = f"would change the accelerations by a fraction of {deviation:.1g} in the model's own form"
-            used = {name for one in more_forces for name in names(parse(one.term))}
-            notes.append(f"{what} {said}: only {'discovery.json' if used & own else 'augmented.toml'} contains it")
-            runs = not prescribed or not (used & own or getattr(engine, "balls", ()))
-            if runs and any(one.kind == "port" for one in more_forces):
+                outcome = f"would change the accelerations by a fraction of {deviation:.1g} in the model's own form"
+            used = {name for force in more_forces for name in names(parse(force.term))}
+            notes.append(f"{what} {outcome}: only {'discovery.json' if used & added else 'augmented.toml'} contains it")
+            runs = not prescribed or not (used & added or getattr(engine, "balls", ()))
+            if runs and any(force.kind == "port" for force in more_forces):
                 by_hand = (*by_hand, *more_forces)
             elif more_values and hasattr(engine, "with_values"):
                 held |= more_values
@@ -82,26 +81,26 @@ def write_model(engine: Engine, augmented: Simulation, native: bool = True) -> W
                 absent.append(what)
             continue
         text, current, forces, values = tried, read, *wanted[1:]
-        said = "is written into the model; the accelerations agree with those of the expression to a fraction of"
-        notes.append(f"{what} {said} {deviation:.1g}")
+        outcome = "is written into the model; the accelerations agree with those of the expression to a fraction of"
+        notes.append(f"{what} {outcome} {deviation:.1g}")
     definitions = augmented.definitions
     for name, expression in definitions:
-        said = "cannot be expressed in the model's file: only augmented.toml contains it"
+        outcome = "cannot be expressed in the model's file: only augmented.toml contains it"
         read = _ranged(current, augmented, text, name) if native and isinstance(current, MujocoModel) else None
         if read is not None:
-            definitions = tuple(one for one in definitions if one[0] != name)
+            definitions = tuple(definition for definition in definitions if definition[0] != name)
             text, current = read.path.read_text(encoding="utf-8"), read
-            said = f"is written into the model as the range of that control{_of_force(augmented, expression)}"
-        notes.append(f"{name.removeprefix(REPLACED)}, as {expression}, {said}")
+            outcome = f"is written into the model as the range of that control{_of_force(augmented, expression)}"
+        notes.append(f"{name.removeprefix(REPLACED)}, as {expression}, {outcome}")
     # the controls of a run are as recorded: none follows from the motion
-    absent += [name.removeprefix(REPLACED) for name, one in definitions if _of_force(augmented, one)]
+    absent += [name.removeprefix(REPLACED) for name, expression in definitions if _of_force(augmented, expression)]
     if text == engine.path.read_text(encoding="utf-8"):
         notes.append(f"the written model is the same as {engine.path.name}")
     current = getattr(current, "with_values", lambda _: current)(held)
     if by_hand and not prescribed:
         n, current = len(engine.coordinates), copy(engine) if current is engine else current
-        acting = {one.speed: [f"({by.term})" for by in by_hand if by.place == one.port] for one in engine.coordinates}
-        rates = ((one.name, " + ".join(acting.get(one.name, ())) or "0") for one in augmented.states[: 2 * n])
+        acting = {q.speed: [f"({by.term})" for by in by_hand if by.place == q.port] for q in engine.coordinates}
+        rates = ((state.name, " + ".join(acting.get(state.name, ())) or "0") for state in augmented.states[: 2 * n])
         lines = (*rates, *augmented.equations[2 * n :])
         parts = augmented.states, augmented.inputs, augmented.parameters
         current.pushes = Pushes(compile_simulation(Simulation("pushes", *parts, equations=lines)), n)
@@ -113,7 +112,7 @@ def whole_model(path: Path | str) -> tuple[Simulation, Engine]:
     mapping, engine = read_mapping(path)
     written = write_model(engine, mapping)
     others = (f"{name} = {text}" for name, text in mapping.definitions if not name.startswith(REPLACED))
-    absent = (*written.absent, *(f"{one.name} at {one.place}" for one in written.along), *others)
+    absent = (*written.absent, *(f"{force.name} at {force.place}" for force in written.along), *others)
     if absent:
         raise SchemaError(
             f"{engine.called} can run only what the model's own file contains",
@@ -125,7 +124,7 @@ def whole_model(path: Path | str) -> tuple[Simulation, Engine]:
 
 def _adding(engine: Engine, augmented: Simulation, term: Term, text: str) -> str | None:
     """Text with a term in the model's own form."""
-    number = next((k for k, one in enumerate(engine.coordinates) if one.port == term.place), -1)
+    number = next((k for k, coordinate in enumerate(engine.coordinates) if coordinate.port == term.place), -1)
 
     def at(coordinate: float, speed: float) -> float:
         x = np.zeros((1, len(augmented.states)))
@@ -138,12 +137,11 @@ def _adding(engine: Engine, augmented: Simulation, term: Term, text: str) -> str
 
 def _ranged(engine: MujocoModel, augmented: Simulation, text: str, name: str) -> Engine | None:
     """Model of a text with a control's definition as its range; None where it is not the same."""
-    control, controls = name.removeprefix(REPLACED), [one.name for one in engine.controls]
+    control, controls = name.removeprefix(REPLACED), [control.name for control in engine.controls]
     number, probes = controls.index(control), FAR * np.linspace(-1, 1, PROBED) ** 3  # densest where limits are
     u, still = np.tile(probes[:, None], len(controls)), np.zeros((PROBED, len(engine.coordinates)))
     clipped = replace_inputs(augmented, probes, u, PROBED_HZ)
-    low, high = clipped[[0, -1], number].tolist()
-    expression = dict(augmented.definitions)[name]
+    (low, high), expression = clipped[[0, -1], number].tolist(), dict(augmented.definitions)[name]
     if control in engine.servos and _of_force(augmented, expression):
         gain, constant, _ = engine.servos[control]
         low, high = sorted((gain * low + constant, gain * high + constant))
@@ -155,23 +153,23 @@ def _ranged(engine: MujocoModel, augmented: Simulation, text: str, name: str) ->
     if tried is None:
         return None
     read = load_beside(engine.path, tried)
-    acting, wanted = (one.along(still, still, each, PROBED_HZ).u for one, each in ((read, u), (engine, clipped)))
+    acting, wanted = (model.along(still, still, each, PROBED_HZ).u for model, each in ((read, u), (engine, clipped)))
     return read if np.array_equal(acting[:, number], wanted[:, number]) else None
 
 
 def _of_force(augmented: Simulation, expression: str) -> str:
     """What is limited of a control beside itself, by whether its expression has states."""
-    return "" if {one.name for one in augmented.states}.isdisjoint(names(parse(expression))) else "'s force"
+    return "" if {state.name for state in augmented.states}.isdisjoint(names(parse(expression))) else "'s force"
 
 
 def forces_at(engine: Engine, augmented: Simulation, terms: tuple[Term, ...], points: Points) -> Values:
     """Force of terms on each coordinate (point, coordinate); infinite where points of no trial do not determine it."""
-    if not points.rate and any("delay(" in one.term or "t" in names(parse(one.term)) for one in terms):
+    if not points.rate and any("delay(" in term.term or "t" in names(parse(term.term)) for term in terms):
         return np.full((len(points.x), len(engine.coordinates)), np.inf)
     plain = replace(augmented, model="", effects=(), definitions=())
     forces = np.zeros((len(points.x), len(engine.coordinates)))
     for term in terms:
-        column = next(k for k, one in enumerate(engine.coordinates) if one.port == term.place)
+        column = next(k for k, coordinate in enumerate(engine.coordinates) if coordinate.port == term.place)
         forces[:, column] += evaluate(plain, term.term, points)
     return forces
 
@@ -183,7 +181,7 @@ def _deviation(
     if text is None:
         return np.inf, None
     rng, n = np.random.default_rng(0), len(engine.coordinates)
-    low, high = np.transpose([(max(one.low, -1.0), min(one.high, 1.0)) for one in engine.coordinates])
+    low, high = np.transpose([(max(q.low, -1.0), min(q.high, 1.0)) for q in engine.coordinates])
     q = rng.uniform(low, high, (STATES, n))
     v = rng.uniform(AT_SPEED, 4.0, (STATES, n)) * rng.choice([-1, 1], (STATES, n))
     at = Motion(q, v, rng.uniform(0, 1, (STATES, len(engine.controls))))

@@ -139,7 +139,7 @@ def test_the_true_model_meets_its_own_record_from_a_wrong_start(pendulum, tmp_pa
     before, after, pushed = (float(root_mean_square(one)[0]) for one in left)
     assert after < 1e-4 and pushed < 1e-4 and before > 0.5
     found = OwnRuns(left[0], left[1], at, "MuJoCo", units, np.array([1e-4]), begun[:1, 0])
-    assert says(found.said, "MuJoCo", "pivot") and not found.leave_mere_noise
+    assert says(found.sentence, "MuJoCo", "pivot") and not found.leave_mere_noise
 
 
 def test_no_sample_is_compared_in_two_runs_and_none_at_the_ends_of_a_filtered_one():
