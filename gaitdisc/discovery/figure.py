@@ -75,7 +75,10 @@ def pick_stretch(table: pd.DataFrame, channel: str) -> pd.DataFrame:
     one = table[table["trial"] == table["trial"].iloc[0]].reset_index(drop=True)
     gap = (one[f"{channel}_measured"] - one[f"{channel}_simulated"]).to_numpy() ** 2
     begin, end = typical_stretch(gap, min(SHOWN, len(one)))
-    return one.iloc[begin:end]
+    shown = one.iloc[begin:end]
+    step = shown["time"].diff()
+    interrupted = shown.loc[step > 1.5 * step.median(), ["time"]] - step.median() / 2  # no line across what is unknown
+    return pd.concat([shown, interrupted]).sort_values("time", kind="stable")
 
 
 def draw_runs(axes: Axes, numbers: pd.DataFrame, channel: str) -> None:
@@ -148,14 +151,15 @@ def _over_time(discovery: Discovery, table: pd.DataFrame) -> Figure:
     caption = (
         f"Trial {trial}, {methods_used(discovery).held_out}. Left: measured (black), initial model{fitted} (orange, "
         "dashed), model with the identified effect (green). The gap is shaded. Right: residual of each model. Grey "
-        f"band: two standard deviations of the noise. Typical section, {len(numbers)} samples."
+        f"band: two standard deviations of the noise. Typical section, {len(numbers.dropna())} samples."
     )
     return Figure("held_out", caption, _alt(discovery), numbers, drawn)
 
 
 def _over_stride(discovery: Discovery, table: pd.DataFrame) -> Figure:
     channels = _list_channels(discovery)
-    edges = np.linspace(0, 100, STRIDE_BINS + 1)
+    bins = min(STRIDE_BINS, max(len(table) // (2 * FEWEST), 1))  # few strides fill few bins
+    edges = np.linspace(0, 100, bins + 1)
     percent = 100 * table["phase"].to_numpy()
     drawn, grid = panels(len(channels), 2, 1.75, Room(left=0.6, across=0.62, down=0.52))
     kept = []
@@ -190,7 +194,7 @@ def _over_stride(discovery: Discovery, table: pd.DataFrame) -> Figure:
         axes.set_xlabel("stride [%]", labelpad=1)
     legend(drawn, discovery_key(measured=True))
     caption = (
-        f"Signals and residuals over the stride, all {len(table)} held-out samples in {STRIDE_BINS} bins; bands: "
+        f"Signals and residuals over the stride, all {len(table)} held-out samples in {bins} bins; bands: "
         "standard deviation in a bin. Bar at the bottom: part in which the effect reaches at least half its maximum."
     )
     return Figure("over_stride", caption, _alt(discovery), pd.concat(kept, ignore_index=True), drawn)

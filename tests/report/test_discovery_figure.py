@@ -1,8 +1,9 @@
 import numpy as np
+import pandas as pd
 import pytest
 from manufactured_discovery import manufactured
 
-from gaitdisc.discovery.figure import bin_values, discovery_figures, typical_stretch
+from gaitdisc.discovery.figure import bin_values, discovery_figures, pick_stretch, typical_stretch
 from gaitdisc.discovery.result import Correction, Estimate, Runs
 
 
@@ -10,7 +11,9 @@ def test_there_is_a_figure_over_the_stride_only_where_there_is_a_phase():
     whole = manufactured()
     runs = whole.runs
     without = Runs(runs.trial, runs.time, runs.phase[:, :0], runs.measured, runs.simulated, runs.augmented)
-    assert [one.name for one in discovery_figures(whole)] == ["held_out", "over_stride", "against_state"]
+    figures = discovery_figures(whole)
+    assert [one.name for one in figures] == ["held_out", "over_stride", "against_state"]
+    assert figures[1].numbers["n"].min() >= 5  # few strides fill few bins, not none
     assert [one.name for one in discovery_figures(manufactured(runs=without))] == ["held_out", "against_state"]
 
 
@@ -24,6 +27,12 @@ def test_the_stretch_is_neither_the_best_nor_the_worst():
     gap = np.repeat([5.0, 1.0, 9.0], 10)
     assert typical_stretch(gap, 10) == (0, 10)
     assert typical_stretch(gap, 100) == (0, 30)
+
+
+def test_no_line_is_drawn_across_an_interruption():
+    runs = {f"x_{word}": np.arange(6.0) for word in ("measured", "simulated", "augmented")}
+    table = pd.DataFrame({"trial": "1", "time": [0.0, 0.1, 0.2, 0.8, 0.9, 1.0], **runs})
+    np.testing.assert_array_equal(pick_stretch(table, "x")["x_measured"], [0, 1, 2, np.nan, 3, 4, 5])
 
 
 def test_bins_with_few_samples_are_left_out():
