@@ -226,9 +226,7 @@ def weighed(candidate: Candidate) -> bool:
     return candidate.kind == "parameter" or candidate.name in EFFECTS
 
 
-def nominal_and_trials(
-    study: Study, participant: str, joint: str = "ankle_angle", strides: int = MOTION_STRIDES
-) -> tuple[Simulation, Measured]:
+def nominal_and_trials(study: Study, participant: str, joint: str = "ankle_angle") -> tuple[Simulation, Measured]:
     """Nominal model of one joint of a participant, and the device walk cut into trials of some strides.
 
     The model is the Nominal model of chapter 4 in a form that can be read: the joint's acceleration is linear in its
@@ -251,7 +249,7 @@ def nominal_and_trials(
         )
     nominal, device = (walks[word] for word in study.conditions.both)
     name = f"{joint}_{study.strides.side}"
-    return nominal_model(nominal, name), stride_trials(device, name, strides)
+    return nominal_model(nominal, name), stride_trials(device, name)
 
 
 def nominal_model(walk: ProcessedWalk, name: str) -> Simulation:
@@ -277,20 +275,20 @@ def nominal_model(walk: ProcessedWalk, name: str) -> Simulation:
     )
 
 
-def stride_trials(walk: ProcessedWalk, name: str, strides: int = MOTION_STRIDES) -> Measured:
-    """Cut a walk into trials of so many strides in a row."""
+def stride_trials(walk: ProcessedWalk, name: str) -> Measured:
+    """Cut a walk into trials of some strides in a row."""
     angle, _, _, phase = _motion(walk, name)
     time, cycles = np.asarray(walk.state.time), walk.strides[walk.side]
     usable = np.isfinite(phase) & np.isfinite(angle)
     trials = [
         TrialColumns(str(number), time[inside], phase[inside, None], angle[inside, None])
-        for number, inside in enumerate(find_series(cycles.number(time), usable, usable, strides), 1)
+        for number, inside in enumerate(find_series(cycles.number(time), usable, usable, MOTION_STRIDES), 1)
     ]
     if len(trials) < FEWEST_TRIALS:
         raise StrideError(
-            f"a walk must have at least {FEWEST_TRIALS} separate series of {strides} consecutive strides",
+            f"a walk must have at least {FEWEST_TRIALS} separate series of {MOTION_STRIDES} consecutive strides",
             f"{walk.trial.name} has {len(cycles)} strides, which give {len(trials)} such series",
-            "Record a longer walk, or use fewer strides per series.",
+            "Record a longer walk.",
         )
     return check_measured(trials, ("phase",), ("theta",), walk.trial.name)
 

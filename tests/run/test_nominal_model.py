@@ -37,15 +37,16 @@ def test_an_ankle_that_strays_from_its_habit_comes_back(nominal):
 
 
 def test_trials_are_whole_strides_of_the_device_walk(study):
-    simulation, measured = nominal_and_trials(study, "W01", strides=3)
+    simulation, measured = nominal_and_trials(study, "W01")
     assert [port.name for port in simulation.ports] == ["acceleration"]
     phase = measured.drive.inputs[0, : measured.samples[0], 0]
-    assert (np.diff(phase) < 0).sum() == 2
+    assert (np.diff(phase) < 0).sum() == 3  # four strides
     assert phase[0] < 0.02
     assert measured.channels == ("theta",)
     assert np.abs(measured.observed[0, : measured.samples[0]]).max() < np.radians(40)
 
 
-def test_too_few_strides_are_refused_with_their_number(nominal):
+def test_too_few_strides_are_refused_with_their_number(nominal, monkeypatch):
+    monkeypatch.setattr("gaitdisc.discovery.joint_and_trials.MOTION_STRIDES", 100)
     with pytest.raises(StrideError, match=r"4 separate series of 100 .* 28 strides, which give 0 such series"):
-        stride_trials(nominal, "ankle_angle_r", 100)
+        stride_trials(nominal, "ankle_angle_r")
