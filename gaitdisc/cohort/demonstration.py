@@ -19,7 +19,6 @@ from gaitdisc.ingest.storage import write_storage
 from gaitdisc.ingest.study import STATIC, Conditions, Models, Participant, PlannedTrial, Study
 from gaitdisc.ingest.study_file import write_study
 from gaitdisc.recording import Trial
-from gaitdisc.recording.arrays import Values
 from gaitdisc.whole_file import write_whole
 
 WALK_S = 60.0
@@ -105,31 +104,19 @@ def write_marker_trial(trial: Trial, folder: Path, stem: str) -> tuple[str, ...]
     return (name,)
 
 
-def stiff_knee(trial: Trial, side: str) -> Trial:
-    """Same walk, the knee of one side bending less in swing."""
-    top, share = STIFF_ABOVE_DEG, STIFF_SHARE
-    return _with_angle(trial, f"knee_angle_{side}", lambda angle: np.minimum(angle, top + share * (angle - top)))
-
-
-def drop_foot(trial: Trial, side: str) -> Trial:
-    """Same walk, the foot of one side hanging while it is off the ground."""
-    forces, kinematics = trial.stream("forces"), trial.stream("kinematics")
-    lifted = (forces[f"ground_force_{side}_vy"] < LIFTED_N).astype(float)
-    hanging = gaussian_filter1d(lifted, DROP_SMOOTH_S * forces.rate_hz)
-    lowered = DROP_DEG * np.interp(kinematics.time, forces.time, hanging)
-    return _with_angle(trial, f"ankle_angle_{side}", lambda angle: angle - lowered)
-
-
-PLANTED: dict[str, Callable[[Trial, str], Trial]] = {"stiff knee": stiff_knee, "drop foot": drop_foot}
-
-
 def plant(trial: Trial, what: str, side: str) -> Trial:
-    """Walk with gait planted: `stiff knee`, `drop foot`; as it is for an empty word."""
-    return PLANTED[what](trial, side) if what else trial
-
-
-def _with_angle(trial: Trial, name: str, change: Callable[[Values], Values]) -> Trial:
-    kinematics = trial.stream("kinematics")
+    """Walk with gait planted on one side: `stiff knee`, `drop foot`; as it is for an empty word."""
+    if not what:
+        return trial
+    kinematics, forces = trial.stream("kinematics"), trial.stream("forces")
+    name = {"stiff knee": f"knee_angle_{side}", "drop foot": f"ankle_angle_{side}"}[what]
+    angle = kinematics[name]
+    if what == "stiff knee":
+        angle = np.minimum(angle, STIFF_ABOVE_DEG + STIFF_SHARE * (angle - STIFF_ABOVE_DEG))
+    else:  # the foot hangs while it is off the ground
+        lifted = (forces[f"ground_force_{side}_vy"] < LIFTED_N).astype(float)
+        hanging = gaussian_filter1d(lifted, DROP_SMOOTH_S * forces.rate_hz)
+        angle = angle - DROP_DEG * np.interp(kinematics.time, forces.time, hanging)
     values = np.array(kinematics.values)
-    values[:, kinematics.index(name)] = change(kinematics[name])
+    values[:, kinematics.index(name)] = angle
     return replace(trial, streams={**trial.streams, "kinematics": kinematics.with_values(values)})
