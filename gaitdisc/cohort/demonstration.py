@@ -12,7 +12,7 @@ from scipy.ndimage import gaussian_filter1d
 
 from gaitdisc.cohort.cohort import make_walks, the_twelve
 from gaitdisc.cohort.marker_trial import overground, standing
-from gaitdisc.cohort.person import Person
+from gaitdisc.cohort.person import MUSCLES, Person
 from gaitdisc.errors import SchemaError
 from gaitdisc.ingest.c3d_writing import write_c3d
 from gaitdisc.ingest.storage import write_storage
@@ -24,9 +24,8 @@ from gaitdisc.whole_file import write_whole
 WALK_S = 60.0
 TRIALS, OVERGROUND = 6, 4.0  # trials of a condition; strides that the last of them has at least
 LABORATORIES = ("angles", "markers", "overground")
-MUSCLES = ("ham", "rf", "vas", "gas", "sol", "ta", "gmed")
 FORCES = tuple(f"ground_force_{side}_v{axis}" for side in "rl" for axis in "xy")
-OUTPUTS = ("hip_flexion_r", "knee_angle_r", "ankle_angle_r", *(f"emg_{muscle}_r" for muscle in MUSCLES[:5]))
+OUTPUTS = ("hip_flexion_r", "knee_angle_r", "ankle_angle_r", *(f"{muscle}_r" for muscle in MUSCLES[:5]))
 STIFF_ABOVE_DEG, STIFF_SHARE = 20.0, 0.5  # what the knee bends beyond this is halved: some 20 deg less in swing
 DROP_DEG, DROP_SMOOTH_S = 15.0, 0.03  # by which the foot hangs while it is off the ground
 LIFTED_N = 20.0
@@ -71,7 +70,7 @@ def write_demonstration(
         title=f"Demonstration: {people} simulated participants (embedded cohort); hidden effect: {hidden}",
         conditions=Conditions(nominal="nominal", device="exo"),
         channels={} if markers else {name: f"{name} [N]" for name in FORCES},
-        models=Models(emg=tuple(f"emg_{muscle}_{side}" for side in "rl" for muscle in MUSCLES), outputs=OUTPUTS),
+        models=Models(emg=tuple(f"{muscle}_{side}" for side in "rl" for muscle in MUSCLES), outputs=OUTPUTS),
         participants=tuple(participants),
     ).placed(folder)
     write_study(study, folder / "study.toml")
