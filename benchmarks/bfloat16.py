@@ -22,7 +22,7 @@ os.environ.setdefault("OMP_NUM_THREADS", "1")
 
 import torch
 
-from gaitdisc.models.shred import Shred
+from gaitdisc.models.networks import Shred
 from gaitdisc.models.trained_network import torch_threads
 from gaitdisc.models.trainer import TorchSteps
 from gaitdisc.models.training_settings import PRECISIONS, ScaledSamples, TrainingSettings, make_schedule

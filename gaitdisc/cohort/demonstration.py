@@ -12,22 +12,20 @@ from scipy.ndimage import gaussian_filter1d
 
 from gaitdisc.cohort.cohort import make_walks, the_twelve
 from gaitdisc.cohort.marker_trial import overground, standing
-from gaitdisc.cohort.person import Person
+from gaitdisc.cohort.person import MUSCLES, Person
 from gaitdisc.errors import SchemaError
 from gaitdisc.ingest.c3d_writing import write_c3d
 from gaitdisc.ingest.storage import write_storage
 from gaitdisc.ingest.study import STATIC, Conditions, Models, Participant, PlannedTrial, Study
 from gaitdisc.ingest.study_file import write_study
 from gaitdisc.recording import Trial
-from gaitdisc.recording.arrays import Values
 from gaitdisc.whole_file import write_whole
 
 WALK_S = 60.0
 TRIALS, OVERGROUND = 6, 4.0  # trials of a condition; strides that the last of them has at least
 LABORATORIES = ("angles", "markers", "overground")
-MUSCLES = ("ham", "rf", "vas", "gas", "sol", "ta", "gmed")
 FORCES = tuple(f"ground_force_{side}_v{axis}" for side in "rl" for axis in "xy")
-OUTPUTS = ("hip_flexion_r", "knee_angle_r", "ankle_angle_r", *(f"emg_{muscle}_r" for muscle in MUSCLES[:5]))
+OUTPUTS = ("hip_flexion_r", "knee_angle_r", "ankle_angle_r", *(f"{muscle}_r" for muscle in MUSCLES[:5]))
 STIFF_ABOVE_DEG, STIFF_SHARE = 20.0, 0.5  # what the knee bends beyond this is halved: some 20 deg less in swing
 DROP_DEG, DROP_SMOOTH_S = 15.0, 0.03  # by which the foot hangs while it is off the ground
 LIFTED_N = 20.0
@@ -72,7 +70,7 @@ def write_demonstration(
         title=f"Demonstration: {people} simulated participants (embedded cohort); hidden effect: {hidden}",
         conditions=Conditions(nominal="nominal", device="exo"),
         channels={} if markers else {name: f"{name} [N]" for name in FORCES},
-        models=Models(emg=tuple(f"emg_{muscle}_{side}" for side in "rl" for muscle in MUSCLES), outputs=OUTPUTS),
+        models=Models(emg=tuple(f"{muscle}_{side}" for side in "rl" for muscle in MUSCLES), outputs=OUTPUTS),
         participants=tuple(participants),
     ).placed(folder)
     write_study(study, folder / "study.toml")
@@ -105,31 +103,19 @@ def write_marker_trial(trial: Trial, folder: Path, stem: str) -> tuple[str, ...]
     return (name,)
 
 
-def stiff_knee(trial: Trial, side: str) -> Trial:
-    """Same walk, the knee of one side bending less in swing."""
-    top, share = STIFF_ABOVE_DEG, STIFF_SHARE
-    return _with_angle(trial, f"knee_angle_{side}", lambda angle: np.minimum(angle, top + share * (angle - top)))
-
-
-def drop_foot(trial: Trial, side: str) -> Trial:
-    """Same walk, the foot of one side hanging while it is off the ground."""
-    forces, kinematics = trial.stream("forces"), trial.stream("kinematics")
-    lifted = (forces[f"ground_force_{side}_vy"] < LIFTED_N).astype(float)
-    hanging = gaussian_filter1d(lifted, DROP_SMOOTH_S * forces.rate_hz)
-    lowered = DROP_DEG * np.interp(kinematics.time, forces.time, hanging)
-    return _with_angle(trial, f"ankle_angle_{side}", lambda angle: angle - lowered)
-
-
-PLANTED: dict[str, Callable[[Trial, str], Trial]] = {"stiff knee": stiff_knee, "drop foot": drop_foot}
-
-
 def plant(trial: Trial, what: str, side: str) -> Trial:
-    """Walk with gait planted: `stiff knee`, `drop foot`; as it is for an empty word."""
-    return PLANTED[what](trial, side) if what else trial
-
-
-def _with_angle(trial: Trial, name: str, change: Callable[[Values], Values]) -> Trial:
-    kinematics = trial.stream("kinematics")
+    """Walk with gait planted on one side: `stiff knee`, `drop foot`; as it is for an empty word."""
+    if not what:
+        return trial
+    kinematics, forces = trial.stream("kinematics"), trial.stream("forces")
+    name = {"stiff knee": f"knee_angle_{side}", "drop foot": f"ankle_angle_{side}"}[what]
+    angle = kinematics[name]
+    if what == "stiff knee":
+        angle = np.minimum(angle, STIFF_ABOVE_DEG + STIFF_SHARE * (angle - STIFF_ABOVE_DEG))
+    else:  # the foot hangs while it is off the ground
+        lifted = (forces[f"ground_force_{side}_vy"] < LIFTED_N).astype(float)
+        hanging = gaussian_filter1d(lifted, DROP_SMOOTH_S * forces.rate_hz)
+        angle = angle - DROP_DEG * np.interp(kinematics.time, forces.time, hanging)
     values = np.array(kinematics.values)
-    values[:, kinematics.index(name)] = change(kinematics[name])
+    values[:, kinematics.index(name)] = angle
     return replace(trial, streams={**trial.streams, "kinematics": kinematics.with_values(values)})

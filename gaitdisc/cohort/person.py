@@ -247,8 +247,10 @@ PATTERNS = {
     ),
     "asymmetric": Pattern((("knee_angle", 0.74, 0.20, -18.0), ("hip_flexion", 0.85, 0.25, -6.0)), (), (1,)),
 }
-# height [m], body mass [kg], age [years], speed over that of an adult of the same dimensionless speed
-SIZES = {"child": (1.26, 26.0, 8.0, 1.0), "slow": (None, None, None, 0.65), "fast": (None, None, None, 1.35)}
+# what differs from an adult: size, age, or the speed over that of an adult of the same dimensionless speed
+SIZES: dict[str, dict[str, float]] = {
+    "child": {"height_m": 1.26, "mass_kg": 26.0, "age_years": 8.0}, "slow": {"faster": 0.65}, "fast": {"faster": 1.35},
+}  # fmt: skip
 WEAK = "weak plantarflexor"
 PEOPLE = (*SIZES, *PATTERNS, WEAK)
 WEAKNESS = 0.6  # of soleus and gastrocnemius, which the person's own commands do not know of
@@ -258,7 +260,7 @@ def somebody(kind: str, seed: int = 1, sex: str = "f") -> Person:
     """Somebody of one of `PEOPLE`, drawn from a seed."""
     person = draw_one(kind, seed, sex)
     if kind in SIZES:
-        return _resize(person, kind)
+        return _resize(person, **SIZES[kind])
     if kind == WEAK:
         return replace(person, plantarflexors=WEAKNESS)
     return walking_with(person, kind)
@@ -282,18 +284,11 @@ def walking_with(person: Person, pattern: str) -> Person:
     return replace(person, style=replace(person.style, strength=strength, bumps=bumps))
 
 
-def _resize(person: Person, kind: str) -> Person:
+def _resize(person: Person, faster: float = 1.0, **size: float) -> Person:
     """A person of another size or speed, with the cadence that goes with both."""
-    height, mass, age, faster = SIZES[kind]
-    height = height or person.height_m
-    leg = LEG_OF_STATURE * height
-    speed = faster * person.dimensionless_speed * float((9.81 * leg) ** 0.5)
-    cadence = CADENCE * (faster * person.dimensionless_speed / CADENCE_SPEED) ** 0.5
+    sized, speed = replace(person, **size), faster * person.dimensionless_speed
+    leg = LEG_OF_STATURE * sized.height_m
+    cadence = CADENCE * (speed / CADENCE_SPEED) ** 0.5
     return replace(
-        person,
-        height_m=height,
-        mass_kg=mass or person.mass_kg,
-        age_years=age or person.age_years,
-        speed_m_per_s=speed,
-        stride_s=2 / cadence * float((leg / 9.81) ** 0.5),
+        sized, speed_m_per_s=speed * float((9.81 * leg) ** 0.5), stride_s=2 / cadence * float((leg / 9.81) ** 0.5)
     )

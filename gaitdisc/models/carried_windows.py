@@ -7,7 +7,7 @@ from typing import NamedTuple
 import numpy as np
 
 from gaitdisc.compiled import compiled
-from gaitdisc.models.shred import Shred
+from gaitdisc.models.networks import Shred
 from gaitdisc.models.trained_network import TrainedNetwork
 from gaitdisc.recording.arrays import Values
 

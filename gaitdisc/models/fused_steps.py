@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from torch import Tensor, nn
 
 from gaitdisc.compiled import compiled
-from gaitdisc.models.feedforward import FeedForward
+from gaitdisc.models.networks import FeedForward
 from gaitdisc.models.training_settings import ScaledSamples, Schedule
 from gaitdisc.recording.arrays import Values
 

@@ -14,7 +14,7 @@ import torch
 from torch import Tensor, nn
 
 from gaitdisc.errors import TrainingError
-from gaitdisc.models.feedforward import FeedForward
+from gaitdisc.models.networks import FeedForward
 from gaitdisc.models.ridge import INNER_SHARE, LEAST_BEFORE_INNER, LEAST_SAMPLES, SEAM_S
 from gaitdisc.models.trained_network import TrainedNetwork, pin_threads
 from gaitdisc.models.training_settings import ScaledSamples, Schedule, TrainingSettings, make_schedule

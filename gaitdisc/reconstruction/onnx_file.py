@@ -131,7 +131,7 @@ class _Graph:
 
 
 def _network(graph: _Graph, model: TrainedNetwork, x: str, sensing_model: SensingModel) -> str:
-    from gaitdisc.models.shred import Shred
+    from gaitdisc.models.networks import Shred
 
     weights, h = model.weights(), graph.scaled(x, model.x_scale)
     prefix = ""

@@ -155,10 +155,9 @@ class PersonReconstruction:
 
 
 def reconstruct(
-    participant: str, parts: Parts, what: Sensing, channels: Sequence[Channel], fits: Fits | None = None
+    participant: str, parts: Parts, what: Sensing, channels: Sequence[Channel], fits: Fits
 ) -> PersonReconstruction:
     """Fit and test every kind of model, a forecast beside its two baselines; channels: sensors, then states."""
-    fits = fits or Fits()
     test, state_channels = parts.tested(), channels[len(what.sensors) :]
     stride = stride_numbers(parts.test)
     fitted, predictions, test_rows = _fitted(parts, what, fits)

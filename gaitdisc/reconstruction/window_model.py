@@ -232,7 +232,7 @@ def _find_fit(kind: str, sensors: int, seed: int, device: str) -> Callable[[Samp
 
 def make_network(kind: str, sensors: int) -> Callable[[int, int], Any]:
     """Return what makes the network of a kind, from its numbers of inputs and outputs."""
-    from gaitdisc.models.shred import ShallowDecoder, Shred
+    from gaitdisc.models.networks import ShallowDecoder, Shred
 
     if kind == "shallow decoder":
         return ShallowDecoder
@@ -243,7 +243,7 @@ def make_network(kind: str, sensors: int) -> Callable[[int, int], Any]:
 
 def latent_states(done: WindowModel, windows: Samples) -> Values:
     """Latent state of a fitted SHRED at the last reading of each window, (window, node) [1]."""
-    from gaitdisc.models.shred import Shred
+    from gaitdisc.models.networks import Shred
     from gaitdisc.models.trained_network import TrainedNetwork
 
     model = done.model

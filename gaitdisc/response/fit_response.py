@@ -320,7 +320,7 @@ def fit_network(
     samples: Samples, settings: TrainingSettings | None = None, progress: Callable[[float], None] | None = None
 ) -> Fit:
     """Fit the dissertation's feed-forward network."""
-    from gaitdisc.models.feedforward import FeedForward  # brings torch, which takes two seconds
+    from gaitdisc.models.networks import FeedForward  # brings torch, which takes two seconds
     from gaitdisc.models.trainer import train
 
     done = train(samples, FeedForward, settings, progress)

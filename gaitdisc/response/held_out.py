@@ -142,12 +142,10 @@ def residual_numbers(response: ParticipantResponse) -> pd.DataFrame:
     tables = []
     for column, (variable, unit) in enumerate(zip(response.outputs, response.units, strict=True)):
         for model, interval in means.items():
-            table = pd.DataFrame({"variable": variable, "unit": unit, "model": model, "percent": PERCENT}).assign(
-                n=interval.strides[:, column],
-                mean=interval.mean[:, column],
-                low=interval.low[:, column],
-                high=interval.high[:, column],
-            )
+            table = pd.DataFrame({"variable": variable, "unit": unit, "model": model, "percent": PERCENT})
+            table["n"] = interval.strides[:, column]
+            for bound in ("mean", "low", "high"):
+                table[bound] = getattr(interval, bound)[:, column]
             strides = response.residuals[model][:, :, column]
             columns = pd.DataFrame(strides.T, columns=pd.Index([f"stride_{i + 1}" for i in range(len(strides))]))
             tables.append(pd.concat([table, columns], axis=1))

@@ -125,7 +125,7 @@ class ParticipantResponse:
                 f"the response of {self.participant} has no weights of {name!r}",
                 "Choose one of these, or fit again a response that an older version saved without weights.",
             )
-        from gaitdisc.models.feedforward import FeedForward
+        from gaitdisc.models.networks import FeedForward
         from gaitdisc.models.trained_network import restore_network
 
         return restore_network(self.inputs, self.outputs, arrays, FeedForward(len(self.inputs), len(self.outputs)))

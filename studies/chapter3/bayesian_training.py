@@ -119,7 +119,7 @@ def _outputs(weights: NDArray[np.float64], x: NDArray[np.float64]) -> tuple[NDAr
 def _module(weights: NDArray[np.float64], inputs: int, nodes: int):
     import torch
 
-    from gaitdisc.models.feedforward import FeedForward
+    from gaitdisc.models.networks import FeedForward
 
     network = FeedForward(inputs, 1, nodes)
     names = [f"{layer}.{part}" for layer in ("sigmoid", "radial", "readout") for part in ("weight", "bias")]

@@ -20,11 +20,11 @@ from torch import nn
 
 import gaitdisc as gd
 from gaitdisc.cohort.cohort import make_walks
-from gaitdisc.cohort.demonstration import MUSCLES, OUTPUTS
-from gaitdisc.cohort.person import draw_one
+from gaitdisc.cohort.demonstration import OUTPUTS
+from gaitdisc.cohort.person import MUSCLES, draw_one
 from gaitdisc.ingest.study import Conditions, Models, Participant, Study
-from gaitdisc.models.feedforward import FeedForward
 from gaitdisc.models.fourier_ridge import fit_fourier_ridge
+from gaitdisc.models.networks import FeedForward
 from gaitdisc.models.trainer import train
 from gaitdisc.models.training_settings import TrainingSettings
 from gaitdisc.processing.process import processed
@@ -83,7 +83,7 @@ def band(quick: bool) -> Iterator[Number]:
 
 def people(quick: bool) -> Iterator[Number]:
     """Share of the held-out samples inside the bands of `gaitdisc run`; people on whom nothing was set."""
-    emg = tuple(f"emg_{muscle}_{side}" for side in "rl" for muscle in MUSCLES)
+    emg = tuple(f"{muscle}_{side}" for side in "rl" for muscle in MUSCLES)
     both = Conditions(nominal="nominal", device="exo")
     models = Models(emg=emg, outputs=OUTPUTS)
     for seed in FRESH[: 2 if quick else None]:

@@ -283,7 +283,7 @@ def latent_sizes(
 
     Source: Ebers 2023, section 5.2 and Fig. 5.1: both elbows are seen near 5, and a relation is conjectured.
     """
-    from gaitdisc.models.shred import Shred
+    from gaitdisc.models.networks import Shred
     from gaitdisc.models.trainer import train
     from gaitdisc.models.training_settings import TrainingSettings
 

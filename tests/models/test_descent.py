@@ -6,8 +6,7 @@ import torch
 from torch import nn
 
 from gaitdisc.errors import TrainingError
-from gaitdisc.models.feedforward import FeedForward
-from gaitdisc.models.shred import Shred
+from gaitdisc.models.networks import FeedForward, Shred
 from gaitdisc.models.trainer import TorchSteps, descend
 from gaitdisc.models.training_settings import PRECISIONS, ScaledSamples, TrainingSettings, count_epochs, make_schedule
 

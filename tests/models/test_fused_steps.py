@@ -9,7 +9,6 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from torch import nn
 
-from gaitdisc.models.feedforward import FeedForward
 from gaitdisc.models.fused_steps import (
     BLOCK,
     FusedSteps,
@@ -20,6 +19,7 @@ from gaitdisc.models.fused_steps import (
     matrices_then_offsets,
     mean_squared_error,
 )
+from gaitdisc.models.networks import FeedForward
 from gaitdisc.models.trainer import TorchSteps
 from gaitdisc.models.training_settings import ScaledSamples, TrainingSettings, make_schedule
 

@@ -11,8 +11,7 @@ from threadpoolctl import threadpool_info
 
 from gaitdisc.errors import SchemaError
 from gaitdisc.model import Model, augment
-from gaitdisc.models.feedforward import FeedForward
-from gaitdisc.models.shred import ShallowDecoder
+from gaitdisc.models.networks import FeedForward, ShallowDecoder
 from gaitdisc.models.trained_network import TrainedNetwork, pin_threads, torch_threads
 from gaitdisc.reconstruction.model_folder import load_weights, save_weights
 from gaitdisc.reconstruction.window_model import Ensemble

@@ -10,8 +10,7 @@ import torch
 
 from gaitdisc.errors import TrainingError
 from gaitdisc.models import trainer
-from gaitdisc.models.feedforward import FeedForward
-from gaitdisc.models.shred import ShallowDecoder
+from gaitdisc.models.networks import FeedForward, ShallowDecoder
 from gaitdisc.models.trainer import PENALTIES, choose_device, choose_penalty, descend, solve_readout, train
 from gaitdisc.models.training_settings import ScaledSamples, TrainingSettings, count_epochs, make_schedule
 from gaitdisc.recording import fit_scale

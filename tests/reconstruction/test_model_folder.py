@@ -11,7 +11,7 @@ from resealed import resealed
 
 from gaitdisc.channel import Channel
 from gaitdisc.errors import ChannelError, SamplingError, SchemaError, UnitError
-from gaitdisc.models.shred import ShallowDecoder, Shred
+from gaitdisc.models.networks import ShallowDecoder, Shred
 from gaitdisc.models.trained_network import TrainedNetwork
 from gaitdisc.reconstruction.model_folder import SensingModel, load_model, save_model
 from gaitdisc.reconstruction.onnx_file import write_onnx

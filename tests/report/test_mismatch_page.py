@@ -86,7 +86,7 @@ def test_the_page_answers_first_and_needs_nothing_but_itself(mismatch, tmp_path)
     assert text.index("In A free the right") < text.index("<figure>") < text.index("How the numbers were computed")
     assert "http" not in text.split("</head>")[1]
     assert "<script" not in text
-    assert f"Findings in both walks, n = {len(mismatch.findings)}" in text
+    assert f"both walks, n = {len(mismatch.findings)}." in text
     assert (tmp_path / "channels" / "ankle_angle_r.csv").read_text().startswith("percent,first,second,")
     assert {file.name for file in (tmp_path / "tables").iterdir()} >= {"regions.csv", "channels.csv", "findings.csv"}
     first = page.read_bytes()
