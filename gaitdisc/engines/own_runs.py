@@ -163,7 +163,7 @@ def cut_stretches(
         grown = np.nan_to_num((run[1:] - run[0]) / steps, nan=1e9, posinf=1e9, neginf=1e9)
         beyond = np.flatnonzero(np.linalg.norm(grown, 2, axis=(0, 2)) > factor)
         ends.append(float(beyond[0]) if beyond.size else np.inf)
-    if ends and (end := sorted(ends)[-(-(len(ends) - 1) // 5)]) < most:
+    if ends and (end := sorted(ends)[len(ends) // 5]) < most:
         return cut_stretches(model, measured, states, period, margin, factor, end)
     return replace(at.among(np.array(ends or [np.inf] * len(at.trial)) == np.inf), period=period)
 
