@@ -8,6 +8,7 @@ from texts import says
 
 from gaitdisc.discovery.estimated_filter import find_record_filter
 from gaitdisc.discovery.record_filter import RecordFilter
+from gaitdisc.engines import own_runs
 from gaitdisc.engines.engine import read_model
 from gaitdisc.engines.expansion import FASTEST, _slow_speeds, expand
 from gaitdisc.engines.mapping import draft, with_input_changed
@@ -40,7 +41,6 @@ def test_runs_near_the_record_are_those_of_the_engine(pendulum, monkeypatch):
     start = whole[:, 0]
     run = machine.run(driven.drive, Rows(np.zeros(1, int), np.zeros(1, int), start), SAMPLES - 1)[0]
     assert np.abs(run[0, :, 0] - whole[0, :, 0]).max() < 3e-3 * np.ptp(whole[0, :, 0])  # steps of 1 ms, first order
-
     names = [one.name for one in linear.inputs if one.computed]
     assert names and all(one.startswith("pivot_speed_") for one in names)
     assert [one.name for one in linear.driving] == ["drive"]
@@ -124,21 +124,21 @@ def test_the_true_model_meets_its_own_record_from_a_wrong_start(pendulum, tmp_pa
     other = tmp_path / "sprung.xml"
     other.write_text(PENDULUM.replace("damping=", 'stiffness="6" damping='))
     sprung = read_model(other)
-    t = np.arange(100) / 100
-    controls = 0.3 * np.sin(8 * t)[:, None]
+    controls = 0.3 * np.sin(8 * np.arange(100) / 100)[:, None]
     whole = sprung.run(Motion(np.array([[0.3]]), np.array([[0.5]]), np.zeros((1, 1))), controls[None], 100.0)
-    seen = np.rad2deg(whole[:, :, :1])
-    measured = Measured(Drive.of([controls], 100.0), seen, ("1",), ("pivot",))
-    at, units = spread_stretches(measured, 50.0, fewer=True), {"pivot": "deg"}
+    measured = Measured(Drive.of([controls], 100.0), np.rad2deg(whole[:, :, :1]), ("1",), ("pivot",))
+    at = spread_stretches(measured, 50.0, fewer=True)
     mapping, begun = draft(plain, degrees=True), whole + np.array([0.02, 0.1])
+    upright = Driven(plain, mapping, controls[None]), measured, begun + np.array([np.pi, 0.0]), 50.0, 0
+    assert [own_runs.cut_stretches(*upright, by).length == at.length for by in (2, 1e6)] == [False, True]
     by_hand = mapping.with_effect(Term("pivot_moment", "port", "unnamed", "-6*sin(pivot) - (pivot - sin(pivot))*6"))
     forced = write_model(plain, by_hand)
     assert forced.engine.pushes and not forced.absent and forced.text == plain.path.read_text()
     models = (plain, sprung, forced.engine)
     left = [residual_by(Driven(one, mapping, measured.drive.inputs), measured, at, begun) for one in models]
-    before, after, pushed = (float(root_mean_square(one)[0]) for one in left)
-    assert after < 1e-4 and pushed < 1e-4 and before > 0.5
-    found = OwnRuns(left[0], left[1], at, "MuJoCo", units, np.array([1e-4]), begun[:1, 0])
+    before, *exact = (float(root_mean_square(one)[0]) for one in left)
+    assert max(exact) < 1e-4 and before > 0.5
+    found = OwnRuns(*left[:2], at, "MuJoCo", {"pivot": "deg"}, np.array([1e-4]), begun[:1, 0])
     assert says(found.sentence, "MuJoCo", "pivot") and not found.leave_mere_noise
 
 
