@@ -12,6 +12,7 @@ from scipy.ndimage import maximum_filter1d
 from gaitdisc.errors import ChannelError, StrideError
 from gaitdisc.processing.contact_choice import (
     MOST_OFFSET_S,
+    PELVIS,
     SEEN_LATE,
     best_detector,
     events_on_plates,
@@ -36,6 +37,7 @@ ORDER = (*GROUND, *SEEN_LATE)
 ONE_EVENT_S = MOST_OFFSET_S  # nearer than this two detectors speak of one event of a foot
 USUAL_STRIDE_S = 1.1
 LEAST_PATH_M_PER_S = 0.3  # of the pelvis from end to end
+PELVIS_PATH = ("pelvis_tx", "pelvis_tz", *(f"{name}.{axis}" for name in PELVIS for axis in "xyz"))
 BELT_M = 2.0  # who comes farther walks over ground
 HEEL_M, LEG_DEG = 0.25, 10.0  # least reach of a heel, a hip or a knee within a second of who steps
 LEAST_CUT_S = 1.0
@@ -191,12 +193,10 @@ def over_ground(trial: Trial) -> bool:
     known = trial_markers(trial)
     if known is not None:
         return known[2].headings is not None
-    kinematics = trial.streams.get("kinematics")
-    path = [] if kinematics is None else [n for n in ("pelvis_tx", "pelvis_tz") if n in kinematics.names]
-    if kinematics is not None and path:
-        places = finite_rows(kinematics.selected(path).values)
-        away = float(np.linalg.norm(np.ptp(places, axis=0))) if len(places) else 0.0
-        return away / kinematics.duration_s >= LEAST_PATH_M_PER_S
+    for there in map(trial.streams.get, ("kinematics", "markers")):  # markers whose heels do not show the direction
+        path = there and [n for n in PELVIS_PATH if n in there.names]
+        if there and path and len(places := finite_rows(there.selected(path).values)):
+            return float(np.linalg.norm(np.ptp(places, axis=0))) / there.duration_s >= LEAST_PATH_M_PER_S
     return max((recording.duration_s for recording in trial.streams.values()), default=0.0) <= NO_WALKWAY_S
 
 

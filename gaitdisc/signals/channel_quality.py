@@ -20,7 +20,7 @@ from gaitdisc.signals.gaps import gap_findings
 from gaitdisc.words import counted
 
 CLIPPED_SHARE = 1e-3
-FEWEST_CLIPPED = 5
+FEWEST_CLIPPED, REST_SHARE = 5, 0.05  # samples; of the largest force: a plate at rest, which holds no peak
 JUMP_TIMES = 10.0
 REST_QUANTITIES = ("force", "vertical_force", "moment", "pressure_centre", "power")  # zero when the foot is off
 OFFSET_N = 10.0
@@ -84,7 +84,7 @@ def mark_clips(x: Values, rests_at_zero: bool = False) -> NDArray[np.bool_]:
     """
     marks = np.zeros(len(x), bool)
     for extreme in (np.nanmin(x), np.nanmax(x)):
-        if rests_at_zero and extreme == 0:
+        if rests_at_zero and abs(extreme) <= REST_SHARE * np.nanmax(np.abs(x)):
             continue
         at = x == extreme
         together = sum(int(end - start) for start, end in runs(at) if end - start > 1)

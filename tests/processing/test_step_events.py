@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 from changed_trials import with_labels_exchanged, with_stream
 
+from gaitdisc.channel import Channel
 from gaitdisc.errors import StrideError
 from gaitdisc.ingest.c3d import C3DReader
 from gaitdisc.ingest.reading import read_trial
@@ -29,17 +30,13 @@ def gait_data_of_module(request):
 
 def _apart_ms(kind, walks):
     """Events without the file's own, corrected by the plates, minus the file's own [ms]."""
-    label = {"contacts": "initial contact", "foot_offs": "foot off"}[kind]
-    apart = []
+    apart, label = [], {"contacts": "initial contact", "foot_offs": "foot off"}[kind]
     for walk in walks.values():
         steps = step_events(replace(walk, events=()))
         later = steps.later_s(kind)
-        found = steps.corrected(kind, float(np.median(later)) if len(later) else 0.0)
-        for side, times in found.items():
+        for side, times in steps.corrected(kind, float(np.median(later)) if len(later) else 0.0).items():
             own = np.array([event.time for event in walk.events if (event.label, event.side) == (label, side)])
-            for at, _ in times:
-                if len(own) and np.abs(own - at).min() < 0.2:
-                    apart.append(1e3 * (at - own[np.argmin(np.abs(own - at))]))
+            apart += [1e3 * min(at - own, key=abs) for at, _ in times if len(own) and np.abs(own - at).min() < 0.2]
     return np.array(apart)
 
 
@@ -137,8 +134,11 @@ def test_heels_that_are_exchanged_for_half_a_second_do_not_outvote_the_events(wa
 
 def test_a_long_walk_that_does_not_show_its_path_is_one_on_a_treadmill(trial):
     assert not over_ground(trial)
-    short = {"kinematics": trial.stream("kinematics").between(0.0, 3.0)}
-    assert over_ground(Trial("short", short))
+    assert over_ground(Trial("short", {"kinematics": trial.stream("kinematics").between(0.0, 3.0)}))
+    for speed in (0.05, 1.2):  # of the pelvis, for 5 s; no heel is seen
+        t = np.arange(500) / 100
+        there = Recording(t, np.outer(t, [speed, 0, 0]), tuple(Channel(f"RASI.{a}", "marker", "m") for a in "xyz"))
+        assert over_ground(Trial("run", {"markers": there})) == (speed > 1)
 
 
 def _standing_about(walk, before_s, after_s):

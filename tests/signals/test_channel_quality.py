@@ -68,9 +68,9 @@ def test_spans_say_where(made):
     assert channel_findings(planted(made, "gap"))[0].spans == ((4.0, 4.4),)
 
 
-@pytest.mark.parametrize(("size_n", "kinds"), [(700, []), (900, ["clipped"])])
-def test_a_force_that_rests_at_zero_is_well_and_one_that_is_cut_off_is_clipped(size_n, kinds):
-    force = np.clip(size_n * np.sin(2 * np.pi * np.arange(2000) / 1000), 0.0, 700.0)
+@pytest.mark.parametrize(("size_n", "rest_n", "kinds"), [(700, 0, []), (700, -9.7, []), (900, -9.7, ["clipped"])])
+def test_a_force_that_rests_near_zero_is_well_and_one_that_is_cut_off_is_clipped(size_n, rest_n, kinds):
+    force = np.clip(size_n * np.sin(2 * np.pi * np.arange(2000) / 1000), rest_n, 700.0)
     assert [finding.kind for finding in channel_findings(one(force, FORCE, 1000.0))] == kinds
 
 
