@@ -67,10 +67,10 @@ def answer(
     now, base = verdict.found, case.search.base
     channels = tuple(name for name, _ in base.observations)
     floor, proof = case.noise_floor(now.noise.size), verdict.proof
-    before, after = (run_trials(case, one, case.learned, now) for one in (as_read, now))
+    before, after = (run_trials(case, model, case.learned, now) for model in (as_read, now))
     train = gap_size(before, after, floor, channels, compare_runs(case, before, after, now))
     held = proof if proof and now.parts else prove(case, as_read, now, now)
-    of = f"trial {', '.join(case.measured.trials[one] for one in case.held_out)}"
+    of = f"trial {', '.join(case.measured.trials[number] for number in case.held_out)}"
     held_out = replace(gap_size(held.before, held.after, floor, channels, (proof or held).test), of=of)
     gained = bic_gain(case.search, now)
     rivals = weigh_rivals(case.search, now, verdict.rivals, gained)
@@ -89,8 +89,8 @@ def answer(
         rivals=(
             *(report_rival(case, rival) for rival in rivals if rival.part.candidate.label not in now.labels),
             *(
-                FoundEffect(one.candidate.kind, one.candidate.place, one.candidate.name, one.term, small=True)
-                for one in verdict.small  # that close too little of the gap to be named
+                FoundEffect(part.candidate.kind, part.candidate.place, part.candidate.name, part.term, small=True)
+                for part in verdict.small  # that close too little of the gap to be named
             ),
         ),
         train=train,
@@ -121,12 +121,12 @@ def list_effects(case: Case, verdict: Verdict, closed: float, gained: float) -> 
             for name, start in verdict.starts.items()
         )
     parts = verdict.found.parts
-    found = [replace(_effect(case, verdict.found, n), held_out=closed, bic=gained) for n in range(len(parts))]
+    effects = [replace(_effect(case, verdict.found, n), held_out=closed, bic=gained) for n in range(len(parts))]
     if verdict.read:
         (part,) = parts
         expression = part.candidate.term({slot: f"{value:.{DIGITS}g}" for slot, value in part.values.items()})
-        found = [replace(found[0], reads_as=expression, reads_as_effect=verdict.reads_as)]
-    return tuple(found)
+        effects = [replace(effects[0], reads_as=expression, reads_as_effect=verdict.reads_as)]
+    return tuple(effects)
 
 
 def augment_with(base: Simulation, parts: tuple[Part, ...]) -> Simulation:
@@ -145,9 +145,9 @@ def report_rival(case: Case, rival: Rival, part: int = -1) -> FoundEffect:
 def _effect(case: Case, now: ScoredModel, number: int) -> FoundEffect:
     """Return one of a model's explanations with its numbers."""
     part, base = now.parts[number], case.search.base
-    one, estimates = part.candidate, list_estimates(now, number, base)
-    bounds, states = file_bounds(base, one), one.states_at(part.written)
-    return FoundEffect(one.kind, one.place, one.name, part.term, estimates, bounds=bounds, states=states)
+    what, estimates = part.candidate, list_estimates(now, number, base)
+    bounds, states = file_bounds(base, what), what.states_at(part.written)
+    return FoundEffect(what.kind, what.place, what.name, part.term, estimates, bounds=bounds, states=states)
 
 
 def bic_gain(search: Search, now: ScoredModel) -> float:
@@ -155,34 +155,34 @@ def bic_gain(search: Search, now: ScoredModel) -> float:
     return search.with_others(now, ()).bic - now.bic if now.parts else 0.0
 
 
-def weigh_rivals(search: Search, now: ScoredModel, found: tuple[ScoredModel, ...], gained: float) -> tuple[Rival, ...]:
+def weigh_rivals(search: Search, now: ScoredModel, tried: tuple[ScoredModel, ...], gained: float) -> tuple[Rival, ...]:
     """Weigh other explanations against an answer: alone, and in the place of each that the answer is made of.
 
     now: the simulation with what was found; without any explanation, rivals keep the criterion that they were found
         with
     returns: best first; none of them is of the same effects at the same places as the answer
     """
-    own = sorted(now.labels)
+    named = sorted(now.labels)
     others: dict[tuple[str, ...], ScoredModel] = {}
-    for one in found:
-        if one.parts and sorted(one.labels) != own:
-            others.setdefault(tuple(sorted(one.labels)), one)
-    adding = {labels for labels in others if own and set(own) < set(labels)}  # what only adds to it is no other answer
+    for scored in tried:
+        if scored.parts and sorted(scored.labels) != named:
+            others.setdefault(tuple(sorted(scored.labels)), scored)
+    adding = {labels for labels in others if named and set(named) < set(labels)}  # no other answer: they only add to it
     listed = [others[labels] for labels in sorted(others, key=lambda labels: labels in adding)][:MOST_RIVALS]
-    if not own:
+    if not named:
         return tuple(Rival(model, model.gained, False) for model in listed)
     fitted: dict[tuple[str, ...], ScoredModel] = {}
-    for one in listed:
-        parts, sets = now.parts, [one.parts]
-        if one.labels[-1] not in own:  # its last explanation alone, as it was, or beside the answer's but one
-            last = one.parts[-1]
+    for scored in listed:
+        parts, sets = now.parts, [scored.parts]
+        if scored.labels[-1] not in named:  # its last explanation alone, as it was, or beside the answer's but one
+            last = scored.parts[-1]
             beside = [(*parts[:k], *parts[k + 1 :], last) for k in range(len(parts))] if len(parts) > 1 else []
             sets = [(last,), *(sets if len(sets[0]) > 1 else []), *beside]
         best = min((search.with_others(now, each) for each in sets), key=lambda model: model.bic)
         fitted.setdefault(tuple(sorted(best.labels)), best)
     rivals = []
     for model in fitted.values():
-        behind, adds = model.bic - now.bic, set(own) < set(model.labels)
+        behind, adds = model.bic - now.bic, set(named) < set(model.labels)
         rivals.append(Rival(model, gained - behind, behind < CRITERIA.tie and not adds))
     return tuple(sorted(rivals, key=lambda rival: -rival.gained))
 
@@ -191,16 +191,16 @@ def list_explanations(
     case: Case, verdict: Verdict, held: Proof, size: GapSize, rivals: tuple[Rival, ...]
 ) -> list[Explanation]:
     """List what else was weighed by what it leaves of the held-out data, the least first."""
-    found: list[tuple[float, Explanation]] = []
+    ordered: list[tuple[float, Explanation]] = []
     floor = np.array([floor for _, _, floor in size.channels.values()])
-    for one in rivals:
-        after = run_trials(case, one.scored, case.held_out, verdict.found)
-        effects = tuple(report_rival(case, one, number) for number in range(len(one.scored.parts)))
+    for rival in rivals:
+        after = run_trials(case, rival.scored, case.held_out, verdict.found)
+        effects = tuple(report_rival(case, rival, number) for number in range(len(rival.scored.parts)))
         test = compare_runs(case, held.before, after, verdict.found)
         left = gap_size(held.before, after, floor, tuple(size.channels), test)
         explanation = Explanation(effects, replace(left, of=size.of), *first_run(case, after, size))
-        found.append((float(np.nan_to_num(left.after, nan=np.inf)), explanation))
-    return [explanation for _, explanation in sorted(found, key=lambda one: one[0])]
+        ordered.append((float(np.nan_to_num(left.after, nan=np.inf)), explanation))
+    return [explanation for _, explanation in sorted(ordered, key=lambda rival: rival[0])]
 
 
 def first_run(case: Case, after: ScoredModel, size: GapSize) -> tuple[tuple[float, ...], tuple[float, ...]]:
@@ -220,12 +220,12 @@ def whereabouts(case: Case, verdict: Verdict, train: GapSize) -> tuple[Whereabou
     now = verdict.found
     if not now.parts:
         firsts = [rival.parts[0].candidate for rival in verdict.rivals[:1] if rival.parts]
-        return tuple(Whereabouts(one.kind, one.place, float("nan")) for one in firsts)
+        return tuple(Whereabouts(role.kind, role.place, float("nan")) for role in firsts)
     share = (train.before**2 - train.after**2) / train.before**2 if train.before > 0 else 0.0
     share /= len(now.parts)
     return tuple(
-        Whereabouts(one.candidate.kind, one.candidate.place, share, find_phase(case, now, one), find_region(one))
-        for one in now.parts
+        Whereabouts(part.candidate.kind, part.candidate.place, share, find_phase(case, now, part), find_region(part))
+        for part in now.parts
     )
 
 
@@ -237,8 +237,8 @@ def push_along(case: Case, now: ScoredModel, part: Part) -> Values | None:
     segments, drive, fit = now.shooting.segments, case.measured.drive, now.fit
     # run by run: what stands beside the effect may be late, and a delay needs consecutive samples
     runs = [
-        Points(*one, fit.values, rate=drive.rate)
-        for one in zip(segments.times(drive), fit.states, segments.of(drive.inputs), strict=True)
+        Points(*points, fit.values, rate=drive.rate)
+        for points in zip(segments.times(drive), fit.states, segments.of(drive.inputs), strict=True)
     ]
     return np.abs([evaluate(now.simulation, term, run) for run in runs])
 
@@ -258,7 +258,7 @@ def find_phase(case: Case, now: ScoredModel, part: Part) -> tuple[float, ...]:
 
 def exact_inputs(case: Case, now: ScoredModel) -> tuple[Finding, ...]:
     """Say how large an error of the inputs would explain a missing term as well: they were taken as exact."""
-    base, found = case.search.base, []
+    base, findings = case.search.base, []
     for part in now.parts:
         push, candidate = push_along(case, now, part), part.candidate
         if push is None:
@@ -272,8 +272,8 @@ def exact_inputs(case: Case, now: ScoredModel) -> tuple[Finding, ...]:
                 f"{spoken(candidate.name)}, would explain the gap as well; the inputs were assumed to be exact"
             )
             spoils = "which effect is named, if an input has this error"
-            found.append(Finding("note", "exact inputs", case.measured.source, what, spoils))
-    return tuple(found)
+            findings.append(Finding("note", "exact inputs", case.measured.source, what, spoils))
+    return tuple(findings)
 
 
 def find_region(part: Part) -> str:
@@ -291,15 +291,15 @@ def list_corrections(model: ScoredModel, base: Simulation) -> tuple[Correction, 
     """List the numbers that were fitted within their bounds and moved, each with its 95 % interval inside these."""
     prior, free = model.fit.prior, model.fit.free
     error = np.sqrt(np.diag(model.fit.covariance))
-    units, found = {parameter.name: parameter.unit for parameter in base.parameters}, []
+    units, moved = {parameter.name: parameter.unit for parameter in base.parameters}, []
     for name, place, given, low, high in zip(
         prior.names, prior.places, prior.value, prior.low, prior.high, strict=True
     ):
         value, half = float(f"{model.fit.values[place]:.6g}"), NORMAL_95 * float(error[free.index(name)])
         if value != float(f"{given:.6g}"):
             interval = max(value - half, float(low)), min(value + half, float(high))
-            found.append(Correction(name, float(given), Estimate(value, *interval, units[name])))
-    return tuple(found)
+            moved.append(Correction(name, float(given), Estimate(value, *interval, units[name])))
+    return tuple(moved)
 
 
 def file_bounds(base: Simulation, candidate: Candidate) -> tuple[float, ...]:

@@ -223,7 +223,7 @@ def list_candidates(
         for error in ("sensor_gain", "sensor_offset", "sensor_lag", "sensor_drift")
     ]
     inputs = _list_input_errors(simulation)
-    taken = {*simulation.signals, *(name for one in inputs for name in one.states)}
+    taken = {*simulation.signals, *(name for each in inputs for name in each.states)}
     return (*numbers, *inputs, *sensors, *_list_missing_terms(simulation, places, shapes, taken))
 
 
@@ -231,16 +231,16 @@ def _list_input_errors(simulation: Simulation) -> list[Candidate]:
     """List what may be wrong with each input that stands in the simulation: it is late, scaled, or lags."""
     used = "\n".join(text for _, text in (*simulation.definitions, *simulation.equations))
     driving = [signal for signal in simulation.driving if re.search(rf"\b{re.escape(signal.name)}\b", used)]
-    found = []
+    errors = []
     for name in (signal.name for signal in driving):
         scaled = () if f"gain_of_{name}" in simulation.values() else ("input_gain",)  # a number of the file
-        found += [Candidate("input_error", "input", name, error) for error in ("input_delay", *scaled)]
+        errors += [Candidate("input_error", "input", name, error) for error in ("input_delay", *scaled)]
     for each in driving if isinstance(simulation, Simulation) else ():
         if not each.wraps:  # it may act through a first-order lag
-            own = free_name(f"{each.name}_lagged", {*simulation.signals})
-            states, names = {own: f"({each.name} - {own})/_seconds"}, {"seconds": "time_constant"}
-            found.append(Candidate("input_error", "input", each.name, "input_lag", names=names, states=states))
-    return found
+            state = free_name(f"{each.name}_lagged", {*simulation.signals})
+            states, names = {state: f"({each.name} - {state})/_seconds"}, {"seconds": "time_constant"}
+            errors.append(Candidate("input_error", "input", each.name, "input_lag", names=names, states=states))
+    return errors
 
 
 def _list_missing_terms(
@@ -268,7 +268,7 @@ def _list_missing_terms(
                 role=role,
                 means=shape.means,
                 names=shape.names,
-                states={written[one]: with_names(rate, written) for one, rate in shape.states.items()},
+                states={written[state]: with_names(rate, written) for state, rate in shape.states.items()},
                 power=place.power * (role.partition(" - ")[0] == place.motions[0][0]),
             )
 
@@ -285,7 +285,7 @@ def saturations(simulation: Simulation, servos: Mapping[str, tuple[float, float,
         "min(max({s}, -{limit}), {limit})": {"limit": "half widths of x"},
         "min(max({s}, {lower_limit}), {upper_limit})": two_sizes,
     }
-    found = [
+    limited = [
         Candidate("input_error", "input", signal.name, "input_saturation", (form,), limits, role=signal.name)
         for signal in simulation.inputs
         for form, limits in forms.items()
@@ -294,8 +294,8 @@ def saturations(simulation: Simulation, servos: Mapping[str, tuple[float, float,
         rest, limits = f"{constant!r} + {moved}", {"limit": "half widths of x"}
         form = f"(min(max({gain!r}*{{s}} + {rest}, -{{limit}}), {{limit}}) - ({rest}))/{gain!r}"
         force = f"{gain!r}*{name} + {rest}"
-        found.append(Candidate("input_error", "input", name, "force_saturation", (form,), limits, role=force))
-    return tuple(found)
+        limited.append(Candidate("input_error", "input", name, "force_saturation", (form,), limits, role=force))
+    return tuple(limited)
 
 
 def free_name(name: str, taken: Collection[str]) -> str:
@@ -305,7 +305,7 @@ def free_name(name: str, taken: Collection[str]) -> str:
     'hysteresis_knee_2'
     """
     numbered = (name, *(f"{name}_{number}" for number in range(2, len(taken) + 3)))
-    return next(one for one in numbered if one not in taken)
+    return next(each for each in numbered if each not in taken)
 
 
 def find_bounds(parameter: Parameter) -> tuple[float, ...]:
@@ -349,12 +349,12 @@ def list_unnamed_terms(simulation: Simulation, places: tuple[Place, ...]) -> tup
     rate_of = kinematic_rates(simulation)
     inputs = [signal.name for signal in simulation.driving if signal.name != "phase"]
     equations, nothing = dict(simulation.equations), {port.name: parse("0") for port in simulation.ports}
-    found = []
+    shapes = []
     for place in places:
-        own, rate = place.motions[0]
-        terms = [term for name in inputs for term in (name, f"{own}*{name}")]
+        state, rate = place.motions[0]
+        terms = [term for name in inputs for term in (name, f"{state}*{name}")]
         if rate and isinstance(simulation, Simulation):
-            speeds = [speed for other, speed in rate_of.items() if other != own]
+            speeds = [speed for other, speed in rate_of.items() if other != state]
             terms += [written(_write_out(simulation, equations[speed], nothing)) for speed in speeds]
-        found += [no_shape(place, (term,), own) for term in terms]
-    return tuple(found)
+        shapes += [no_shape(place, (term,), state) for term in terms]
+    return tuple(shapes)

@@ -68,7 +68,7 @@ class Case:
     def at_other_cutoffs(self) -> list[Case]:
         """The case with estimated cut-offs lower and higher by their error; none where the file states them."""
         stated = [self.search.base.sensor(name).lowpass for name in self.measured.channels]
-        return [replace(self, record_filter=one) for one in self.record_filter.within_error(stated)]
+        return [replace(self, record_filter=passed) for passed in self.record_filter.within_error(stated)]
 
     @cached_property
     def sensor_noise(self) -> Values:
@@ -78,10 +78,10 @@ class Case:
         filter has made the noise as smooth as the signal.
         """
         given = [self.search.base.sensor(name).sd for name in self.measured.channels]
-        said = np.array([np.nan if one is None else one for one in given]) * self.record_filter.gains
-        unfiltered = np.array([one is None for one in self.record_filter.cutoffs_hz])
+        given_sizes = np.array([np.nan if size is None else size for size in given]) * self.record_filter.gains
+        unfiltered = np.array([size is None for size in self.record_filter.cutoffs_hz])
         estimated = np.where(unfiltered, sensor_noise(self.measured.observed), np.nan)
-        return np.where(np.isnan(said), estimated, said)
+        return np.where(np.isnan(given_sizes), estimated, given_sizes)
 
     @cached_property
     def scale(self) -> GapScale:

@@ -132,26 +132,26 @@ def keep_useful(case: Case, as_read: ScoredModel, now: ScoredModel) -> ScoredMod
 
 def plainest(case: Case, named: ScoredModel) -> Verdict | None:
     """Return the verdict on the plainest explanations that close most of the gap; None where these close too little."""
-    found = closing_most(case, (named.parts,) if named.parts else ())
-    if found is None or found.closed < CRITERIA.half:
+    closing = closing_most(case, (named.parts,) if named.parts else ())
+    if closing is None or closing.closed < CRITERIA.half:
         return None
-    found = replace(found, now=prefer_on_held_out(case, found.now, found.near))
-    plain, likelier = compared([found.as_read, found.now])
+    closing = replace(closing, now=prefer_on_held_out(case, closing.now, closing.near))
+    plain, likelier = compared([closing.as_read, closing.now])
     if likelier.bic > plain.bic:  # unseen data decide; what was learned from must not speak against it
         return None
-    now = keep_useful(case, found.as_read, found.now)
+    now = keep_useful(case, closing.as_read, closing.now)
     fit, names = now.fit, now.size
     known = fit.starts.shape[1] + names  # names that cancel each other do so whatever the file's numbers are
     alone = replace(fit, free=fit.free[:names], slopes=fit.slopes[..., :known], prior=Prior())
     if not is_certain(replace(now, fit=alone)):
         return None
-    proof = prove_held_out(case, found.as_read, now)
-    if now is found.now and proof.closed > CRITERIA.half and not proof.bears_out:  # few pieces are held out
-        proof = replace(proof, test=found.test)
+    proof = prove_held_out(case, closing.as_read, now)
+    if now is closing.now and proof.closed > CRITERIA.half and not proof.bears_out:  # few pieces are held out
+        proof = replace(proof, test=closing.test)
     if not proof.bears_out:
         return None
     likeliest = (named,) if case.search.base.inexact else ()  # what it errs by may choose between two like names
-    return Verdict(now, (found.now, *likeliest, *found.others), proof=proof, small=found.small)
+    return Verdict(now, (closing.now, *likeliest, *closing.others), proof=proof, small=closing.small)
 
 
 def prefer_on_held_out(case: Case, now: ScoredModel, near: tuple[ScoredModel, ...]) -> ScoredModel:
@@ -163,7 +163,7 @@ def prefer_on_held_out(case: Case, now: ScoredModel, near: tuple[ScoredModel, ..
         for proof, model in zip(proofs, equal, strict=True)
         if proof.bears_out and proof.test.p < case.alpha / len(equal)
     ]
-    return min(better, key=lambda one: one[:2])[2] if better else now
+    return min(better, key=lambda rank: rank[:2])[2] if better else now
 
 
 def search_runs(case: Case, as_read: ScoredModel) -> tuple[ScoredModel, ScoredModel, list[ScoredModel]]:
@@ -196,14 +196,14 @@ def with_autocorrelation(
     case: Case, as_read: ScoredModel, named: ScoredModel, shape: ScoredModel | None, rivals: list[ScoredModel]
 ) -> Verdict | None:
     """Return a verdict where residuals are autocorrelated, and process noise or a shape explain it better."""
-    plain, *found = compared([as_read, named, *([shape] if shape else [])])
-    likelier = [one for one in found if one.parts and plain.bic - one.bic >= CRITERIA.margin]
-    ordered = [one for one in likelier if prove_held_out(case, plain, one).bears_out]
+    plain, *fits = compared([as_read, named, *([shape] if shape else [])])
+    likelier = [model for model in fits if model.parts and plain.bic - model.bic >= CRITERIA.margin]
+    ordered = [model for model in likelier if prove_held_out(case, plain, model).bears_out]
     if not ordered:
         return with_random_pushes(case, as_read, named, rivals)
-    worth = CRITERIA.matters * (plain.bic - found[0].bic) + CRITERIA.margin
-    if shape and found[1] in ordered and found[1].bic < found[0].bic - worth:
-        return Verdict(found[1], (named, *rivals), proof=prove_held_out(case, plain, found[1]))
+    worth = CRITERIA.matters * (plain.bic - fits[0].bic) + CRITERIA.margin
+    if shape and fits[1] in ordered and fits[1].bic < fits[0].bic - worth:
+        return Verdict(fits[1], (named, *rivals), proof=prove_held_out(case, plain, fits[1]))
     return None
 
 
@@ -240,23 +240,23 @@ def find_term_before(case: Case, as_read: ScoredModel, named: ScoredModel, rival
     others = [rival for rival in rivals if rival.labels != named.labels and rival.bic < named.bic + CRITERIA.support]
     others = [model for model in others if model.shooting.segments.span == span]
     borne: list[tuple[float, ScoredModel, Proof]] = []
-    for one in (named, *others[:MOST_NEAR]):
-        before, now = compared([as_read, one])
+    for model in (named, *others[:MOST_NEAR]):
+        before, now = compared([as_read, model])
         beside = rank_process_noise(now, case.search.places)[0]
         likelier = pushes.bic - min(beside.bic, beside.rival) - now.size * float(np.log(beside.numbers))
         proof = prove_held_out(case, before, now)
         likelier += proof.gained - 2 * float(np.log(among))
         stays = not case.spans_a_period(as_read) or not strays(case, now, free_run_error(case, before))
-        if one.parts and likelier > CRITERIA.margin and stays:
+        if model.parts and likelier > CRITERIA.margin and stays:
             pair = [cross_validated(scale, now, each.parts) for each in (before, now)]
             if pair[0].errors.sum() > pair[1].errors.sum():  # of pieces left out of the fit
                 borne.append((likelier, now, proof))
     if not borne:
         return None
-    likelier, now, proof = max(borne, key=lambda one: one[0])
+    likelier, now, proof = max(borne, key=lambda row: row[0])
     if not proof.bears_out:  # what is held out hardly shows it: all data together
         proof = replace(proof, test=replace(proof.test, p=float(np.exp(-likelier / 2))))
-    return Verdict(now, (now, *(one for one in (named, *rivals) if one.labels != now.labels)), proof=proof)
+    return Verdict(now, (now, *(rival for rival in (named, *rivals) if rival.labels != now.labels)), proof=proof)
 
 
 def says_more(shape: ScoredModel, named: ScoredModel) -> bool:
@@ -275,7 +275,7 @@ def refit_longer(case: Case, named: ScoredModel, rivals: list[ScoredModel]) -> t
     near = [model for model in near if model.shooting.segments.span == longer.shooting.segments.span]
     first, *others = ranked(compared([longer, *near]), case.search.candidates)
     others = [replace(model, gained=first.gained + first.bic - model.bic) for model in others]
-    decided_on = {one.labels for one in (first, *others)}
+    decided_on = {model.labels for model in (first, *others)}
     return first, [first, *others, *(rival for rival in rivals if rival.labels not in decided_on)]
 
 

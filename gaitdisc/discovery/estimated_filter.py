@@ -47,16 +47,16 @@ def find_record_filter(
         each = None if like is None else [*like[:, :, number]]
         return find_filter(_trials(measured, number), measured.rate, each, at_hz)
 
-    seen = {number: found for number in unknown if (found := find(number))}
+    seen = {number: estimate for number in unknown if (estimate := find(number))}
     for number in [number for number in unknown if number not in seen]:  # its own spectrum shows none clearly
         alike = MOTION if units[number] in MOTION else {units[number]}
-        beside = [one.cutoff_hz for k, one in seen.items() if units[k] in alike and one.signal <= ROUGH]
-        if beside and (found := find(number, geometric_mean(beside))):
-            seen[number] = found
-    felt = any(one.signal > FELT for one in seen.values())
+        beside = [each.cutoff_hz for k, each in seen.items() if units[k] in alike and each.signal <= ROUGH]
+        if beside and (estimate := find(number, geometric_mean(beside))):
+            seen[number] = estimate
+    felt = any(each.signal > FELT for each in seen.values())
     if guess is None and like is None:  # channels of one unit are taken to be recorded alike
-        sure = {number: one for number, one in seen.items() if one.signal <= ROUGH}
-        alike = {number: [one for k, one in sure.items() if units[k] == units[number]] for number in unknown}
+        sure = {number: each for number, each in seen.items() if each.signal <= ROUGH}
+        alike = {number: [each for k, each in sure.items() if units[k] == units[number]] for number in unknown}
         seen = {number: sure.get(number, some[0]) for number, some in alike.items() if some}
     elif guess is not None and ((inputs := bool(seen) and _inputs_are_filtered(simulation, measured)) or felt):
         length = min(max(int(period * measured.rate), FEWEST_SAMPLES), int(measured.samples.min()) // 2)
@@ -80,7 +80,7 @@ def find_record_filter(
 
 def note_other(passed: RecordFilter, source: str) -> Finding:
     """Finding that no effect is named because of another cut-off."""
-    hz = ", ".join(f"{one:.3g}" for one in dict.fromkeys(passed.cutoffs_hz) if one)
+    hz = ", ".join(f"{cutoff:.3g}" for cutoff in dict.fromkeys(passed.cutoffs_hz) if cutoff)
     what = f"at {hz} Hz, which is within the error of this estimate, only noise is left, so no effect is named"
     spoils = "a small effect; if you know the cut-off, state lowpass in the simulation file"
     return Finding("note", "low-pass", source, what, spoils)
@@ -96,18 +96,18 @@ def _inputs_are_filtered(simulation: Simulation, measured: Measured) -> bool:
     drive = measured.drive
     trials = [signal[:samples] for signal, samples in zip(drive.inputs, drive.samples, strict=True)]
     numbers = [number for number, signal in enumerate(simulation.inputs) if not signal.computed]
-    found = [find_filter([trial[:, number] for trial in trials], drive.rate) for number in numbers]
-    return any(one is not None and one.signal < SURE for one in found)
+    estimates = [find_filter([trial[:, number] for trial in trials], drive.rate) for number in numbers]
+    return any(each is not None and each.signal < SURE for each in estimates)
 
 
 def _as_the_surer(seen: dict[int, RecordedFilter], units: list[str]) -> dict[int, float]:
     """Cut-offs, a rough one in the place of which stands that of surer channels of the same unit."""
-    found = {}
-    for number, one in seen.items():
+    cutoffs = {}
+    for number, each in seen.items():
         beside = [other for k, other in seen.items() if units[k] == units[number]]
-        surer = [other.cutoff_hz for other in beside if other.signal <= ROUGH < one.signal]
-        found[number] = geometric_mean(surer) if surer else one.cutoff_hz
-    return found
+        surer = [other.cutoff_hz for other in beside if other.signal <= ROUGH < each.signal]
+        cutoffs[number] = geometric_mean(surer) if surer else each.cutoff_hz
+    return cutoffs
 
 
 def _beside_the_simulation(
@@ -117,20 +117,20 @@ def _beside_the_simulation(
 
     Where inputs were filtered too, none are found if the simulation goes better with the record as it is.
     """
-    measured, like, found = now.shooting.measured, _stitch(now), dict(seen)
-    for number, one in seen.items():
-        if one.signal <= FELT:
+    measured, like, kept = now.shooting.measured, _stitch(now), dict(seen)
+    for number, each in seen.items():
+        if each.signal <= FELT:
             continue
         again = find_filter(_trials(measured, number), measured.rate, [each[:, number] for each in like])
-        if one.signal > SURE:
-            found.pop(number)
-        if again and (one.signal > SURE or again.likelihood > one.likelihood + LIKELIER):
-            found[number] = again
-    if not inputs or not found:
-        return found
-    cutoffs = tuple(found[number].cutoff_hz if number in found else None for number in range(len(measured.channels)))
+        if each.signal > SURE:
+            kept.pop(number)
+        if again and (each.signal > SURE or again.likelihood > each.likelihood + LIKELIER):
+            kept[number] = again
+    if not inputs or not kept:
+        return kept
+    cutoffs = tuple(kept[number].cutoff_hz if number in kept else None for number in range(len(measured.channels)))
     filtered = replace(now.shooting, record_filter=RecordFilter(cutoffs, measured.rate))
-    return found if now.refitted(filtered).fit.misfit < now.fit.misfit else {}
+    return kept if now.refitted(filtered).fit.misfit < now.fit.misfit else {}
 
 
 def _stitch(now: ScoredModel) -> Values:

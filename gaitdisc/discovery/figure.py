@@ -45,15 +45,15 @@ def explanations_figure(discovery: Discovery) -> list[Figure]:
     unit, floor = noise_floor(discovery, channel)
     factor = display_channel(discovery, channel)[1]
     drawn, (cells,) = panels(1, len(explanations), 1.1, Room(left=0.6, top=0.3, across=0.12))
-    for number, (axes, one) in enumerate(zip(cells, explanations, strict=True), 1):
+    for number, (axes, each) in enumerate(zip(cells, explanations, strict=True), 1):
         axes.axhspan(-2 * floor, 2 * floor, color="#888888", alpha=0.22, linewidth=0)
-        axes.plot(one.time, factor * np.array(one.left), color=MODELS["augmented"].colour, linewidth=0.9)
+        axes.plot(each.time, factor * np.array(each.left), color=MODELS["augmented"].colour, linewidth=0.9)
         axes.set_title(str(number))
         axes.sharey(cells[0])
         axes.tick_params(labelleft=number == 1)
         axes.set_xlabel("time [s]", labelpad=1)
     cells[0].set_ylabel(f"[{unit}]", labelpad=1)
-    columns = {str(number): pd.Series(factor * np.array(one.left)) for number, one in enumerate(explanations, 1)}
+    columns = {str(number): pd.Series(factor * np.array(each.left)) for number, each in enumerate(explanations, 1)}
     caption = (
         f"Residual of each explanation in the table, for {channel}: measured minus simulated, over the first held-out "
         "run. Grey band: two standard deviations of the noise."
@@ -72,10 +72,10 @@ def display_runs(discovery: Discovery) -> pd.DataFrame:
 
 def pick_stretch(table: pd.DataFrame, channel: str) -> pd.DataFrame:
     """A typical stretch of the first trial, of the table of `display_runs`."""
-    one = table[table["trial"] == table["trial"].iloc[0]].reset_index(drop=True)
-    gap = (one[f"{channel}_measured"] - one[f"{channel}_simulated"]).to_numpy() ** 2
-    begin, end = typical_stretch(gap, min(SHOWN, len(one)))
-    shown = one.iloc[begin:end]
+    trial = table[table["trial"] == table["trial"].iloc[0]].reset_index(drop=True)
+    gap = (trial[f"{channel}_measured"] - trial[f"{channel}_simulated"]).to_numpy() ** 2
+    begin, end = typical_stretch(gap, min(SHOWN, len(trial)))
+    shown = trial.iloc[begin:end]
     step = shown["time"].diff()
     interrupted = shown.loc[step > 1.5 * step.median(), ["time"]] - step.median() / 2  # no line across what is unknown
     return pd.concat([shown, interrupted]).sort_values("time", kind="stable")
@@ -181,14 +181,14 @@ def _over_stride(discovery: Discovery, table: pd.DataFrame) -> Figure:
             axes.set_title(title)
             axes.set_ylabel(f"[{unit}]", labelpad=1)
             axes.set_xlim(0, 100)
-            for one in discovery.where:
-                if one.phase:  # a bar at the foot
-                    ends, across = [100 * share for share in one.phase], axes.get_xaxis_transform()
+            for effect in discovery.where:
+                if effect.phase:  # a bar at the foot
+                    ends, across = [100 * share for share in effect.phase], axes.get_xaxis_transform()
                     look = {"color": "#b06f00", "linewidth": 2.2, "solid_capstyle": "butt"}
                     axes.plot(ends, [0.02, 0.02], transform=across, **look)
         kept += [
-            one.assign(channel=channel, unit=unit, what=word)
-            for one, word in zip([*curves.values(), *gaps], [*WORDS, "gap_before", "gap_after"], strict=True)
+            curve.assign(channel=channel, unit=unit, what=word)
+            for curve, word in zip([*curves.values(), *gaps], [*WORDS, "gap_before", "gap_after"], strict=True)
         ]
     for axes in grid[-1]:
         axes.set_xlabel("stride [%]", labelpad=1)
@@ -219,7 +219,7 @@ def _against_state(discovery: Discovery, table: pd.DataFrame) -> Figure:
         axes.set_xlabel(f"{channel} [{unit}]", labelpad=1)
         axes.set_ylabel(f"[{unit}]", labelpad=1)
         words = ("gap_before", "gap_after")
-        kept += [one.assign(channel=channel, unit=unit, what=word) for one, word in zip(gaps, words, strict=True)]
+        kept += [gap.assign(channel=channel, unit=unit, what=word) for gap, word in zip(gaps, words, strict=True)]
     legend(drawn, discovery_key(measured=False))
     caption = (
         f"Residual (measured minus simulated) against the measured channel, all {len(table)} held-out samples: mean "

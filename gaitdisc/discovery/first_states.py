@@ -49,15 +49,15 @@ def guess_states(simulation: Simulation, measured: Measured, period: float, rate
     window = max(int(SHARE_OF_PERIOD * period * rate) // 2 * 2 + 1, 5)
     spread = np.nanstd(observed, axis=(0, 1))
     spread = np.where(spread > 0, spread, 1.0)
-    rates = {machine.states.index(one): machine.states.index(other) for one, other in rate_of.items()}
+    rates = {machine.states.index(state): machine.states.index(other) for state, other in rate_of.items()}
     initial = np.array([state.initial or 0.0 for state in simulation.states])
     out, hidden = np.full((*observed.shape[:2], len(machine.states)), np.nan), np.ones(len(machine.states), bool)
     for trial, record in enumerate(observed):
         length = int(measured.samples[trial])
         width = min(window, length // 2 * 2 - 1)
         whole = [_bridge(channel, np.isfinite(channel)) for channel in record[:length].T]
-        smooth = np.column_stack([savgol_filter(one, width, 3) for one in whole]) / spread
-        slope = np.column_stack([savgol_filter(one, width, 3, 1, 1 / rate) for one in whole]) / spread
+        smooth = np.column_stack([savgol_filter(trial, width, 3) for trial in whole]) / spread
+        slope = np.column_stack([savgol_filter(trial, width, 3, 1, 1 / rate) for trial in whole]) / spread
         t = drive.time0[trial] + np.arange(length) / rate
         seeing = ObservationMap(machine, t, drive.inputs[trial, :length], spread)
         out[trial, :length], known = _states(seeing, smooth, slope, np.tile(initial, (length, 1)), rates, rate)
@@ -77,8 +77,8 @@ def _following(simulation: Simulation, drive: Drive, states: Values, hidden: NDA
     if not (apart[trials, drive.samples - 1] <= FORGOTTEN * apart.max(axis=1)).all():
         return states
     out = states.copy()
-    said = [state.initial is not None for state, open_ in zip(simulation.states, hidden, strict=True) if open_]
-    out[..., hidden] = np.where(np.isfinite(states[..., hidden]), np.where(said, *runs), np.nan)
+    given = [state.initial is not None for state, open_ in zip(simulation.states, hidden, strict=True) if open_]
+    out[..., hidden] = np.where(np.isfinite(states[..., hidden]), np.where(given, *runs), np.nan)
     return out
 
 
@@ -92,7 +92,7 @@ def _states(
     free = np.ones(begin.shape[1], bool)
     x, known = seeing.solved(smooth, begin, free)
     often = known.mean(axis=0) > OFTEN
-    open_ones = {one: other for one, other in rates.items() if often[one] and not often[other]}
+    open_ones = {state: other for state, other in rates.items() if often[state] and not often[other]}
     free[[*open_ones.values()]] = False
     for _ in range(TURNS if open_ones else 0):
         slopes = seeing.jacobian(x)
@@ -120,8 +120,8 @@ def with_own_states(shooting: Shooting, machine: Compiled, values: Values, start
     if shooting.past is None or len(machine.states) == shooting.past.shape[2]:
         return starts[:, : len(machine.states)]
     segments = shooting.segments
-    own = follow(shooting, machine.simulation, values[None])[0][segments.trial, segments.begin]
-    return np.concatenate([starts[:, : shooting.past.shape[2]], own], axis=1)
+    added = follow(shooting, machine.simulation, values[None])[0][segments.trial, segments.begin]
+    return np.concatenate([starts[:, : shooting.past.shape[2]], added], axis=1)
 
 
 def follow(shooting: Shooting, simulation: Simulation, values: Values) -> Values:
@@ -136,8 +136,8 @@ def follow(shooting: Shooting, simulation: Simulation, values: Values) -> Values
                 past[trial, :length, state] = _bridge(seen, known)
     inputs = np.concatenate([past, drive.inputs], axis=2)
     along = Drive(drive.rate, drive.time0, inputs, drive.samples)
-    own = range(shooting.past.shape[2], len(simulation.states))
-    machine = compile_simulation(isolate_equations(simulation, own))
+    added = range(shooting.past.shape[2], len(simulation.states))
+    machine = compile_simulation(isolate_equations(simulation, added))
     trials, versions = len(drive.samples), len(values)
     trial = np.tile(np.arange(trials), versions)
     starts = np.tile([state.initial or 0.0 for state in machine.simulation.states], (len(trial), 1))
@@ -155,10 +155,10 @@ def run_twice(machine: Compiled, drive: Drive, rows: Rows, substeps: int = SUBST
     return first, machine.run(drive, again, steps, substeps=substeps)[0]
 
 
-def isolate_equations(simulation: Simulation, own: Iterable[int]) -> Simulation:
+def isolate_equations(simulation: Simulation, numbers: Iterable[int]) -> Simulation:
     """Return the equations of some of the states, the others being inputs before the rest; nothing acts at ports."""
-    states, equations = [simulation.states[one] for one in own], dict(simulation.equations)
-    others = [one for one in simulation.states if one not in states]
+    states, equations = [simulation.states[number] for number in numbers], dict(simulation.equations)
+    others = [state for state in simulation.states if state not in states]
     return replace(
         simulation,
         states=tuple(states),

@@ -173,7 +173,7 @@ def read_prior(simulation: Simulation, exact: frozenset[str] = frozenset()) -> P
     >>> prior.names, prior.sd.round(3).tolist()
     (('inertia', 'k'), [0.049, 19.5])
     """
-    found = [
+    priors = [
         (place, parameter.name, parameter.value, parameter.low, parameter.high)
         for place, parameter in enumerate(simulation.parameters)
         if parameter.low is not None
@@ -181,9 +181,9 @@ def read_prior(simulation: Simulation, exact: frozenset[str] = frozenset()) -> P
         and parameter.low < parameter.high
         and parameter.name not in exact
     ]
-    if not found:
+    if not priors:
         return Prior()
-    places, names, *numbers = zip(*found, strict=True)
+    places, names, *numbers = zip(*priors, strict=True)
     return Prior(names, np.array(places, dtype=np.intp), *(np.array(each, float) for each in numbers))
 
 

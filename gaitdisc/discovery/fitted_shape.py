@@ -36,7 +36,7 @@ def shapes_at(place: Place, now: ScoredModel, search: Search) -> list[Candidate]
 
     At a place between bodies the states may be differences of two, and another body's.
     """
-    shapes = [one for motion in place.motions for one in _shapes_over(place, *motion, now, search)]
+    shapes = [shape for motion in place.motions for shape in _shapes_over(place, *motion, now, search)]
     if any(signal.name == "phase" for signal in search.base.inputs):
         centres = (np.arange(STRIDE_BUMPS) + 0.5) / STRIDE_BUMPS
         sharp = (STRIDE_BUMPS / (SHARPNESS * 2 * np.pi)) ** 2 * 2
@@ -50,7 +50,7 @@ def _shapes_over(place: Place, x: str, v: str, now: ScoredModel, search: Search)
     v = "" if v == x else v
     axes = [x, v] if v else [x, *place.others[:1]]
     ranges = {axis: np.quantile(search.along(now, axis), VISITED) for axis in axes}
-    shapes = [_bumps(ranges, {one: count}) for one in axes for count in (FLAT_BUMPS, FINE_BUMPS)]
+    shapes = [_bumps(ranges, {axis: count}) for axis in axes for count in (FLAT_BUMPS, FINE_BUMPS)]
     name, across = _bracket(v or x), _bumps(ranges, {x: FLAT_BUMPS})
     shapes.append([f"{piece}*tanh({name}/{SHARE_OF_SPEED * max(map(abs, ranges[v or x])):.4g})" for piece in across])
     if v:
@@ -76,19 +76,19 @@ def fit_shape(case: Case, now: ScoredModel) -> ScoredModel | None:
     tried = [cross_validated(scale, plain, (part,)) for part in _promising(now, search, plain)]
     best = _cheapest(tried, plain)[:2]
     tried = best + [
-        cross_validated(scale, plain, (part,)) for one in best for part in (*_thin_shape(one), *_local(one))
+        cross_validated(scale, plain, (part,)) for shape in best for part in (*_thin_shape(shape), *_local(shape))
     ]
     kept = _cheapest([model for model in tried if search.sensible(model)], plain)
     return score(replace(kept[0], shooting=now.shooting)) if kept else None
 
 
-def find_cost(one: CrossValidated, plain: CrossValidated) -> float:
+def find_cost(model: CrossValidated, plain: CrossValidated) -> float:
     """Return what a model leaves of the gap on runs left out of the fit, and a little for each of its numbers."""
-    return one.gap / plain.gap + CRITERIA.each_number * one.size if plain.gap > 0 else np.inf
+    return model.gap / plain.gap + CRITERIA.each_number * model.size if plain.gap > 0 else np.inf
 
 
 def _cheapest(tried: list[CrossValidated], plain: CrossValidated) -> list[CrossValidated]:
-    return sorted((model for model in tried if np.isfinite(model.gap)), key=lambda one: find_cost(one, plain))
+    return sorted((model for model in tried if np.isfinite(model.gap)), key=lambda model: find_cost(model, plain))
 
 
 def _promising(now: ScoredModel, search: Search, plain: CrossValidated) -> list[Score]:
@@ -96,8 +96,8 @@ def _promising(now: ScoredModel, search: Search, plain: CrossValidated) -> list[
     scorer = search.scorer(plain)
     shapes = tuple(shape for place in search.places for shape in shapes_at(place, now, search))
     numbers, each = plain.shooting.known.sum(), CRITERIA.independent
-    worth = [one for one in scorer.scores(shapes) if each * one.gain > np.log(numbers) * len(one.candidate.slots)]
-    scores = sorted(worth, key=lambda one: np.log(numbers / each) * len(one.candidate.slots) - one.gain)
+    worth = [fit for fit in scorer.scores(shapes) if each * fit.gain > np.log(numbers) * len(fit.candidate.slots)]
+    scores = sorted(worth, key=lambda fit: np.log(numbers / each) * len(fit.candidate.slots) - fit.gain)
     return scores[:FITTED]
 
 
@@ -155,7 +155,7 @@ def _powers(ranges: dict[str, Values]) -> list[str]:
         name = _bracket(axis)
         scaled.append(f"(({name} - {_number((low + high) / 2)})/{(high - low) / 2 or 1.0:.4g})")
     orders = [(i, j) for i in range(DEGREE + 1) for j in range(DEGREE + 1 - i)]
-    return ["*".join(f"{one}**{n}" for one, n in zip(scaled, order, strict=True) if n) or "1" for order in orders]
+    return ["*".join(f"{state}**{n}" for state, n in zip(scaled, order, strict=True) if n) or "1" for order in orders]
 
 
 def _bracket(axis: str) -> str:

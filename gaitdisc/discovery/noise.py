@@ -84,7 +84,7 @@ class Noise:
 
 def white_noise(size: Values) -> Noise:
     """Return white noise, by the standard deviation of each channel (channel,)."""
-    return Noise(tuple((np.zeros(0),) for _ in size), tuple(np.array([one]) for one in size))
+    return Noise(tuple((np.zeros(0),) for _ in size), tuple(np.array([size]) for size in size))
 
 
 def find_noise(
@@ -126,9 +126,9 @@ def find_noise(
         predictors.append(tuple(orders[: best + 1]))
         spread.append(np.sqrt(left[: best + 1]))
         if autocorrelation is not None:
-            own = autocorrelation[: best + 1, channel] * (1 - np.arange(best + 1) / each)
-            own[1:] /= 1 + white_share
-            filtered.append(float(1 / np.sqrt(_predict(own)[1][-1])))
+            lags = autocorrelation[: best + 1, channel] * (1 - np.arange(best + 1) / each)
+            lags[1:] /= 1 + white_share
+            filtered.append(float(1 / np.sqrt(_predict(lags)[1][-1])))
     return Noise(tuple(predictors), tuple(spread), tuple(filtered))
 
 
@@ -186,15 +186,15 @@ def sensor_noise(observed: Values) -> Values:
     powers = np.vander(np.arange(WINDOW) - WINDOW // 2, ORDER + 1).astype(float)
     kept = 1 - (powers @ np.linalg.pinv(powers))[WINDOW // 2, WINDOW // 2]
     spread = np.nanstd(observed, axis=(0, 1))
-    found = LEAST * spread
+    sizes = LEAST * spread
     middle = slice(WINDOW // 2, -(WINDOW // 2))
     for channel, trials in enumerate(np.moveaxis(observed, 2, 0)):
         known = [trial[np.isfinite(trial)] for trial in trials]
-        rough = [(one - savgol_filter(one, WINDOW, ORDER))[middle] for one in known if len(one) >= FEWEST]
+        rough = [(trial - savgol_filter(trial, WINDOW, ORDER))[middle] for trial in known if len(trial) >= FEWEST]
         if rough:
-            size = MAD_OF_NORMAL * float(np.median([np.median(np.abs(one)) for one in rough])) / np.sqrt(kept)
-            found[channel] = max(size, found[channel])
-    return found
+            size = MAD_OF_NORMAL * float(np.median([np.median(np.abs(each)) for each in rough])) / np.sqrt(kept)
+            sizes[channel] = max(size, sizes[channel])
+    return sizes
 
 
 def savgol_filter(values: Values, width: int, degree: int, derivative: int = 0, step: float = 1.0) -> Values:

@@ -66,7 +66,7 @@ def rank_process_noise(model: ScoredModel, places: tuple[Place, ...]) -> list[Pr
     noise = find_noise(fit.residual, now.starts.shape[1] / fit.residual.shape[2], white_share=0.0)
     rival = min(_autoregressive(noise, plain, columns[..., 1:] * size[:, None], now, known), unmoved)
     few_runs = replace(model, shooting=few, fit=now)
-    line, found = linearise(few_runs, places), []
+    line, ranked = linearise(few_runs, places), []
     for number, place in enumerate(places):
         steps = fit.states.shape[1] - 1
         last = min((length - 1) * segments.every + 2 * segments.margin, steps)  # later pushes change nothing here
@@ -75,13 +75,13 @@ def rank_process_noise(model: ScoredModel, places: tuple[Place, ...]) -> list[Pr
         pushes = (seen / size[:, None] * known[..., None]).reshape(flat)
         unit = (pushes**2).sum() / count.sum()
         if unit == 0:  # pushes there change nothing of what is measured
-            found.append(ProcessNoise(place, np.inf, rival, 0.0, int(count.sum())))
+            ranked.append(ProcessNoise(place, np.inf, rival, 0.0, int(count.sum())))
             continue
         pushed = now.beside(np.asarray(np.linalg.solve(factor, pushes), np.float64))
         best, level, share = min((*pushed.likelihood(share / unit, numbers), share) for share in SHARES)
         best += constant + float(np.log(count.sum()))
-        found.append(ProcessNoise(place, best, rival, float(np.sqrt(level * share / unit)), int(count.sum())))
-    return sorted(found, key=lambda pushes: pushes.bic)
+        ranked.append(ProcessNoise(place, best, rival, float(np.sqrt(level * share / unit)), int(count.sum())))
+    return sorted(ranked, key=lambda pushes: pushes.bic)
 
 
 def sensor_covariance(shooting: Shooting, known: NDArray[np.bool_]) -> Values:
@@ -95,9 +95,9 @@ def sensor_covariance(shooting: Shooting, known: NDArray[np.bool_]) -> Values:
     passed = shooting.filtered(unit, 1)[0, :length]
     out = np.zeros((length, channels, length, channels))
     for channel in range(channels):
-        own = passed[:, channel] @ passed[:, channel].T
-        own /= np.diag(own).mean()
-        out[:, channel, :, channel] = (own + ROUNDED * np.eye(length)) / (1 + ROUNDED)
+        filtered = passed[:, channel] @ passed[:, channel].T
+        filtered /= np.diag(filtered).mean()
+        out[:, channel, :, channel] = (filtered + ROUNDED * np.eye(length)) / (1 + ROUNDED)
     flat = known.reshape(segments, -1)
     both = flat[:, :, None] & flat[:, None, :]
     return np.where(both, out.reshape(length * channels, -1), np.eye(length * channels))

@@ -44,13 +44,13 @@ def prefer_relatives(case: Case, as_read: ScoredModel, verdict: Verdict) -> Verd
     if verdict.word in ("unnamed", "process_noise", "no_gap") or not verdict.proof:
         return replace(verdict, rivals=tuple(rival for rival in verdict.rivals if shows(rival)))
     for number in range(len(verdict.found.parts)):
-        found = verdict.found
-        tried = [in_its_place(case, found, number, candidate) for candidate in list_relatives(case, found, number)]
+        model = verdict.found
+        tried = [in_its_place(case, model, number, candidate) for candidate in list_relatives(case, model, number)]
         for now in sorted((model for model in tried if model), key=lambda model: model.bic):
-            idle = not shows(found) or may_vanish(found, number)
-            if found.parts[number].candidate.kind == "input":  # what is added takes half of what a number leaves
-                idle = idle or free_run_error(case, found) > CRITERIA.half * free_run_error(case, now)
-            if not idle and is_needed(case, now, found):
+            idle = not shows(model) or may_vanish(model, number)
+            if model.parts[number].candidate.kind == "input":  # what is added takes half of what a number leaves
+                idle = idle or free_run_error(case, model) > CRITERIA.half * free_run_error(case, now)
+            if not idle and is_needed(case, now, model):
                 continue
             proof = prove_held_out(case, as_read, now)
             if proof.bears_out:
@@ -70,24 +70,24 @@ def prefer_delay(case: Case, as_read: ScoredModel, verdict: Verdict) -> Verdict:
     """
     parts = verdict.found.parts
     firsts = {place.motions[0] for place in case.search.places}
-    springs = [one for one in parts if one.candidate.name == AT_ONCE and (one.candidate.role, "") in firsts]
+    springs = [part for part in parts if part.candidate.name == AT_ONCE and (part.candidate.role, "") in firsts]
     if len(parts) != 1 or not springs or not verdict.proof:
         return verdict
-    found, search, at_once = verdict.found, case.search, springs[0].candidate
+    named, search, at_once = verdict.found, case.search, springs[0].candidate
     begun = [
-        Part(one, {"factor": springs[0].values["factor"], "d": float(delay)})
-        for one in search.candidates
-        if (one.name, one.place, one.role) == (LATE, at_once.place, at_once.role)
+        Part(candidate, {"factor": springs[0].values["factor"], "d": float(delay)})
+        for candidate in search.candidates
+        if (candidate.name, candidate.place, candidate.role) == (LATE, at_once.place, at_once.role)
         for delay in delays(case.rhythm)[::STEP]
     ]
-    tried = [search.with_others(found, (part,)) for part in begun]
+    tried = [search.with_others(named, (part,)) for part in begun]
     tried = [model for model in tried if search.sensible(model) and is_certain(model) and not may_vanish(model, 0)]
     if not tried:
         return verdict
-    now = replace(min(tried, key=lambda model: model.bic), gained=found.gained)
-    _, now = compared([found, now])
+    now = replace(min(tried, key=lambda model: model.bic), gained=named.gained)
+    _, now = compared([named, now])
     proof = prove_held_out(case, as_read, now)
-    if not prove(case, found, now, now).bears_out or not proof.bears_out:
+    if not prove(case, named, now, now).bears_out or not proof.bears_out:
         return verdict
     return verdict.with_model(now, proof)
 
@@ -104,14 +104,14 @@ def look_at_whole_runs(case: Case, as_read: ScoredModel, verdict: Verdict) -> tu
     if not named.parts:
         return base, replace(verdict, found=base)
     most = free_run_error(case, base)
-    for one in (named, *verdict.rivals):
-        if not one.parts or strays(case, one, most):
+    for model in (named, *verdict.rivals):
+        if not model.parts or strays(case, model, most):
             continue
-        if one is named:
+        if model is named:
             return base, complete_on_whole_runs(case, as_read, verdict)
-        proof = prove_held_out(case, as_read, one)
+        proof = prove_held_out(case, as_read, model)
         if proof.bears_out:
-            return base, verdict.with_model(one, proof)
+            return base, verdict.with_model(model, proof)
     return base, Verdict(base, (named, *verdict.rivals), proof=verdict.proof)
 
 
@@ -126,24 +126,24 @@ def fit_whole_runs(case: Case, now: ScoredModel) -> ScoredModel:
 
 def complete_on_whole_runs(case: Case, as_read: ScoredModel, verdict: Verdict) -> Verdict:
     """Return a verdict with one explanation more, where this takes half of what free runs of the others leave."""
-    found, search = verdict.found, case.search
-    if verdict.word == "unnamed" or not grows_along_runs(case, found):
+    model, search = verdict.found, case.search
+    if verdict.word == "unnamed" or not grows_along_runs(case, model):
         return verdict
-    whole = fit_whole_runs(case, found)
+    whole = fit_whole_runs(case, model)
     whole = score(whole)
     own_error = case.scale.excess(whole.fit) < CRITERIA.model_error
     if own_error or case.leaves_noise(whole):
         return verdict
-    named, rivals = select_forward(search, whole, len(found.parts) + 1)
+    named, rivals = select_forward(search, whole, len(model.parts) + 1)
     if named is whole:
         return verdict
     tried = [rival for rival in rivals if len(rival.parts) == len(named.parts)]
-    left = [(free_run_error(case, one), one) for one in (named, *tried[:MOST_NEAR])]
-    least, before = min(error for error, _ in left), min(free_run_error(case, one) for one in (found, whole))
+    left = [(free_run_error(case, rival), rival) for rival in (named, *tried[:MOST_NEAR])]
+    least, before = min(error for error, _ in left), min(free_run_error(case, rival) for rival in (model, whole))
     closed = (np.sqrt(before) - np.sqrt(least)) / np.sqrt(free_run_error(case, as_read))
     if least > CRITERIA.half * before or closed < CRITERIA.matters:
         return verdict
-    more = ranked([one for error, one in left if error <= (1 + CRITERIA.model_error) * least], search.candidates)[0]
+    more = ranked([rival for error, rival in left if error <= (1 + CRITERIA.model_error) * least], search.candidates)[0]
     beside, proof = prove_held_out(case, whole, more, as_read), prove_held_out(case, as_read, more)
     if not beside.bears_out or not proof.bears_out:
         return verdict
@@ -155,29 +155,29 @@ def without_small(case: Case, as_read: ScoredModel, verdict: Verdict) -> Verdict
 
     The gap is that of unseen data above the sensors' noise; data that run alike without it say nothing.
     """
-    found, proof = verdict.found, verdict.proof
-    if not found.parts or not proof or is_uninformative(case, as_read, found):
+    model, proof = verdict.found, verdict.proof
+    if not model.parts or not proof or is_uninformative(case, as_read, model):
         return verdict
-    size = gap_size(proof.before, proof.after, case.noise_floor(found.noise.size), case.measured.channels, proof.test)
-    small = not case.leaves_noise(found) and 1 - np.sqrt(size.unexplained) < CRITERIA.matters
+    size = gap_size(proof.before, proof.after, case.noise_floor(model.noise.size), case.measured.channels, proof.test)
+    small = not case.leaves_noise(model) and 1 - np.sqrt(size.unexplained) < CRITERIA.matters
     if size.after <= size.before and not small:
         return verdict
-    return Verdict(as_read, (found, *verdict.rivals), proof=proof)
+    return Verdict(as_read, (model, *verdict.rivals), proof=proof)
 
 
 def list_relatives(case: Case, now: ScoredModel, number: int) -> list[Candidate]:
     """List the simpler relatives of one of a model's explanations: at its place, of the same motion."""
-    own = now.parts[number].candidate
-    names, present = RELATIVES.get(own.name, ()), now.explanations
-    found = []
-    for one in case.search.candidates:
-        if one.name not in names or one.identity in present:
+    replaced = now.parts[number].candidate
+    names, present = RELATIVES.get(replaced.name, ()), now.explanations
+    relatives = []
+    for candidate in case.search.candidates:
+        if candidate.name not in names or candidate.identity in present:
             continue
-        same = one.role == own.role or one.pieces[0] in own.pieces[0].split("*")
+        same = candidate.role == replaced.role or candidate.pieces[0] in replaced.pieces[0].split("*")
         # a lag of what drives it may be a time constant of the simulation's own
-        if own.kind == "input" or ((one.kind, one.place) == (own.kind, own.place) and same):
-            found.append(one)
-    return sorted(found, key=lambda one: names.index(one.name))
+        if replaced.kind == "input" or ((candidate.kind, candidate.place) == (replaced.kind, replaced.place) and same):
+            relatives.append(candidate)
+    return sorted(relatives, key=lambda one: names.index(one.name))
 
 
 def in_its_place(case: Case, now: ScoredModel, number: int, relative: Candidate) -> ScoredModel | None:
@@ -200,5 +200,5 @@ def is_needed(case: Case, relative: ScoredModel, general: ScoredModel) -> bool:
     proof = prove(case, first, second, second)
     if proof.bears_out:
         return True
-    left = [cross_validated(case.scale, one, one.parts) for one in (first, second)]
+    left = [cross_validated(case.scale, model, model.parts) for model in (first, second)]
     return proof.test.fall > 0 and errs_more(*left) < ALPHA

@@ -106,7 +106,7 @@ def _line(x: Values) -> Values:
 
 def _finding(measured: Measured, marks: NDArray[np.bool_], channel: int) -> Finding:
     """Which trials of a channel have spikes, how many, and the first."""
-    said, spans = [], []
+    trials, spans = [], []
     for trial in np.flatnonzero(marks[:, :, channel].any(axis=1)).tolist():
         mine, time = marks[trial, :, channel], measured.time(trial)
         first = int(np.argmax(mine))
@@ -115,14 +115,14 @@ def _finding(measured: Measured, marks: NDArray[np.bool_], channel: int) -> Find
         record = np.where(marks[trial, :, channel], np.nan, measured.observed[trial, :, channel])
         known = np.flatnonzero(np.isfinite(record))
         nearest = [known[known < first][-1:], known[known > first][:1]]
-        beside = " and ".join(f"{record[one[0]]:.4g}" for one in nearest if one.size)
-        said.append(
+        beside = " and ".join(f"{record[sample[0]]:.4g}" for sample in nearest if sample.size)
+        trials.append(
             f"trial {measured.trials[trial]!r}: {count} of {len(time)} samples (first: {value:.4g} at "
             f"{time[first]:.4g} s, next to {beside})"
         )
         spans += [(float(time[begin]), float(time[end - 1])) for begin, end in runs(mine)]
-    more = f"; further trials with spikes: {len(said) - LISTED}" if len(said) > LISTED else ""
-    what = "spikes of one to three samples: " + "; ".join(said[:LISTED]) + more
+    more = f"; further trials with spikes: {len(trials) - LISTED}" if len(trials) > LISTED else ""
+    what = "spikes of one to three samples: " + "; ".join(trials[:LISTED]) + more
     spoils = "these samples only, which are excluded like empty cells"
     name = measured.channels[channel]
-    return Finding("warning", KIND, measured.source, what, spoils, name, spans=tuple(spans) if len(said) == 1 else ())
+    return Finding("warning", KIND, measured.source, what, spoils, name, spans=tuple(spans) if len(trials) == 1 else ())
