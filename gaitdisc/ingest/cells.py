@@ -15,7 +15,6 @@ from gaitdisc.recording.arrays import Values, mean_rate, mean_step
 
 MISSING = ("", "nan", "NaN", "NAN", "-nan", "-nan(ind)", "nan(ind)", "1.#QNAN", "-1.#IND", "1.#IND")
 _NUMBER = re.compile(r"[-+]?\d*(?:[.,](\d*))?(?:[eEdD]([-+]?\d+))?")
-LEAST_ROWS = 0.99  # of those that a header states
 COARSE = 0.35  # of a step; a printed digit above this hides a missing sample
 ALREADY_EVEN = 1e-6  # of a step
 
@@ -131,11 +130,10 @@ def check_counts(
 ) -> list[Finding]:
     """Refuse fewer rows than claimed, report other wrong counts; each: what, header's counts, how many; rows first.
 
-    A file that ends with a line end and lacks 1 % of its rows at most is read: its header counts wrongly, or hardly
-    anything is lost.
+    A file that ends with a line end is read, as OpenSim does: who cuts a trial by hand leaves the header as it was.
     """
     kind, claimed, there = counts[0]
-    if claimed and there < max(claimed) * (1.0 if lines[-1].strip() else LEAST_ROWS):
+    if claimed and there < max(claimed) and lines[-1].strip():
         raise ReadError(
             f"{file} must have {max(claimed)} {kind}{' of numbers' * (kind == 'rows')}, as its header says",
             f"it ends after {there} {kind}, at line {cells.lines[-1]}",
@@ -146,9 +144,10 @@ def check_counts(
         wrong = sorted({count for count in claimed if count != there})
         if wrong:
             what = f"the header states {' and '.join(map(str, wrong))} {kind}, but the file has {there}"
-            findings.append(
-                Finding("warning", "wrong count", file, what, "nothing in gaitdisc; other programs may refuse the file")
-            )
+            spoils = "nothing in gaitdisc; other programs may refuse the file"
+            if there < max(wrong):
+                spoils = "the end of the recording, if this copy is incomplete"
+            findings.append(Finding("warning", "wrong count", file, what, spoils))
     return findings
 
 
