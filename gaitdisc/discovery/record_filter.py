@@ -18,7 +18,7 @@ from gaitdisc.recording.arrays import Values
 SETTLING_PERIODS = 1.0  # of the cut-off, after which the filter has forgotten all but 1 % (exp(-2 pi / sqrt 2))
 DENSE = 4.0  # samples a period of the cut-off hold all that passes: at half that rate 0.4 % of the power is left
 ROOT_TWO = math.sqrt(2.0)
-TWICE = 2.0  # times the noise that a spectrum shows, which is 0.69 to 1.98 of the true one (99 channels of engines)
+SURELY_MORE = 2.0  # times the noise that a spectrum shows: 0.69 to 1.98 of the true one (99 channels of engines)
 CUTOFF_ERRORS = (0.95, 1.05, 0.9, 1.1, 0.86, 1.16)  # within two of its standard deviations, 3 to 7 % (41 records)
 
 
@@ -56,7 +56,7 @@ class RecordFilter:
     def at_most_noise(self, size: Values) -> Values:
         """Return the size of what is left (channel,), or of the noise where that is surely smaller, by the spectrum."""
         shown = np.array([self.noise.get(channel, np.inf) for channel in range(len(size))])
-        return np.where(size > TWICE * shown, shown, size)
+        return np.where(size > SURELY_MORE * shown, shown, size)
 
     @property
     def gains(self) -> Values:
