@@ -3,8 +3,7 @@
     python studies/device_from_files.py [OUT.csv] [--people 3] [--seed 777301] [--fit] [--quick]
 
 People drawn from a seed, outside both cohorts, walk twice 36 s: Nominal, and with one thing hidden. Each is written as
-a study (angles .mot; EMG, forces, markers .c3d; moments .sto of inverse dynamics, the pressure 3 mm off) and searched
-by `gaitdisc discover STUDY --participant ID`; `--fit` stops at the fit of both walks, which says what changed.
+a study (angles .mot; EMG, forces, markers .c3d; moments .sto, the pressure 3 mm off) and searched; not by `--fit`.
 """
 
 from __future__ import annotations
@@ -71,8 +70,7 @@ def summary(table: pd.DataFrame) -> pd.DataFrame:
 def run(people: int, seed: int, quick: bool, fit: bool = False) -> pd.DataFrame:
     """Hide each effect in each person's second walk, and search the files."""
     everyone = [draw_one(f"X{one + 1:02d}", seed + one, "fm"[one % 2]) for one in range(1 if quick else people)]
-    hiddens = ("spring",) if quick else RIGHT
-    return pd.DataFrame([found_in(one, hidden, fit) for one in everyone for hidden in hiddens])
+    return pd.DataFrame([found_in(one, hidden, fit) for one in everyone for hidden in (["spring"] if quick else RIGHT)])
 
 
 def found_in(person: Person, hidden: str, fit: bool) -> dict[str, object]:
