@@ -146,7 +146,7 @@ def _of_engine(model: Path, measured: Path, request: Request, write: Callable[..
         write(answered.found, partial(write_tracked, answered), (*answered.written.notes, *answered.said))
         return
     answer = discover_model_file(model, measured, request)
-    write(answer.found, partial(write_answer, answer), (*answer.written.notes, answer.runs.said))
+    write(answer.found, partial(write_answer, answer), (*answer.written.notes, answer.runs.sentence))
 
 
 def _of_study(
