@@ -60,23 +60,23 @@ RIGHT = {
 
 def summary(table: pd.DataFrame) -> pd.DataFrame:
     """How many are right, how far off the value is, and the held-out errors [N m], by what was hidden."""
-    inside = table["truth"].between(table["low"], table["high"])
-    rows = table.assign(off=100 * (table["value"] / table["truth"] - 1).abs(), inside=inside)
-    groups = rows.groupby("hidden", sort=False)
+    inside, off = table["truth"].between(table["low"], table["high"]), 100 * (table["value"] / table["truth"] - 1).abs()
+    groups = table.assign(off=off, inside=inside).groupby("hidden", sort=False)
     counts = groups.agg(n=("right", "size"), right=("right", "sum"), inside=("inside", "sum"))
     return counts.join(groups[["off", *(one for one in MODELS if one in table)]].median())
 
 
-def run(people: int, seed: int, quick: bool, fit: bool = False) -> pd.DataFrame:
+def run(people: int, seed: int, quick: bool, fit: bool = False, trials: int = 0) -> pd.DataFrame:
     """Hide each effect in each person's second walk, and search the files."""
     everyone = [draw_one(f"X{one + 1:02d}", seed + one, "fm"[one % 2]) for one in range(1 if quick else people)]
-    return pd.DataFrame([found_in(one, hidden, fit) for one in everyone for hidden in (["spring"] if quick else RIGHT)])
+    hiddens = ["spring"] if quick else RIGHT
+    return pd.DataFrame([found_in(one, hidden, fit, trials) for one in everyone for hidden in hiddens])
 
 
-def found_in(person: Person, hidden: str, fit: bool) -> dict[str, object]:
+def found_in(person: Person, hidden: str, fit: bool, trials: int) -> dict[str, object]:
     """One study of one person, one search: what it says beside what is true."""
     with TemporaryDirectory() as folder:
-        study = write_person(person, hidden, Path(folder))
+        study = write_person(person, hidden, Path(folder), trials)
         found = None if fit else discover_study(study, person.name)["exo"][0]
         effects, beside = (found.effects, dict(found.beside)) if found else (fitted(study, person.name), {})
     *wanted, truth = RIGHT[hidden]
@@ -100,7 +100,7 @@ def fitted(study: Path, who: str) -> tuple[FoundEffect, ...]:
     return (FoundEffect("", changed.change.place, changed.change.name, "", {changed.change.number: number}),)
 
 
-def write_person(person: Person, hidden: str, folder: Path) -> Path:
+def write_person(person: Person, hidden: str, folder: Path, trials: int = 0) -> Path:
     """Write both walks of a person as a study."""
     spring, late_s = Spring(STIFFNESS) if hidden == "spring" else None, 0.04 if hidden == "late EMG" else 0.0
     weak, kilograms = (0.75 if hidden == "weak plantarflexor" else 1.0), (0.8 if hidden == "foot mass" else 0.0)
@@ -114,7 +114,7 @@ def write_person(person: Person, hidden: str, folder: Path) -> Path:
         write_storage(trial.stream("kinematics"), folder / angles)
         write_c3d((trial.stream("emg"), trial.stream("forces"), markers), folder / analog)
         write_storage(moments(walk), folder / net)
-        parts = [(start, start + TRIAL_S) for start in np.linspace(0.0, WALK_S - TRIAL_S, GIVEN.trials).tolist()]
+        parts = [(start, start + TRIAL_S) for start in np.linspace(0.0, WALK_S - TRIAL_S, trials).tolist()]
         planned += [PlannedTrial(condition=word, files=files, crop_s=part) for part in parts or [None]]
     mine = (Participant(id=person.name, mass_kg=round(person.mass_kg, 1), trials=tuple(planned)),)
     study = Study(title=hidden, conditions=CONDITIONS, channels=CHANNELS, participants=mine)
@@ -134,7 +134,7 @@ def moments(walk: TrueWalk) -> gd.Recording:
 
 
 if __name__ == "__main__":
-    table = run(GIVEN.people, GIVEN.seed, GIVEN.quick, GIVEN.fit)
+    table = run(GIVEN.people, GIVEN.seed, GIVEN.quick, GIVEN.fit, GIVEN.trials)
     print(table.round(3).to_string(), summary(table).round(3).to_string(), sep="\n")
     if GIVEN.out:
         table.to_csv(GIVEN.out, index=False)
