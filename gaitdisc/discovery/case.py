@@ -27,7 +27,7 @@ from gaitdisc.discovery.search import Search
 from gaitdisc.discovery.segments import FEWEST_SAMPLES, Segments, cut_segments
 from gaitdisc.discovery.shooting import Shooting
 from gaitdisc.recording import Finding
-from gaitdisc.recording.arrays import Values
+from gaitdisc.recording.arrays import Values, root_mean_square
 from gaitdisc.simulation.compiled_simulation import Drive, Rows
 from gaitdisc.simulation.measured import Measured
 from gaitdisc.simulation.running import compile_simulation
@@ -101,8 +101,8 @@ class Case:
         if self.search.base.inexact and self.scale.relative(now.fit) < CRITERIA.inexact:
             return True
         if not np.isfinite(self.sensor_noise).all():
-            left = np.sqrt(np.nanmean(now.fit.residual**2, axis=(0, 1)))
-            return not now.noise.is_autocorrelated and bool((self.record_filter.at_most_noise(left) == left).all())
+            left = root_mean_square(now.fit.residual)
+            return not (now.noise.is_autocorrelated or (self.record_filter.at_most_noise(left) < left).any())
         return leaves(now, self.sensor_noise) < CRITERIA.mere_noise
 
     def noise_floor(self, noise: Values) -> Values:

@@ -109,24 +109,26 @@ class PersonWalks:
         """Return one joint in the walk of a condition, or in its short trials one after another."""
         trials = [planned for planned in self.participant.trials_of(condition) if not planned.leave_out]
         records, faults = [], {}
-        for planned in trials:
-            try:
-                records.append(self._trial_record(planned, joint))
-            except GaitdiscError as error:
-                faults[self.participant.trial_name(planned)] = error
+        with self._reader:  # one process for all trials
+            for planned in trials:
+                try:
+                    records.append(self._trial_record(planned, joint))
+                except GaitdiscError as error:
+                    faults[self.participant.trial_name(planned)] = error
         if read := [self._read[planned].trial for planned in trials if planned in self._read]:
             check_length(read, self.study.strides.min_s)
         if not records:
             raise next(iter(faults.values()))
         spoils = "this trial, which is excluded"
-        excluded = [Finding("warning", "excluded trial", name, str(fault), spoils) for name, fault in faults.items()]
+        excluded = [
+            Finding("warning", "excluded trial", name, str(fault).rstrip("."), spoils) for name, fault in faults.items()
+        ]
         record = join_trials(records)
         return replace(record, findings=(*record.findings, *excluded))
 
     def _trial_record(self, planned: PlannedTrial, joint: str) -> JointRecord:
         if planned not in self._read:
-            with self._reader:
-                self._read[planned] = self._walks.read_walk(planned)
+            self._read[planned] = self._walks.read_walk(planned)
         read = self._read[planned]
         check_kinetics(read.trial)
         mass_kg = None if read.body_weight_n is None else read.body_weight_n / GRAVITY

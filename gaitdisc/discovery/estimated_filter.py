@@ -69,8 +69,9 @@ def find_record_filter(
     if cutoffs and max(cutoffs.values()) < ALIKE * min(cutoffs.values()):  # one filter
         cutoffs = dict.fromkeys(cutoffs, geometric_mean(cutoffs.values()))
     passed = RecordFilter(tuple(cutoffs.get(number, cutoff) for number, cutoff in enumerate(stated)), measured.rate)
-    noise = {number: one.noise * float(passed.gains[number]) for number, one in seen.items() if one.signal <= FELT}
-    passed, findings = replace(passed, noise=noise), []
+    gains, findings = passed.gains, []
+    noise = {number: each.noise * float(gains[number]) for number, each in seen.items() if each.signal <= FELT}
+    passed = replace(passed, noise=noise)
     for number, hz in cutoffs.items():
         what = f"assumed to be low-passed at {hz:.3g} Hz without lag (order 2, run twice), because of its spectrum"
         spoils = "results that depend on this filter; state lowpass in the simulation file if you know the cut-off"
@@ -121,7 +122,7 @@ def _beside_the_simulation(
     for number, each in seen.items():
         if each.signal <= FELT:
             continue
-        again = find_filter(_trials(measured, number), measured.rate, [each[:, number] for each in like])
+        again = find_filter(_trials(measured, number), measured.rate, [run[:, number] for run in like])
         if each.signal > SURE:
             kept.pop(number)
         if again and (each.signal > SURE or again.likelihood > each.likelihood + LIKELIER):

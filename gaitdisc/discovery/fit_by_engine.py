@@ -23,10 +23,11 @@ from gaitdisc.discovery.wording import write_sentence
 from gaitdisc.engines.engine import Engine
 from gaitdisc.engines.mapping import replace_inputs, with_input_changed, with_strength
 from gaitdisc.engines.motion import Values
-from gaitdisc.engines.own_runs import Driven, OwnRuns, cut_stretches, residual_by, root_mean_square, trial_called
+from gaitdisc.engines.own_runs import Driven, OwnRuns, cut_stretches, residual_by, trial_called
 from gaitdisc.engines.written import WrittenModel, forces_at, write_model
 from gaitdisc.processing.kept_parts import hash_content
 from gaitdisc.recording import Finding
+from gaitdisc.recording.arrays import root_mean_square
 from gaitdisc.simulation.evaluating import Points
 from gaitdisc.simulation.expression import names, parse
 from gaitdisc.simulation.measured import Measured

@@ -16,7 +16,7 @@ from gaitdisc.discovery.result import GapSize, Runs
 from gaitdisc.discovery.scored_model import ScoredModel
 from gaitdisc.discovery.segments import Segments
 from gaitdisc.discovery.shooting import Shooting
-from gaitdisc.recording.arrays import Values
+from gaitdisc.recording.arrays import Values, root_mean_square
 from gaitdisc.recording.recording import Finding
 
 TURNS = 30
@@ -216,7 +216,7 @@ def gap_size(
 ) -> GapSize:
     """Measure the gap before and after, against the noise's standard deviation (channel,)."""
     spread = np.nanstd(after.shooting.seen, axis=(0, 1))
-    rms = [np.sqrt(np.nanmean(model.fit.residual**2, axis=(0, 1))) for model in (before, after)]
+    rms = [root_mean_square(model.fit.residual) for model in (before, after)]
     sizes = {name: (float(rms[0][i]), float(rms[1][i]), float(floor[i])) for i, name in enumerate(channels)}
     overall = [float(np.sqrt(np.mean((error / spread) ** 2))) for error in (*rms, floor)]
     return GapSize(overall[0], overall[1], overall[2], test.p, sizes, test.pieces, alpha=test.alpha)

@@ -175,7 +175,7 @@ def cut_walk_trials(record: JointRecord, model: MuscleMoment, simulation: Simula
     if len(series) * strides < FEWEST_STRIDES:
         raise StrideError(
             f"the load on the foot must be known in {100 * KNOWN:.0f} % of the samples of {FEWEST_STRIDES} strides",
-            f"it is in {len(series)} of {int(record.stride.max()) + 1} strides of {record.subject} {record.condition}",
+            f"it is known in {len(series)} of {record.stride.max() + 1} strides of {record.subject} {record.condition}",
             "Record longer, or more trials, and keep each foot on its own plate.",
         )
     thinned = [inside[::step] for inside in series]

@@ -28,7 +28,7 @@ SAME = 1e-5  # by which a number of the mapping may differ from the model's, as 
 
 
 def draft(engine: Engine, degrees: bool = False) -> Simulation:
-    """Mapping of a model: every free coordinate measured in a column of its name, every control another."""
+    """Mapping of a model: each free coordinate in a column of its name (`degrees`: angles in deg), each control."""
     free = engine.coordinates
     if len(free) + len(engine.controls) > MOST:
         raise SchemaError(

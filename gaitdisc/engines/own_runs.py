@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 from gaitdisc.engines.engine import Engine
 from gaitdisc.engines.expansion import compute_motion
 from gaitdisc.engines.motion import Values
+from gaitdisc.recording.arrays import root_mean_square
 from gaitdisc.simulation.evaluating import Points, evaluate_many
 from gaitdisc.simulation.measured import Measured
 from gaitdisc.simulation.simulation import Simulation
@@ -126,11 +127,6 @@ class OwnRuns:
         return f"rms errors without and with the effects, in {len(self.before)} runs by {self.engine}: {errors}"
 
 
-def root_mean_square(left: Values) -> Values:
-    """Size (channel,) of what is left."""
-    return np.sqrt(np.nanmean(left**2, axis=(0, 1)))
-
-
 def spread_stretches(measured: Measured, period: float, fewer: bool = False, margin: int = 0) -> Stretches:
     """Runs of two periods at most, spread over every trial: side by side, so that noise counts once."""
     margin = min(margin, int(measured.samples.min()) // SHORT)
@@ -154,18 +150,22 @@ def cut_stretches(
     """
     engine, ends = model.engine, list[float]()  # where each run's change has grown so much
     at = spread_stretches(measured, min(period, (most - 2 * margin) / PERIODS), engine.fibres, margin)
-    changes = np.vstack([0 * (steps := NUDGE * np.maximum(states.std(axis=(0, 1)), NUDGE)), np.diag(steps)])
-    for trial, first in () if engine.fibres else zip(at.trial, at.first, strict=True):  # runs with fibres take long
-        motion = compute_motion(engine, measured.drive, states, trial).at(np.full(len(changes), first))
+    if engine.fibres:  # whose runs take long
+        return at
+    steps = NUDGE * np.maximum(states.std(axis=(0, 1)), NUDGE)
+    changes = np.vstack([np.zeros(len(steps)), np.diag(steps)])
+    recorded = {trial: compute_motion(engine, measured.drive, states, trial) for trial in np.unique(at.trial)}
+    for trial, first in zip(at.trial, at.first, strict=True):
+        motion = recorded[trial].at(np.full(len(changes), first))
         start = engine.near(motion, *np.split(states[trial, first] + changes, 2, axis=1))
         driven = np.repeat(model.controls[None, trial, first : first + at.length], len(changes), axis=0)
         run = engine.run(start, driven, measured.rate)
         grown = np.nan_to_num((run[1:] - run[0]) / steps, nan=1e9, posinf=1e9, neginf=1e9)
         beyond = np.flatnonzero(np.linalg.norm(grown, 2, axis=(0, 2)) > factor)
         ends.append(float(beyond[0]) if beyond.size else np.inf)
-    if ends and (end := sorted(ends)[len(ends) // 5]) < most:
+    if (end := sorted(ends)[len(ends) // 5]) < most:
         return cut_stretches(model, measured, states, period, margin, factor, end)
-    return replace(at.among(np.array(ends or [np.inf] * len(at.trial)) == np.inf), period=period)
+    return replace(at.among(np.array(ends) == np.inf), period=period)
 
 
 def trial_called(measured: Measured, name: str) -> int:

@@ -193,10 +193,10 @@ def over_ground(trial: Trial) -> bool:
     known = trial_markers(trial)
     if known is not None:
         return known[2].headings is not None
-    for there in map(trial.streams.get, ("kinematics", "markers")):  # markers whose heels do not show the direction
-        path = there and [n for n in PELVIS_PATH if n in there.names]
-        if there and path and len(places := finite_rows(there.selected(path).values)):
-            return float(np.linalg.norm(np.ptp(places, axis=0))) / there.duration_s >= LEAST_PATH_M_PER_S
+    for stream in map(trial.streams.get, ("kinematics", "markers")):  # markers whose heels do not show the direction
+        path = stream and [name for name in PELVIS_PATH if name in stream.names]
+        if stream and path and len(places := finite_rows(stream.selected(path).values)):
+            return float(np.linalg.norm(np.ptp(places, axis=0))) / stream.duration_s >= LEAST_PATH_M_PER_S
     return max((recording.duration_s for recording in trial.streams.values()), default=0.0) <= NO_WALKWAY_S
 
 

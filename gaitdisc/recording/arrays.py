@@ -64,6 +64,11 @@ def mean_where_known(values: Values) -> Values:
     return np.where(count > 0, np.where(known, values, 0.0).sum(axis=0) / np.maximum(count, 1), np.nan)
 
 
+def root_mean_square(residual: Values) -> Values:
+    """Size (channel,) of residuals (run, sample, channel), those that are known."""
+    return np.sqrt(np.nanmean(residual**2, axis=(0, 1)))
+
+
 def robust_sd(values: Values) -> float:
     """Standard deviation by the median absolute deviation: that of normal numbers, whatever a few others are."""
     return 1.4826 * float(np.median(np.abs(values - np.median(values))))

@@ -13,8 +13,9 @@ from gaitdisc.engines.engine import read_model
 from gaitdisc.engines.expansion import FASTEST, _slow_speeds, expand
 from gaitdisc.engines.mapping import draft, with_input_changed
 from gaitdisc.engines.motion import Motion
-from gaitdisc.engines.own_runs import Driven, OwnRuns, Stretches, residual_by, root_mean_square, spread_stretches
+from gaitdisc.engines.own_runs import Driven, OwnRuns, Stretches, residual_by, spread_stretches
 from gaitdisc.engines.written import write_model
+from gaitdisc.recording.arrays import root_mean_square
 from gaitdisc.simulation.compiled_simulation import Drive, Rows
 from gaitdisc.simulation.measured import Measured
 from gaitdisc.simulation.parts import Sensor, State, Term

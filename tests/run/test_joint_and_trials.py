@@ -60,7 +60,7 @@ def test_weak_muscles_are_named_with_their_strength(model):
 
 def test_too_few_strides_are_refused_with_their_number(model):
     record = made_joint(strides=9)
-    with pytest.raises(StrideError, match=r"12 strides; it is in 9 of 9 strides of W01"):
+    with pytest.raises(StrideError, match=r"12 strides; it is known in 9 of 9 strides of W01"):
         cut_walk_trials(record, model, joint_model(record, model))
 
 
