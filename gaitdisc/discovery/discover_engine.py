@@ -88,11 +88,11 @@ def discover_engine(
     else:
         units = tuple(answer.runs.units.values())
         nothing = replace(_NOTHING, channels=data.channels, units=units, findings=(*data.findings, *noted))
-        found = seal(with_own_runs(nothing, answer.runs, fit, mapping), mapping, data, read)
-        answer = replace(answer, found=found)
-    found = answer.found
+        discovery = seal(with_own_runs(nothing, answer.runs, fit, mapping), mapping, data, read)
+        answer = replace(answer, found=discovery)
+    discovery = answer.found
     findings = (
-        *found.findings,
+        *discovery.findings,
         *other_values(mapping, engine),
         *met,
         *_report_saturation(answer.written.engine, data),
@@ -100,54 +100,56 @@ def discover_engine(
         *(Finding("note", "written back", "model", what, "") for what in answer.written.notes),
         Finding("note", "own runs", "model", answer.runs.sentence, ""),
     )
-    made = found.provenance and replace(found.provenance, section=ENGINE)
-    return replace(answer, found=replace(found, findings=findings, provenance=made))
+    made = discovery.provenance and replace(discovery.provenance, section=ENGINE)
+    return replace(answer, found=replace(discovery, findings=findings, provenance=made))
 
 
 def search(fit: EngineFit, base: EngineAnswer, request: Request, read: dict[Path, str]) -> EngineAnswer:
     """Search the expansion along the record; of what it names, that stays which the engine's own runs bear out."""
     mapping, engine, data, passed = fit.mapping, fit.engine, fit.measured, fit.low_pass
-    found, linear = search_expansion(fit, request, read)
+    discovery, linear = search_expansion(fit, request, read)
     request.progress(f"running the augmented model with {engine.called}")
     runs = base.runs
     if fit.low_pass != passed and (fit.low_pass.margin or passed.margin):  # as the search has it
         runs = base_runs(base.written.engine, fit)
-    runs = runs.among(np.isin(runs.at.trial, [trial_called(data, name) for name in found.runs.names]))
-    augmented, written, _ = fit.written(found, fit.parts)
-    hidden = [size[2] for size in found.held_out.channels.values()]  # noise that the record itself may not show
-    pushed = [f"{effect.name} at {effect.place}" for effect in found.effects if effect.name == "process_noise"]
+    runs = runs.among(np.isin(runs.at.trial, [trial_called(data, name) for name in discovery.runs.names]))
+    augmented, written, _ = fit.written(discovery, fit.parts)
+    hidden = [size[2] for size in discovery.held_out.channels.values()]  # noise that the record itself may not show
+    pushed = [f"{effect.name} at {effect.place}" for effect in discovery.effects if effect.name == "process_noise"]
     unchecked = " and ".join((*written.absent, *pushed))
     if unchecked and not runs.before_at_noise:
         why = f"{engine.called} has not run {unchecked}: this result is based on the expansion of the model alone."
-        return EngineAnswer(replace(found, sentence=f"{found.sentence} {why}"), augmented, written, runs, engine)
+        discovery = replace(discovery, sentence=f"{discovery.sentence} {why}")
+        return EngineAnswer(discovery, augmented, written, runs, engine)
     if unchecked:  # what the engine cannot run is not said where its own runs leave mere noise
-        found, augmented, written = replace(found, effects=(), corrections=()), mapping, base.written
-    if found.effects and found.verdict != "wrong_initial_condition":
-        held = held_out(found, runs, data)
+        discovery, augmented, written = replace(discovery, effects=(), corrections=()), mapping, base.written
+    if discovery.effects and discovery.verdict != "wrong_initial_condition":
+        held = held_out(discovery, runs, data)
         if not written.along:  # whose numbers rest on the smoothed motion
-            found = with_forces_of_muscles(fit, fit.fitted(found, linear, runs.among(~held)), linear, runs.among(~held))
-        runs = replace(runs, after=fit.left(found, fit.parts, runs)).with_floor(hidden)
-        kept = keep_borne_out(fit, found, runs, held)
+            learned = runs.among(~held)
+            discovery = with_forces_of_muscles(fit, fit.fitted(discovery, linear, learned), linear, learned)
+        runs = replace(runs, after=fit.left(discovery, fit.parts, runs)).with_floor(hidden)
+        kept = keep_borne_out(fit, discovery, runs, held)
         if not kept:
             runs = replace(runs, after=runs.before)
             if not runs.before_at_noise:
-                found = withdraw_effects(with_own_runs(found, runs, fit, linear), runs)
-                return EngineAnswer(found, mapping, base.written, runs, engine)
-            found, augmented, written = replace(found, effects=(), corrections=()), mapping, base.written
+                discovery = withdraw_effects(with_own_runs(discovery, runs, fit, linear), runs)
+                return EngineAnswer(discovery, mapping, base.written, runs, engine)
+            discovery, augmented, written = replace(discovery, effects=(), corrections=()), mapping, base.written
         elif len(kept) < len(fit.parts):
-            both = list(zip(found.effects, fit.parts, strict=True))
-            idle = tuple(replace(one, small=True) for one, part in both if part not in kept)
-            effects = tuple(one for one, part in both if part in kept)
-            fit.parts, found = kept, without_beside(found, effects, idle)
-            runs = replace(runs, after=fit.left(found, kept, runs))
+            both = list(zip(discovery.effects, fit.parts, strict=True))
+            idle = tuple(replace(effect, small=True) for effect, part in both if part not in kept)
+            effects = tuple(effect for effect, part in both if part in kept)
+            fit.parts, discovery = kept, without_beside(discovery, effects, idle)
+            runs = replace(runs, after=fit.left(discovery, kept, runs))
         if kept:
-            augmented, written = fit.compared(found, runs)
-    if not found.effects and runs.before_at_noise:  # the expansion errs, through a contact say
-        found = replace(found, verdict="no_gap", rivals=(), explanations=())
-    elif found.verdict == "no_gap":  # in short runs, in which much is a matter of the start
-        found = replace(found, verdict="unexplained")
+            augmented, written = fit.compared(discovery, runs)
+    if not discovery.effects and runs.before_at_noise:  # the expansion errs, through a contact say
+        discovery = replace(discovery, verdict="no_gap", rivals=(), explanations=())
+    elif discovery.verdict == "no_gap":  # in short runs, in which much is a matter of the start
+        discovery = replace(discovery, verdict="unexplained")
     runs = runs.with_floor(hidden)
-    return EngineAnswer(with_own_runs(found, runs, fit, linear), augmented, written, runs, engine)
+    return EngineAnswer(with_own_runs(discovery, runs, fit, linear), augmented, written, runs, engine)
 
 
 def search_expansion(fit: EngineFit, request: Request, read: dict[Path, str]) -> tuple[Discovery, Simulation]:
@@ -156,86 +158,91 @@ def search_expansion(fit: EngineFit, request: Request, read: dict[Path, str]) ->
     request.progress(f"computing the accelerations of {engine.path.name} along the record with {engine.called}")
     linear, driven = expand(mapping, engine, data, states)
     request = replace(request, added=saturations(mapping, getattr(engine, "servos", {})))
-    roles = {one.port: ("", one.name) for one in engine.coordinates} if len(engine.coordinates) > MANY else {}
+    roles = {q.port: ("", q.name) for q in engine.coordinates} if len(engine.coordinates) > MANY else {}
 
-    def is_searched(one: Candidate) -> bool:  # a limit is the input's own, and of no force
-        plain = one.kind != "port" or one.place not in roles or one.role in roles[one.place]
-        return (one.kind, one.name) != ("port", "input_saturation") and (plain or one.name == "linear_coupling")
+    def is_searched(candidate: Candidate) -> bool:  # a limit is the input's own, and of no force
+        plain = candidate.kind != "port" or candidate.place not in roles or candidate.role in roles[candidate.place]
+        plain = plain or candidate.name == "linear_coupling"
+        return plain and (candidate.kind, candidate.name) != ("port", "input_saturation")
 
     request = request if request.effects else replace(request, possible=is_searched)
-    found, answer = find_missing(linear, driven, request, read)
-    now, own = answer.values(), {k: one for k, one in mapping.values().items() if engine.as_force(k) is None}
-    moved = {name: now[name] for name, value in own.items() if abs(now[name] - value) > MOVED * abs(value)}
-    if moved and (len(found.effects) > 1 or engine.fibres):  # one number alone rests on the engine's own runs
+    discovery, answer = find_missing(linear, driven, request, read)
+    now, unfixed = answer.values(), {k: value for k, value in mapping.values().items() if engine.as_force(k) is None}
+    moved = {name: now[name] for name, value in unfixed.items() if abs(now[name] - value) > MOVED * abs(value)}
+    if moved and (len(discovery.effects) > 1 or engine.fibres):  # one number alone rests on the engine's own runs
         request.progress(f"expanding the model again about the fitted values of {', '.join(moved)}")
         linear, driven = expand(mapping, engine, data, states, moved)
-        found, _ = find_missing(linear, driven, request, read)
-    return found, linear
+        discovery, _ = find_missing(linear, driven, request, read)
+    return discovery, linear
 
 
-def keep_borne_out(fit: EngineFit, found: Discovery, runs: OwnRuns, held: NDArray[np.bool_]) -> tuple[Part, ...]:
+def keep_borne_out(fit: EngineFit, discovery: Discovery, runs: OwnRuns, held: NDArray[np.bool_]) -> tuple[Part, ...]:
     """Return the explanations without which the engine's own runs err more; of given ones, all or none."""
-    kept = tuple(part for one, part in zip(found.effects, fit.parts, strict=True) if found.given or not one.small)
+    both = zip(discovery.effects, fit.parts, strict=True)
+    kept = tuple(part for effect, part in both if discovery.given or not effect.small)
     if not errs_less(runs, runs.before, held):
         return ()
-    for part in kept if len(kept) > 1 and not found.given else ():
-        others = tuple(one for one in fit.parts if one is not part)
-        if not errs_less(runs, fit.left(found, others, runs), held):
-            kept = tuple(one for one in kept if one is not part)
+    for part in kept if len(kept) > 1 and not discovery.given else ():
+        others = tuple(other for other in fit.parts if other is not part)
+        if not errs_less(runs, fit.left(discovery, others, runs), held):
+            kept = tuple(other for other in kept if other is not part)
     return kept
 
 
-def with_forces_of_muscles(fit: EngineFit, found: Discovery, base: Simulation, runs: OwnRuns) -> Discovery:
+def with_forces_of_muscles(fit: EngineFit, discovery: Discovery, base: Simulation, runs: OwnRuns) -> Discovery:
     """Return what was found with a muscle's force in the place of its excitation's gain, where own runs leave less.
 
     An expansion does not distinguish them: its inputs are activations. What ties with that gain there does not here.
     """
-    own = fit.mapping.values()
-    for number, gain in enumerate(found.effects):
+    numbers = fit.mapping.values()
+    for number, gain in enumerate(discovery.effects):
         name = f"{gain.place}_force"
-        if gain.name != "input_gain" or name not in own:
+        if gain.name != "input_gain" or name not in numbers:
             continue
-        before = fit.left(found, fit.parts, runs)
-        candidate = Candidate("wrong_parameter", "parameter", name, "wrong_parameter", value=own[name])
-        force = Part(candidate, {"value": fit.parts[number].values["gain"] * own[name]})
+        before = fit.left(discovery, fit.parts, runs)
+        candidate = Candidate("wrong_parameter", "parameter", name, "wrong_parameter", value=numbers[name])
+        force = Part(candidate, {"value": fit.parts[number].values["gain"] * numbers[name]})
         other = replace(fit, parts=(*fit.parts[:number], force, *fit.parts[number + 1 :]))
         named = replace(gain, kind="parameter", place=name, name="wrong_parameter")
-        others = (one for one in (gain, *found.rivals) if (one.name, one.place) != (named.name, name))
+        others = (rival for rival in (gain, *discovery.rivals) if (rival.name, rival.place) != (named.name, name))
         tried = replace(
-            found,
+            discovery,
             verdict="wrong_parameter",
-            effects=(*found.effects[:number], named, *found.effects[number + 1 :]),
-            rivals=tuple(replace(one, tied=False) for one in others),
-            explanations=found.explanations[:1],
-            findings=tuple(one for one in found.findings if one.kind != "unstated errors"),
+            effects=(*discovery.effects[:number], named, *discovery.effects[number + 1 :]),
+            rivals=tuple(replace(rival, tied=False) for rival in others),
+            explanations=discovery.explanations[:1],
+            findings=tuple(finding for finding in discovery.findings if finding.kind != "unstated errors"),
         )
         tried = other.fitted(tried, base, runs)
         after = other.left(tried, other.parts, runs)
         if np.nansum((after / runs.floor) ** 2) < np.nansum((before / runs.floor) ** 2):
-            found, fit.parts = tried, other.parts
-    return found
+            discovery, fit.parts = tried, other.parts
+    return discovery
 
 
-def without_beside(found: Discovery, effects: tuple[FoundEffect, ...], idle: tuple[FoundEffect, ...]) -> Discovery:
+def without_beside(discovery: Discovery, effects: tuple[FoundEffect, ...], idle: tuple[FoundEffect, ...]) -> Discovery:
     """Return an answer of some of its effects, and without explanations that only add to these."""
-    kept, others = {(effect.name, effect.place) for effect in effects}, found.explanations[1:]
+    kept = {(effect.name, effect.place) for effect in effects}
+    first, others = discovery.explanations[:1], discovery.explanations[1:]
     adding = [other for other in others if kept < {(effect.name, effect.place) for effect in other.effects}]
-    added = {(one.effects[-1].name, one.effects[-1].place) for one in adding}
-    rivals = tuple(replace(rival, tied=rival.tied and (rival.name, rival.place) not in added) for rival in found.rivals)
+    added = {(other.effects[-1].name, other.effects[-1].place) for other in adding}
+    alone = [(rival, (rival.name, rival.place) not in added) for rival in discovery.rivals]
+    rivals = (*idle, *(replace(rival, tied=rival.tied and is_alone) for rival, is_alone in alone))
     others = (explanation for explanation in others if explanation not in adding)
-    return replace(found, effects=effects, rivals=(*idle, *rivals), explanations=(*found.explanations[:1], *others))
+    return replace(discovery, effects=effects, rivals=rivals, explanations=(*first, *others))
 
 
-def withdraw_effects(found: Discovery, runs: OwnRuns) -> Discovery:
+def withdraw_effects(discovery: Discovery, runs: OwnRuns) -> Discovery:
     """Take back what the engine's own runs do not bear out: an expansion or an integrator's step can err as well."""
-    named = " and ".join(f"the {named_at(effect)}" for effect in found.effects)
-    it = "it" if len(found.effects) == 1 else "them"
+    named = " and ".join(f"the {named_at(effect)}" for effect in discovery.effects)
+    it = "it" if len(discovery.effects) == 1 else "them"
     sentence = (
         f"Not proven: {named}. {runs.engine}'s own runs have the same error without {it}, above the sensor "
         f"noise; only runs of the expanded model supported {it}. Trials with other movement can decide."
     )
-    found = replace(found, effects=(), corrections=(), explanations=(), rivals=(*found.effects, *found.rivals))
-    return replace(found, verdict="unexplained", sentence=sentence)
+    rivals = (*discovery.effects, *discovery.rivals)
+    discovery = replace(discovery, effects=(), corrections=(), explanations=(), rivals=rivals)
+    return replace(discovery, verdict="unexplained", sentence=sentence)
 
 
 def discover_model_file(model: Path, measured: Path, request: Request = ALL) -> EngineAnswer:
@@ -253,9 +260,9 @@ def read_trials(file: Path, mapping: Simulation) -> Measured:
     streams = list(read_storage(file).streams.values())
     whole = replace(
         streams[0],
-        values=np.hstack([one.values for one in streams]),
-        channels=tuple(channel for one in streams for channel in one.channels),
-        suspect=np.hstack([np.asarray(one.suspect) for one in streams]),
+        values=np.hstack([stream.values for stream in streams]),
+        channels=tuple(channel for stream in streams for channel in stream.channels),
+        suspect=np.hstack([np.asarray(stream.suspect) for stream in streams]),
     )
     return gather_recordings([whole], mapping)
 
@@ -309,8 +316,8 @@ def _report_saturation(engine: Engine, data: Measured) -> Iterator[Finding]:
 
 def _list_warnings(*engines: Engine) -> tuple[Finding, ...]:
     """What MuJoCo warned of: it is said here, and in no file of the user's folder."""
-    said = dict.fromkeys(what for one in engines for what in getattr(one, "warnings", ()))
+    warnings = dict.fromkeys(what for engine in engines for what in getattr(engine, "warnings", ()))
     return tuple(
         Finding("warning", "engine", "model", f"{engines[0].called} warns: {what}", "results of runs with this warning")
-        for what in said
+        for what in warnings
     )

@@ -54,32 +54,34 @@ class EngineFit:
     progress: Callable[[str], None] = field(default_factory=lambda: lambda _: None)
     native: bool = True  # whether what was found is written into the model, or acts beside it at each step
 
-    def noted(self, found: ScoredModel) -> ScoredModel:
+    def noted(self, scored: ScoredModel) -> ScoredModel:
         """Return what was found as it is, once its parts and the record's filter are kept."""
-        self.parts, self.low_pass = found.parts, found.shooting.record_filter or NO_FILTER
-        return found
+        self.parts, self.low_pass = scored.parts, scored.shooting.record_filter or NO_FILTER
+        return scored
 
-    def in_mapping(self, found: Discovery, parts: tuple[Part, ...]) -> Simulation:
+    def in_mapping(self, discovery: Discovery, parts: tuple[Part, ...]) -> Simulation:
         """What was found, in the model's mapping; with the states that effects bring along behind the model's own."""
-        changed = self.mapping.with_values({one.parameter: one.found.value for one in found.corrections})
+        changed = self.mapping.with_values({row.parameter: row.found.value for row in discovery.corrections})
         for part in parts:
-            one, numbers = part.candidate, {slot: repr(value) for slot, value in part.values.items()}
-            form = one.form if one.verdict == "input_error" else ""
-            if one.name == "input_gain":
-                changed = with_strength(changed, self.engine, one.place, part.values["gain"])
+            candidate, numbers = part.candidate, {slot: repr(value) for slot, value in part.values.items()}
+            form = candidate.form if candidate.verdict == "input_error" else ""
+            if candidate.name == "input_gain":
+                changed = with_strength(changed, self.engine, candidate.place, part.values["gain"])
             elif form:
-                changed = with_input_changed(changed, one.place, form.format(s=one.place, **numbers))
-            elif one.verdict != "input_error":
-                changed = one.written(changed, numbers)
-        starts = {effect.place: effect.estimates["initial"].value for effect in found.effects if effect.kind == "state"}
+                changed = with_input_changed(changed, candidate.place, form.format(s=candidate.place, **numbers))
+            elif candidate.verdict != "input_error":
+                changed = candidate.written(changed, numbers)
+        starts = {
+            effect.place: effect.estimates["initial"].value for effect in discovery.effects if effect.kind == "state"
+        }
         return changed.with_starts(starts)
 
-    def written(self, found: Discovery, parts: tuple[Part, ...]) -> tuple[Simulation, WrittenModel, Driven]:
+    def written(self, discovery: Discovery, parts: tuple[Part, ...]) -> tuple[Simulation, WrittenModel, Driven]:
         """Return the mapping with what was found, the model with it, and that as the engine runs it."""
-        whole, data = self.in_mapping(found, parts), self.measured
+        whole, data = self.in_mapping(discovery, parts), self.measured
         written = write_model(self.engine, whole, self.native)
-        own = {state.name for state in whole.states[len(self.mapping.states) :]}
-        kept = tuple(effect for effect in whole.effects if not own & set(names(parse(effect.term))))
+        added = {state.name for state in whole.states[len(self.mapping.states) :]}
+        kept = tuple(effect for effect in whole.effects if not added & set(names(parse(effect.term))))
         augmented = replace(whole, states=self.mapping.states, equations=self.mapping.equations, effects=kept)
         controls, lags, called = data.drive.inputs.copy(), {}, [control.name for control in self.engine.controls]
         driving = replace(augmented, definitions=written.definitions)
@@ -102,33 +104,33 @@ class EngineFit:
         return augmented, written, driven
 
     def left(
-        self, found: Discovery, parts: tuple[Part, ...], runs: OwnRuns, near: dict[int, Values] | None = None
+        self, discovery: Discovery, parts: tuple[Part, ...], runs: OwnRuns, near: dict[int, Values] | None = None
     ) -> Values:
         """Measured minus the engine's runs (run, sample, channel) with some of what was found."""
         known = recall(repr([part.values for part in parts]))
         if known is None:
-            left = residual_by(self.written(found, parts)[2], self.measured, runs.at, self.states, near)
+            left = residual_by(self.written(discovery, parts)[2], self.measured, runs.at, self.states, near)
             keep((left.tolist(), {row: start.tolist() for row, start in (near or {}).items()}))
             return left
         if near is not None:
             near.update((int(row), np.array(start)) for row, start in known[1].items())
         return np.array(known[0])
 
-    def compared(self, found: Discovery, runs: OwnRuns) -> tuple[Simulation, WrittenModel]:
+    def compared(self, discovery: Discovery, runs: OwnRuns) -> tuple[Simulation, WrittenModel]:
         """Return mapping and model with what was found, and how far its held-out runs are from those by hand."""
-        both = [replace(self, native=native).written(found, self.parts) for native in (True, False)]
+        both = [replace(self, native=native).written(discovery, self.parts) for native in (True, False)]
         (augmented, written, _), plain = both[0], both[1][1]
         if plain.absent or plain.along or plain.text == written.text:
             return augmented, written
-        held, near = held_out(found, runs, self.measured), dict[int, Values]()
+        held, near = held_out(discovery, runs, self.measured), dict[int, Values]()
         at = runs.among(held if held.any() else ~held).at
         left = [residual_by(driven, self.measured, at, self.states, near) for *_, driven in both]
         sizes = zip(runs.units.items(), root_mean_square(left[0] - left[1]), strict=True)
-        said = ", ".join(f"{name} by {size:.1g} {unit}" for (name, unit), size in sizes)
-        notes = (*written.notes[:-1], f"{written.notes[-1]}; held-out runs differ from those of the expression: {said}")
-        return augmented, replace(written, notes=notes)
+        differences = ", ".join(f"{name} by {size:.1g} {unit}" for (name, unit), size in sizes)
+        compared = f"{written.notes[-1]}; held-out runs differ from those of the expression: {differences}"
+        return augmented, replace(written, notes=(*written.notes[:-1], compared))
 
-    def fitted(self, found: Discovery, base: Simulation, runs: OwnRuns) -> Discovery:
+    def fitted(self, discovery: Discovery, base: Simulation, runs: OwnRuns) -> Discovery:
         """Return what was found with numbers of the engine's learned runs, whose starts follow them (Gauss-Newton)."""
         slots = [(number, slot) for number, part in enumerate(self.parts) for slot in part.candidate.slots]
         values = np.array([self.parts[number].values[slot] for number, slot in slots])
@@ -136,10 +138,10 @@ class EngineFit:
         def parts_at(values: Values) -> tuple[Part, ...]:
             each = dict(zip(slots, values.tolist(), strict=True))
             of_part = ({slot: each[number, slot] for slot in part.values} for number, part in enumerate(self.parts))
-            return tuple(replace(part, values=own) for part, own in zip(self.parts, of_part, strict=True))
+            return tuple(replace(part, values=numbers) for part, numbers in zip(self.parts, of_part, strict=True))
 
         def white(values: Values, near: dict[int, Values]) -> Values:
-            left = self.left(found, parts_at(values), runs, near) / runs.floor
+            left = self.left(discovery, parts_at(values), runs, near) / runs.floor
             return np.nan_to_num(left, posinf=1e6, neginf=-1e6).ravel()
 
         near: dict[int, Values] = {}
@@ -160,15 +162,15 @@ class EngineFit:
         self.parts = parts_at(values)
         left = np.where(np.isfinite(runs.before), now.reshape(runs.before.shape), np.nan)
         influence = np.linalg.pinv(slopes).reshape(len(slots), *left.shape)  # of each sample on each number
-        covariance = np.diag([sum_error(one, left) ** 2 for one in influence])
+        covariance = np.diag([sum_error(sensitivity, left) ** 2 for sensitivity in influence])
         effects = []
-        for number, (one, part) in enumerate(zip(found.effects, self.parts, strict=True)):
-            own = [k for k, (other, _) in enumerate(slots) if other == number]
-            numbers, idle = name_estimates(part, covariance[np.ix_(own, own)], base), part.candidate.idle
-            away = [abs(values[k] - idle[slots[k][1]]) for k in own if slots[k][1] in idle]
-            sure = [CRITERIA.certain * np.sqrt(covariance[k, k]) for k in own if slots[k][1] in idle]
-            effects.append(replace(one, term=part.term, estimates=numbers, small=bool(np.less(away, sure).all())))
-        return replace(found, effects=tuple(effects))
+        for number, (effect, part) in enumerate(zip(discovery.effects, self.parts, strict=True)):
+            places = [k for k, (other, _) in enumerate(slots) if other == number]
+            numbers, idle = name_estimates(part, covariance[np.ix_(places, places)], base), part.candidate.idle
+            away = [abs(values[k] - idle[slots[k][1]]) for k in places if slots[k][1] in idle]
+            sure = [CRITERIA.certain * np.sqrt(covariance[k, k]) for k in places if slots[k][1] in idle]
+            effects.append(replace(effect, term=part.term, estimates=numbers, small=bool(np.less(away, sure).all())))
+        return replace(discovery, effects=tuple(effects))
 
 
 def errs_less(runs: OwnRuns, without: Values, held: NDArray[np.bool_]) -> bool:
@@ -190,8 +192,8 @@ def base_runs(engine: Engine, fit: EngineFit) -> OwnRuns:
         known = recall(given, str(trial))
         if known is None:
             near: dict[int, Values] = {}
-            own = residual_by(driven, data, at.among(at.trial == trial), fit.states, near)
-            keep(known := [own.tolist(), [near[row].tolist() for row in range(len(own))]])
+            residual = residual_by(driven, data, at.among(at.trial == trial), fit.states, near)
+            keep(known := [residual.tolist(), [near[row].tolist() for row in range(len(residual))]])
         left, starts = left + known[0], starts + known[1]
     units, whole = {name: mapping.sensor(name).unit for name in data.channels}, np.array(left)
     return with_noise(OwnRuns(whole, whole, at, engine.called, units, np.zeros(0), np.array(starts)), fit)
@@ -205,7 +207,7 @@ def with_noise(runs: OwnRuns, fit: EngineFit) -> OwnRuns:
     if passed.margin:  # a filter hides the size of the noise: what is within windows shows it
         runs = replace(runs, every=passed.every, memory=passed.autocorrelation(runs.at.length))
         hidden = passed.at_most_noise(np.sqrt(np.nanmean(runs.variances(runs.before)[1], axis=(0, 1))))
-        runs = replace(runs, floor=np.where([one is None for one in passed.cutoffs_hz], runs.floor, hidden))
+        runs = replace(runs, floor=np.where([cutoff is None for cutoff in passed.cutoffs_hz], runs.floor, hidden))
         given = given * passed.gains
     return replace(runs, floor=np.where(np.isnan(given), runs.floor, given))
 
@@ -236,39 +238,39 @@ def at_other_cutoffs(
     return None
 
 
-def held_out(found: Discovery, runs: OwnRuns, data: Measured) -> NDArray[np.bool_]:
+def held_out(discovery: Discovery, runs: OwnRuns, data: Measured) -> NDArray[np.bool_]:
     """Which of the engine's runs (run,) the search held out."""
-    drawn = zip(found.runs.trial, found.runs.time[:, 0], strict=True) if found.runs.time.size else ()
-    begun = {trial_called(data, found.runs.names[k]): time for k, time in reversed([*drawn])}
+    drawn = zip(discovery.runs.trial, discovery.runs.time[:, 0], strict=True) if discovery.runs.time.size else ()
+    begun = {trial_called(data, discovery.runs.names[k]): time for k, time in reversed([*drawn])}
     times = data.drive.time0[runs.at.trial] + (runs.at.first + runs.at.margin + 1) / data.rate
     return np.array([time > begun.get(trial, np.inf) for trial, time in zip(runs.at.trial, times, strict=True)])
 
 
-def with_own_runs(found: Discovery, runs: OwnRuns, fit: EngineFit, base: Simulation) -> Discovery:
+def with_own_runs(discovery: Discovery, runs: OwnRuns, fit: EngineFit, base: Simulation) -> Discovery:
     """Return the answer with errors and shares of the engine's own runs, held out as the search did."""
     at, data, sizes = runs.at, fit.measured, []
     spread, times = np.nanstd(data.observed, axis=(0, 1)), data.drive.time0[at.trial] + at.first / data.rate
-    held = held_out(found, runs, data)
-    for some, size in ((~held, found.train), (held, found.held_out)):
+    held = held_out(discovery, runs, data)
+    for some, size in ((~held, discovery.train), (held, discovery.held_out)):
         which = some if some.any() else ~some
-        rows = np.array([*(root_mean_square(one[which]) for one in (runs.before, runs.after)), runs.floor])
+        rows = np.array([*(root_mean_square(residual[which]) for residual in (runs.before, runs.after)), runs.floor])
         whole = np.sqrt(np.mean((rows / spread) ** 2, axis=1)).tolist()
         channels = dict(zip(data.channels, map(tuple, rows.T.tolist()), strict=True))
         sizes.append(replace(size, before=whole[0], after=whole[1], noise_floor=whole[2], channels=channels))
-    effects = tuple(replace(effect, held_out=1 - sizes[1].unexplained) for effect in found.effects)
-    named = [replace(one, effects=effects, held_out=sizes[1]) for one in found.explanations[:1] if effects]
+    effects = tuple(replace(effect, held_out=1 - sizes[1].unexplained) for effect in discovery.effects)
+    named = [replace(one, effects=effects, held_out=sizes[1]) for one in discovery.explanations[:1] if effects]
     shown = np.flatnonzero(held if held.any() else ~held)[:DRAWN]
     seen = data.observed[at.trial[shown, None], at.first[shown, None] + np.arange(at.length)]
     time = times[shown, None] + np.arange(at.length) / data.rate
     again = (at.trial[shown][1:] == at.trial[shown][:-1])[:, None] & (time[1:] <= time[:-1, -1:])
     seen[1:][again] = np.nan  # where two runs overlap, the first is drawn
     simulated, augmented = seen - runs.before[shown], seen - runs.after[shown]
-    found = replace(
-        found,
+    discovery = replace(
+        discovery,
         train=sizes[0],
         held_out=sizes[1],
         effects=effects,
-        explanations=(*named, *found.explanations[len(named) :]),
+        explanations=(*named, *discovery.explanations[len(named) :]),
         runs=Runs(at.trial[shown], time, np.zeros((len(shown), 0)), seen, simulated, augmented, names=data.trials),
     )
-    return write_sentence(found, base, fit.parts if effects else ())
+    return write_sentence(discovery, base, fit.parts if effects else ())

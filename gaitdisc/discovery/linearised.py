@@ -78,7 +78,7 @@ def linearise_along(
 ) -> Linearised:
     """Linearise every step along given states (segment, sample, state), by given values of the parameters."""
     machine = pushable(simulation, places)
-    n, own = run.shape[2], len(values)
+    n, count = run.shape[2], len(values)
     spans = NUDGE * np.maximum(np.abs(run).max(axis=(0, 1)), 1e-3)
     versions = 1 + n + len(places)
     states = np.repeat(run[None, :, :-1], versions, axis=0)
@@ -86,7 +86,7 @@ def linearise_along(
     for state in range(n):
         states[1 + state, ..., state] += spans[state]
     for place in range(len(places)):
-        many[1 + n + place, own + place] = PUSH
+        many[1 + n + place, count + place] = PUSH
     landed = shooting.landed(machine, states, many)
     change = landed[1:] - landed[0]
     onward = np.moveaxis(change[:n] / spans[:, None, None, None], 0, -1)

@@ -39,18 +39,18 @@ class RecordFilter:
     @property
     def margin(self) -> int:
         """Samples at either end of a run in which its filtered channels cannot be trusted."""
-        return max([math.ceil(SETTLING_PERIODS * self.rate_hz / one) for one in self.cutoffs_hz if one], default=0)
+        return max([math.ceil(SETTLING_PERIODS * self.rate_hz / hz) for hz in self.cutoffs_hz if hz], default=0)
 
     @property
     def every(self) -> int:
         """Which samples hold all that the filter passes: 1 where they are all needed, 2 where every other is enough."""
-        highest = max([one or math.inf for one in self.cutoffs_hz], default=math.inf)
+        highest = max([hz or math.inf for hz in self.cutoffs_hz], default=math.inf)
         return max(int(self.rate_hz / (DENSE * highest)), 1)
 
     def within_error(self, stated: Sequence[float | None]) -> list[RecordFilter]:
         """Filters with cut-offs lower and higher by the error of an estimate, the nearest first; stated ones stand."""
         both = [*zip(self.cutoffs_hz, stated, strict=True)]
-        scaled = [tuple(hz and (hz if hz == own else hz * by) for hz, own in both) for by in CUTOFF_ERRORS]
+        scaled = [tuple(hz and (hz if hz == cutoff else hz * by) for hz, cutoff in both) for by in CUTOFF_ERRORS]
         return [replace(self, cutoffs_hz=cutoffs) for cutoffs in scaled if cutoffs != self.cutoffs_hz]
 
     def at_most_noise(self, size: Values) -> Values:
@@ -67,9 +67,9 @@ class RecordFilter:
         """Autocorrelation of what the filter leaves of white noise (lag, channel), between the samples compared."""
         response = self._response
         late = [np.roll(response, lag * self.every, axis=0) for lag in range(lags + 1)]
-        for lag, one in enumerate(late):
-            one[: lag * self.every] = 0.0
-        return np.array([(response * one).sum(axis=0) for one in late]) / (response**2).sum(axis=0)
+        for lag, delayed in enumerate(late):
+            delayed[: lag * self.every] = 0.0
+        return np.array([(response * delayed).sum(axis=0) for delayed in late]) / (response**2).sum(axis=0)
 
     @property
     def _response(self) -> Values:

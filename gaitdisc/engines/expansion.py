@@ -139,7 +139,8 @@ class _Along:
 
 def _expand(columns: _Columns, simulation: Simulation, along: _Along, values: Mapping[str, float]) -> None:
     """Accelerations to first order in states and controls; forces, and parameters that act as such, exactly."""
-    engine, at = columns.engine, along.at
+    whole, at, limits = columns.engine, along.at, columns.engine.force_limits(values)
+    engine = whole.without_force_limits()  # what a limit takes away is a force of its own
     base = engine.accelerations(at, values)
     few, rest = base[along.points], base.copy()
     slopes = _slopes(engine, along, values)
@@ -159,10 +160,12 @@ def _expand(columns: _Columns, simulation: Simulation, along: _Along, values: Ma
             alike = engine.as_force(name)
             if alike and alike[0] == number:
                 acting.append(f"({alike[1]})*({name} - {values[name]!r})")
+        acting += [taken for limited, taken in limits.values() if limited == number]
         if acting:
             changed = along.spread(engine.accelerations(along.few, values, force) - few)
             columns.add(f"by_{coordinate.port}", changed, acting[0] if len(acting) == 1 else f"({' + '.join(acting)})")
-    _expand_parameters(columns, simulation, along, few, values)
+    here = whole.accelerations(along.few, values) if limits else few  # a mass changes what the limited force does
+    _expand_parameters(columns, simulation, along, here, values)
 
 
 def _slopes(engine: Engine, along: _Along, values: Mapping[str, float]) -> dict[str, Values]:

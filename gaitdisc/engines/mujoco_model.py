@@ -201,17 +201,41 @@ class MujocoModel:
     @property
     def servos(self) -> dict[str, tuple[float, float, str]]:
         """Of each control that is no force itself: its gain, and its force at 0 and that by its joint's motion."""
-        model, enums, servos = self._model, self._mujoco, dict[str, tuple[float, float, str]]()
+        affine = self._mujoco.mjtBias.mjBIAS_AFFINE
+        return {name: motor for name, (k, motor) in self._motors.items() if self._model.actuator_biastype[k] == affine}
+
+    def force_limits(self, values: Mapping[str, float]) -> dict[str, tuple[int, str]]:
+        """Of each motor whose force is limited: its coordinate, and the force on it that the limit takes away."""
+        changed, limits = self.with_values(values), dict[str, tuple[int, str]]()
+        model = changed._model
+        for name, (k, (gain, constant, moved)) in changed._motors.items():
+            if model.actuator_forcelimited[k]:
+                (low, high), force = model.actuator_forcerange[k].tolist(), f"{gain!r}*{name} + {constant!r} + {moved}"
+                taken = f"{float(model.actuator_gear[k, 0])!r}*(min(max({force}, {low!r}), {high!r}) - ({force}))"
+                limits[name] = int(model.jnt_dofadr[model.actuator_trnid[k, 0]]), taken
+        return limits
+
+    def without_force_limits(self) -> MujocoModel:
+        """Model whose motors have no largest force."""
+        other = copy(self)
+        other._model = copy(self._model)
+        other._model.actuator_forcelimited[:] = False
+        return other
+
+    @property
+    def _motors(self) -> dict[str, tuple[int, tuple[float, float, str]]]:
+        """Of each motor of a hinge or slide, its force being affine: its number; gain, force at 0 and by the motion."""
+        model, enums, motors = self._model, self._mujoco, dict[str, tuple[int, tuple[float, float, str]]]()
         for number, control in enumerate(self.controls):
             joint, gear = model.actuator_trnid[number, 0], model.actuator_gear[number, 0]
             on_joint = model.actuator_trntype[number] == enums.mjtTrn.mjTRN_JOINT and model.jnt_type[joint] > 1
-            gains = model.actuator_gaintype[number], model.actuator_biastype[number]
-            if on_joint and gains == (enums.mjtGain.mjGAIN_FIXED, enums.mjtBias.mjBIAS_AFFINE):
+            known = model.actuator_biastype[number] <= int(enums.mjtBias.mjBIAS_AFFINE)  # or none
+            if on_joint and known and model.actuator_gaintype[number] == enums.mjtGain.mjGAIN_FIXED:
                 at = self.coordinates[model.jnt_dofadr[joint]]
                 constant, position, speed = model.actuator_biasprm[number, :3].tolist()
                 moved = f"{float(gear * position)!r}*{at.name} + {float(gear * speed)!r}*{at.speed}"
-                servos[control.name] = float(model.actuator_gainprm[number, 0]), constant, moved
-        return servos
+                motors[control.name] = number, (float(model.actuator_gainprm[number, 0]), constant, moved)
+        return motors
 
     def text_with_range(self, text: str, control: int, low: float, high: float, of: str = "ctrl") -> str | None:
         """Text of the model with a narrower range of a control, or of its force."""

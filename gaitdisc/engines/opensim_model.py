@@ -95,6 +95,14 @@ class OpensimModel:
     def as_force(self, _: str) -> tuple[int, str] | None:
         """None: masses, gravity and optimal forces are more."""
 
+    def force_limits(self, _: Mapping[str, float]) -> dict[str, tuple[int, str]]:
+        """None: it limits no actuator's force."""
+        return {}
+
+    def without_force_limits(self) -> OpensimModel:
+        """Itself."""
+        return self
+
     def along(self, q: Values, v: Values, controls: Values, rate: float) -> Motion:
         """Return a prescribed motion with the muscles' states, which OpenSim alone integrates from the excitations."""
         return Motion(q, v, *self._query("along", q, v, controls, rate)) if self.fibres else Motion(q, v, controls)

@@ -68,6 +68,22 @@ def test_runs_near_the_record_are_those_of_the_engine(pendulum, monkeypatch):
     assert any("_and_" in one for one in names) and not any("_and_" in one.name for one in few.inputs)
 
 
+@pytest.mark.parametrize("late", [1.0, 0.2, -1.0])
+def test_a_servo_at_the_limit_of_its_force_is_expanded_exactly(pendulum, late):
+    """The record saturates; another control takes the motor off its limit, or to the other one."""
+    motor = '<position kp="30" kv="0.2" forcerange="-0.4 0.4" name="drive"'
+    pendulum.write_text(PENDULUM.replace('<motor name="drive"', motor).replace(f'gear="{GEAR}"', 'gear="2"'))
+    model = read_model(pendulum)
+    _, measured, whole = recorded(model)
+    linear, driven = expand(draft(model), model, measured, whole)
+    u = late * driven.drive.inputs[0, :, :1]
+    at = Motion(whole[0, :, :1], whole[0, :, 1:], u)
+    inputs = np.hstack([u, driven.drive.inputs[0, :, 1:]])
+    rates = compile_simulation(linear).rates(np.arange(SAMPLES) / RATE, whole[0], inputs)
+    wanted = model.accelerations(at, {})
+    assert np.ptp(wanted) > 1.0 and np.allclose(rates[:, 1:], wanted, rtol=1e-9, atol=1e-9)
+
+
 def test_a_run_beside_the_record_is_that_of_the_muscles_whose_fibres_follow(elbow):
     """Started 2 degrees and 0.3 rad/s off, it comes back as OpenSim's does: stiffness and damping of the fibres."""
     model, t = read_model(elbow), np.arange(70) / RATE
