@@ -3,9 +3,10 @@
 from dataclasses import dataclass, field
 
 import numpy as np
+from scipy.spatial.transform import Rotation
 
 from gaitdisc.channel import Channel
-from gaitdisc.kinematics.pose import harrington_hip, make_rotation
+from gaitdisc.kinematics.pose import harrington_hip
 from gaitdisc.recording import Recording, Source
 from gaitdisc.recording.trial import BodyMeasures
 
@@ -151,7 +152,8 @@ def standing() -> dict[str, np.ndarray]:
 def body_frames(angles: dict[str, np.ndarray], speed: float = 1.3, rate_hz: float = 100.0):
     """Origin and rotation of each segment in the walker's frame, who goes forward at a speed [m/s]."""
     frames = len(angles["pelvis_tilt"])
-    pelvis = make_rotation(np.stack([angles[f"pelvis_{name}"] for name in ("tilt", "list", "rotation")], axis=1))
+    turns = np.stack([angles[f"pelvis_{name}"] for name in ("tilt", "list", "rotation")], axis=1)
+    pelvis = Rotation.from_euler("ZXY", turns, degrees=True).as_matrix()
     origin = np.zeros((frames, 3))
     origin[:, 0] = speed * np.arange(frames) / rate_hz
     origin[:, 1] = 0.95
@@ -164,7 +166,7 @@ def body_frames(angles: dict[str, np.ndarray], speed: float = 1.3, rate_hz: floa
             ("foot", ANGLES[6:], 1, 0.0),
         ):
             turns = np.stack([angles[f"{name}_{side}"] for name in names], axis=1) * [flexion, sign, sign]
-            above = above @ make_rotation(turns)
+            above = above @ Rotation.from_euler("ZXY", turns, degrees=True).as_matrix()
             found[f"{part}_{side}"] = (place, above)
             place = place + above @ np.array([0, -length, 0])
     return found

@@ -18,6 +18,7 @@ from dataclasses import replace
 from typing import NamedTuple
 
 import numpy as np
+from scipy.spatial.transform import Rotation
 
 from gaitdisc.channel import Channel
 from gaitdisc.cohort.body import Leg, ankle_place, make_leg
@@ -25,7 +26,6 @@ from gaitdisc.cohort.habit import habitual
 from gaitdisc.cohort.leg_path import PHASES, hip_motion, map_phase, pressure_centre, pressure_point, thigh_shank_foot
 from gaitdisc.cohort.person import Person
 from gaitdisc.cohort.walk import QUICK_HZ, SLOW_HZ, TrueWalk
-from gaitdisc.kinematics.pose import make_rotation
 from gaitdisc.recording import Recording, Source, Surface, Trial
 from gaitdisc.recording.arrays import Values, runs
 
@@ -137,7 +137,7 @@ def _pressure_from_hip(walk: TrueWalk, leg: Leg, side: int) -> Values:
 
 def _segments(person: Person, leg: Leg, angles: Values, hips: Values) -> Segments:
     """Origin (time, 3) and rotation (time, 3, 3) of each segment, in forwards, up, right."""
-    pelvis = np.repeat(make_rotation(np.array([[-_tilt(person), 0.0, 0.0]])), len(angles), axis=0)
+    pelvis = Rotation.from_euler("ZXY", np.tile([-_tilt(person), 0.0, 0.0], (len(angles), 1)), degrees=True).as_matrix()
     segments = {"pelvis": (hips - pelvis @ _hip(person, 0.0), pelvis)}
     for column, (side, sign) in enumerate(SIDES):
         leg_angles = angles[:, column]
@@ -148,7 +148,7 @@ def _segments(person: Person, leg: Leg, angles: Values, hips: Values) -> Segment
             ("shank", (-leg_angles[:, 3], flat, flat), leg.shank_m),
             ("foot", (leg_angles[:, 4], flat, flat), 0.0),
         ):
-            above = above @ make_rotation(np.column_stack(turns))
+            above = above @ Rotation.from_euler("ZXY", np.column_stack(turns), degrees=True).as_matrix()
             segments[f"{part}_{side}"] = (place, above)
             place = place + above @ np.array([0.0, -length, 0.0])
     return segments

@@ -182,22 +182,6 @@ def angle_signs(joint: str, side: str) -> Values:
     return np.array([flexion, 1.0, 1.0] if side == "r" else [flexion, -1.0, -1.0])
 
 
-def make_rotation(angles_deg: Values) -> Values:
-    """Rotation (frame, 3, 3) of distal in proximal, of what `clinical_angles` gives (frame, 3) [deg].
-
-    >>> angles = np.array([[30.0, -5.0, 8.0]])
-    >>> clinical_angles(np.eye(3)[None], make_rotation(angles)).round(9).tolist()
-    [[30.0, -5.0, 8.0]]
-    """
-    (cz, cx, cy), (sz, sx, sy) = np.cos(np.radians(angles_deg)).T, np.sin(np.radians(angles_deg)).T
-    rows = [
-        [cz * cy - sz * sx * sy, -sz * cx, cz * sy + sz * sx * cy],
-        [sz * cy + cz * sx * sy, cz * cx, sz * sy - cz * sx * cy],
-        [-cx * sy, sx, cx * cy],
-    ]
-    return np.moveaxis(np.array(rows), 2, 0)
-
-
 def harrington_hip(width_m: float, depth_m: float, side: str) -> Values:
     """Hip centre in the pelvis' frame from mid-ASIS [m], of width and depth [m]; Harrington 2007, J Biomech 40:595.
 

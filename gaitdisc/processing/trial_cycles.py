@@ -12,7 +12,7 @@ from gaitdisc.channel import Channel, other_side, vocabulary
 from gaitdisc.errors import GaitdiscError
 from gaitdisc.ingest.study import LEFT_OUT_CYCLE, Filters
 from gaitdisc.kinematics.markers import PATH_S, STRAIGHT_DEG
-from gaitdisc.kinematics.pose import clinical_angles, make_rotation
+from gaitdisc.kinematics.pose import clinical_angles
 from gaitdisc.kinetics.plate_steps import PlateStep
 from gaitdisc.processing.process import is_raw, make_envelope
 from gaitdisc.processing.step_events import Timed, trial_markers
@@ -390,8 +390,10 @@ def _from_own_heading(angles: Recording) -> Recording:
     heading = np.pad(means, (seen[0] + half, len(turned) - 1 - seen[-1] + half), mode="edge")
     if np.ptp(heading) < STRAIGHT_DEG:
         return angles
-    level = make_rotation(np.stack([0 * heading, 0 * heading, heading], axis=1))
-    lab = make_rotation(np.stack([angles["pelvis_tilt"], angles["pelvis_list"], turned], axis=1))
+    from scipy.spatial.transform import Rotation
+
+    turns = [[0 * heading, 0 * heading, heading], [angles["pelvis_tilt"], angles["pelvis_list"], turned]]
+    level, lab = (Rotation.from_euler("ZXY", np.transpose(each), degrees=True).as_matrix() for each in turns)
     values = np.full(angles.values.shape, np.nan)
     values[:, [angles.index("pelvis_tilt"), angles.index("pelvis_list")]] = clinical_angles(level, lab)[:, :2]
     return angles.with_values(values)

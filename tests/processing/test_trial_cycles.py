@@ -3,6 +3,7 @@
 import numpy as np
 import pytest
 from changed_trials import markers_at
+from scipy.spatial.transform import Rotation
 from texts import says
 
 from gaitdisc.channel import Channel, vocabulary
@@ -10,7 +11,7 @@ from gaitdisc.ingest.c3d_parameters import read_body_measures
 from gaitdisc.ingest.reading import read_trial
 from gaitdisc.ingest.study import Filters
 from gaitdisc.kinematics.motion import move_body
-from gaitdisc.kinematics.pose import clinical_angles, make_rotation
+from gaitdisc.kinematics.pose import clinical_angles
 from gaitdisc.kinetics.plate_steps import PlateStep
 from gaitdisc.processing.step_events import StepEvents
 from gaitdisc.processing.trial_cycles import (
@@ -268,8 +269,9 @@ def test_a_pelvis_that_turns_keeps_its_tilt_and_list_about_its_own_heading():
     """Tilt 15 deg forwards and 4 deg of list throughout a quarter turn; about the laboratory's axes they change."""
     time = np.arange(300) / 100
     heading = np.clip((time - 0.5) * 45, 0, 90)
-    own = make_rotation(np.tile([-15.0, 4.0, 0.0], (300, 1)))
-    lab = clinical_angles(np.eye(3)[None], make_rotation(np.stack([0 * time, 0 * time, heading], axis=1)) @ own)
+    own = Rotation.from_euler("ZXY", np.tile([-15.0, 4.0, 0.0], (300, 1)), degrees=True)
+    turned = Rotation.from_euler("ZXY", np.outer(heading, [0, 0, 1]), degrees=True)
+    lab = clinical_angles(np.eye(3)[None], (turned * own).as_matrix())
     values = np.column_stack([-lab[:, 0], lab[:, 1], lab[:, 2], 0 * time, 0 * time])
     channels = tuple(Channel(label, "angle", "deg") for label in LABELS)
     found = with_pelvis_and_foot(Recording(time, values, channels))
