@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import os
 from collections.abc import Callable, Iterator
+from contextlib import suppress
 from dataclasses import dataclass, replace
 from pathlib import Path
 
@@ -28,7 +29,7 @@ from gaitdisc.engines.mapping import other_values, read_mapping
 from gaitdisc.engines.motion import Values
 from gaitdisc.engines.own_runs import OwnRuns, trial_called
 from gaitdisc.engines.written import WrittenModel, write_model
-from gaitdisc.errors import ChannelError
+from gaitdisc.errors import ChannelError, SimulationError
 from gaitdisc.recording import Finding
 from gaitdisc.simulation.expression import names, parse
 from gaitdisc.simulation.measured import Measured
@@ -104,8 +105,13 @@ def discover_engine(
     return replace(answer, found=replace(discovery, findings=findings, provenance=made))
 
 
-def search(fit: EngineFit, base: EngineAnswer, request: Request, read: dict[Path, str]) -> EngineAnswer:
-    """Search the expansion along the record; of what it names, that stays which the engine's own runs bear out."""
+def search(
+    fit: EngineFit, base: EngineAnswer, request: Request, read: dict[Path, str], again: bool = True
+) -> EngineAnswer:
+    """Search the expansion along the record; of what it names, that stays which the engine's own runs bear out.
+
+    again: whether the others are searched once where these runs bear out nothing
+    """
     mapping, engine, data, passed = fit.mapping, fit.engine, fit.measured, fit.low_pass
     discovery, linear = search_expansion(fit, request, read)
     request.progress(f"running the augmented model with {engine.called}")
@@ -133,8 +139,11 @@ def search(fit: EngineFit, base: EngineAnswer, request: Request, read: dict[Path
         if not kept:
             runs = replace(runs, after=runs.before)
             if not runs.before_at_noise:
+                named = {(effect.name, effect.place) for effect in discovery.effects}
                 discovery = withdraw_effects(with_own_runs(discovery, runs, fit, linear), runs)
-                return EngineAnswer(discovery, mapping, base.written, runs, engine)
+                others = replace(request, possible=lambda candidate: (candidate.name, candidate.place) not in named)
+                other = search(fit, base, others, read, False) if again and not request.effects else None
+                return other if other and other.found.effects else replace(base, found=discovery, runs=runs)
             discovery, augmented, written = replace(discovery, effects=(), corrections=()), mapping, base.written
         elif len(kept) < len(fit.parts):
             both = list(zip(discovery.effects, fit.parts, strict=True))
@@ -163,16 +172,18 @@ def search_expansion(fit: EngineFit, request: Request, read: dict[Path, str]) ->
     def is_searched(candidate: Candidate) -> bool:  # a limit is the input's own, and of no force
         plain = candidate.kind != "port" or candidate.place not in roles or candidate.role in roles[candidate.place]
         plain = plain or candidate.name == "linear_coupling"
-        return plain and (candidate.kind, candidate.name) != ("port", "input_saturation")
+        return plain and (candidate.kind, candidate.name) != ("port", "input_saturation") and possible(candidate)
 
+    possible = request.possible
     request = request if request.effects else replace(request, possible=is_searched)
     discovery, answer = find_missing(linear, driven, request, read)
     now, unfixed = answer.values(), {k: value for k, value in mapping.values().items() if engine.as_force(k) is None}
     moved = {name: now[name] for name, value in unfixed.items() if abs(now[name] - value) > MOVED * abs(value)}
     if moved and (len(discovery.effects) > 1 or engine.fibres):  # one number alone rests on the engine's own runs
         request.progress(f"expanding the model again about the fitted values of {', '.join(moved)}")
-        linear, driven = expand(mapping, engine, data, states, moved)
-        discovery, _ = find_missing(linear, driven, request, read)
+        near, driven = expand(mapping, engine, data, states, moved)
+        with suppress(SimulationError):  # which may diverge with the file's own values, if these are far
+            discovery, linear = find_missing(near, driven, request, read)[0], near
     return discovery, linear
 
 
