@@ -10,7 +10,6 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
-from functools import cached_property
 
 import numpy as np
 
@@ -106,116 +105,89 @@ def find_effect(search: Search, candidate: Candidate) -> str:
 def _readings(search: Search, shape: ScoredModel) -> Iterator[Part]:
     """Yield what a shape may read as, with numbers to begin from; itself, where it has few pieces."""
     (part,) = shape.parts
-    if len(part.candidate.pieces) <= len(TRIED):
-        yield part
     candidate = part.candidate
+    if len(candidate.pieces) <= len(TRIED):
+        yield part
     place = next(place for place in search.places if (place.kind, place.name) == (candidate.kind, candidate.place))
     motion = next((motion for motion in place.motions if motion[0] == candidate.role), None)
-    if motion:
-        for pieces, factors in _Curve(search, shape, motion).subsets():
-            kinds, values, texts = _constants(pieces)
-            reading = replace(candidate, pieces=texts, constants=kinds)
-            begin = dict(zip(reading.slots, [*factors, *values.values()], strict=True))
-            yield Part(reading, begin)
+    for pieces, factors in _subsets(*_regression(search, shape, motion)) if motion else ():
+        kinds: dict[str, str] = {}  # of the constants, each under a name of its own
+        values: dict[str, float] = {}
+        texts = []
+        for number, piece in enumerate(pieces):
+            name_of = {slot: f"{slot}_{number + 1}" if number else slot for slot in piece.kinds}
+            kinds |= {name_of[slot]: kind for slot, kind in piece.kinds.items()}
+            values |= {name_of[slot]: value for slot, value in piece.values.items()}
+            texts.append(with_names(piece.text, {f"_{slot}": f"_{name}" for slot, name in name_of.items()}))
+        reading = replace(candidate, pieces=tuple(texts), constants=kinds)
+        yield Part(reading, dict(zip(reading.slots, [*factors, *values.values()], strict=True)))
 
 
-def _constants(pieces: tuple[Piece, ...]) -> tuple[dict[str, str], dict[str, float], tuple[str, ...]]:
-    """Grids and numbers of the constants of several pieces, each under a name of its own, and the pieces with these."""
-    kinds: dict[str, str] = {}
-    values: dict[str, float] = {}
-    texts = []
-    for number, piece in enumerate(pieces):
-        name_of = {slot: f"{slot}_{number + 1}" if number else slot for slot in piece.kinds}
-        kinds |= {name_of[slot]: kind for slot, kind in piece.kinds.items()}
-        values |= {name_of[slot]: value for slot, value in piece.values.items()}
-        texts.append(with_names(piece.text, {f"_{slot}": f"_{name}" for slot, name in name_of.items()}))
-    return kinds, values, tuple(texts)
+def _subsets(pieces: list[Piece], columns: Values, curve: Values) -> Iterator[tuple[list[Piece], list[float]]]:
+    """Yield the best one, two and three pieces of a curve, no structure twice, with their factors."""
+    size = np.linalg.norm(columns, axis=0)
+    unit = columns / size
+    gram, match = unit.T @ unit, unit.T @ curve
+    singles = [(i,) for i in np.argsort(-(match**2)).tolist()]
+    apart = np.where(np.abs(gram) < ALIKE, 1 - gram**2, np.inf)
+    explained = (match[:, None] ** 2 + match**2 - 2 * gram * np.outer(match, match)) / apart
+    first, second = np.triu_indices(len(match), 1)
+    order = np.argsort(-explained[first, second])
+    pairs: list[tuple[int, ...]] = list(zip(first[order].tolist(), second[order].tolist(), strict=True))
+    triples = _best_triples(gram, match, pairs[:PAIRS_BEYOND])
+    for ranked, most in zip((singles, pairs, triples), TRIED, strict=True):
+        seen: set[tuple[str, ...]] = set()
+        for some in ranked:
+            structure = tuple(sorted(pieces[i].text for i in some))
+            if structure in seen:
+                continue
+            seen.add(structure)
+            which = list(some)
+            factors = np.linalg.lstsq(gram[np.ix_(which, which)], match[which], rcond=1e-10)[0] / size[which]
+            yield [pieces[i] for i in some], factors.tolist()
+            if len(seen) == most:
+                break
+
+
+def _regression(search: Search, shape: ScoredModel, motion: tuple[str, str]) -> tuple[list[Piece], Values, Values]:
+    """Pieces that vary along a shape's runs, their values there (sample, piece), and the shape's own (sample,)."""
+    known, segments, drive = len(search.base.states), shape.shooting.segments, shape.shooting.measured.drive
+    states = shape.fit.states[..., :known].reshape(-1, known)
+    inputs = segments.of(drive.inputs).reshape(len(states), -1)
+    some = slice(None, None, max(len(states) // MOST_SAMPLES, 1))  # spread over all of the runs
+    points = Points(segments.times(drive).ravel()[some], states[some], inputs[some])
+    pieces = list(_pieces(search, motion, evaluate_many(search.base, [motion[0]], points)[0]))
+    (part,) = shape.parts
+    values = evaluate_many(search.base, [part.term, *(piece.at for piece in pieces)], points).T
+    size = np.linalg.norm(values, axis=0)
+    good = np.flatnonzero(np.isfinite(size[1:]) & (size[1:] > 0))
+    return [pieces[i] for i in good], values[:, 1 + good], values[:, 0]
+
+
+def _pieces(search: Search, motion: tuple[str, str], along: Values) -> Iterator[Piece]:
+    """Yield pieces over a position, over its rate, over both, and products of one and the other."""
+    x, v = motion
+    angle = any(place.motions[0] == motion and place.angle for place in search.places)
+    known = [form for form in read_shapes() if angle or form.needs != "angle"]
+    known = [form for form in known if len(form.pieces) == 1 and not form.states and "delay" not in form.pieces[0]]
+    still = [form for form in (*known, BUMP) if form.roles == ("x",) and x != v]
+    moving = [form for form in known if form.roles == ("v",)] if v else []
+    load = Shape("constant_load", ("1",))
+    mixed = [form for form in known if set(form.roles) == {"x", "v"}] if v else []
+    products = [
+        Shape("", (f"{_factor(over_x.pieces[0])}*{_factor(over_v.pieces[0])}",), over_x.constants)
+        for over_x in still
+        for over_v in moving
+    ]
+    for form in (load, *still, *moving, *mixed, *products):
+        (text,) = form.written({"x": x, "v": v} | {slot: f"_{slot}" for slot in form.constants})
+        for values in cells(dict(form.constants), along, search.rhythm):
+            yield Piece(text, dict(form.constants), values)
 
 
 def _factor(piece: str) -> str:
     """A piece as it stands in a product."""
     return f"({piece})" if " - max(" in piece else piece
-
-
-@dataclass(frozen=True)
-class _Curve:
-    """A shape's values along its runs, and what could make them up."""
-
-    search: Search
-    shape: ScoredModel
-    motion: tuple[str, str]
-
-    def subsets(self) -> Iterator[tuple[tuple[Piece, ...], list[float]]]:
-        """Yield the best one, two and three pieces, no structure twice, with their factors."""
-        pieces, columns, curve = self._regression
-        size = np.linalg.norm(columns, axis=0)
-        unit = columns / size
-        gram, match = unit.T @ unit, unit.T @ curve
-        singles = [(i,) for i in np.argsort(-(match**2)).tolist()]
-        apart = np.where(np.abs(gram) < ALIKE, 1 - gram**2, np.inf)
-        explained = (match[:, None] ** 2 + match**2 - 2 * gram * np.outer(match, match)) / apart
-        first, second = np.triu_indices(len(match), 1)
-        order = np.argsort(-explained[first, second])
-        pairs: list[tuple[int, ...]] = list(zip(first[order].tolist(), second[order].tolist(), strict=True))
-        triples = _best_triples(gram, match, pairs[:PAIRS_BEYOND])
-        for ranked, most in zip((singles, pairs, triples), TRIED, strict=True):
-            seen: set[tuple[str, ...]] = set()
-            for some in ranked:
-                structure = tuple(sorted(pieces[i].text for i in some))
-                if structure in seen:
-                    continue
-                seen.add(structure)
-                which = list(some)
-                factors = np.linalg.lstsq(gram[np.ix_(which, which)], match[which], rcond=1e-10)[0] / size[which]
-                yield tuple(pieces[i] for i in some), factors.tolist()
-                if len(seen) == most:
-                    break
-
-    @cached_property
-    def _regression(self) -> tuple[list[Piece], Values, Values]:
-        """Pieces that vary along the runs, their values (sample, piece), and the curve's (sample,)."""
-        points = self._points
-        along = evaluate_many(self.search.base, [self.motion[0]], points)[0]
-        pieces = list(self._pieces(along))
-        (part,) = self.shape.parts
-        values = evaluate_many(self.search.base, [part.term, *(piece.at for piece in pieces)], points).T
-        size = np.linalg.norm(values, axis=0)
-        good = np.flatnonzero(np.isfinite(size[1:]) & (size[1:] > 0))
-        return [pieces[i] for i in good], values[:, 1 + good], values[:, 0]
-
-    @property
-    def _points(self) -> Points:
-        """Samples of the runs, spread over all of them."""
-        shooting, known = self.shape.shooting, len(self.search.base.states)
-        segments, drive = shooting.segments, shooting.measured.drive
-        states = self.shape.fit.states[..., :known].reshape(-1, known)
-        time = segments.times(drive).ravel()
-        some = slice(None, None, max(len(states) // MOST_SAMPLES, 1))
-        inputs = segments.of(drive.inputs).reshape(len(states), -1)
-        return Points(time[some], states[some], inputs[some])
-
-    def _pieces(self, along: Values) -> Iterator[Piece]:
-        """Pieces over the position, over its rate, over both, and products of one and the other."""
-        rate = self.motion[1]
-        angle = any(place.motions[0] == self.motion and place.angle for place in self.search.places)
-        known = [form for form in read_shapes() if angle or form.needs != "angle"]
-        known = [form for form in known if len(form.pieces) == 1 and not form.states and "delay" not in form.pieces[0]]
-        still = [form for form in (*known, BUMP) if form.roles == ("x",) and self.motion[0] != rate]
-        moving = [form for form in known if form.roles == ("v",)] if rate else []
-        load = Shape("constant_load", ("1",))
-        mixed = [form for form in known if set(form.roles) == {"x", "v"}] if rate else []
-        for shape in (load, *still, *moving, *mixed):
-            yield from self._at(shape, along)
-        for over_x in still:
-            for over_v in moving:
-                product = Shape("", (f"{_factor(over_x.pieces[0])}*{_factor(over_v.pieces[0])}",), over_x.constants)
-                yield from self._at(product, along)
-
-    def _at(self, shape: Shape, along: Values) -> Iterator[Piece]:
-        names = {"x": self.motion[0], "v": self.motion[1]} | {slot: f"_{slot}" for slot in shape.constants}
-        (text,) = shape.written(names)
-        for values in cells(dict(shape.constants), along, self.search.rhythm):
-            yield Piece(text, dict(shape.constants), values)
 
 
 def _best_triples(gram: Values, match: Values, pairs: list[tuple[int, ...]]) -> list[tuple[int, int, int]]:
