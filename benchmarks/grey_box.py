@@ -36,9 +36,10 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.optimize import OptimizeResult, least_squares
 
-from gaitdisc.discovery.candidate import Candidate, find_bounds, list_candidates
+from gaitdisc.discovery.candidate import Candidate, list_candidates
 from gaitdisc.discovery.catalogue import read_shapes
 from gaitdisc.discovery.first_states import SHARE_OF_PERIOD, guess_states
+from gaitdisc.discovery.fitted import find_bounds
 from gaitdisc.discovery.grids import Rhythm, cells, delays, find_rhythm
 from gaitdisc.discovery.places import kinematic_rates, list_places
 from gaitdisc.simulation.compiled_simulation import Rows

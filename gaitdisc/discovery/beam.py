@@ -55,7 +55,7 @@ class Beam:
         return min(self.known.values(), key=self.cost)
 
     def fit(self, sets: Iterable[tuple[Part, ...]], begun: CrossValidated | None = None) -> list[CrossValidated]:
-        """Fit sets, so that they are weighed as well."""
+        """Fit sets, so that they are weighed as well, unless their numbers would not mean what their names say."""
         fitted = [cross_validated(self.scale, begun or self.as_read, parts) for parts in sets]
         fitted = [model for model in fitted if self.search.sensible(model)]
         self.known.update((model.explanations, model) for model in fitted)
@@ -92,13 +92,10 @@ class Beam:
     def _extend(self, beam: list[CrossValidated]) -> list[CrossValidated]:
         """Fit the most promising sets of one explanation more; those that are known already stand beside them."""
         size = len(beam[0].explanations) + 1
-        extended = {key: model for key, model in self.known.items() if len(key) == size and np.isfinite(model.gap)}
         for shorter in beam:
             for score in self._promising(shorter, FIRST if len(beam) == 1 else NEXT):
-                longer = self._with(shorter, score)
-                if longer:
-                    extended[longer.explanations] = longer
-        return list(extended.values())
+                self._with(shorter, score)
+        return [model for key, model in self.known.items() if len(key) == size and np.isfinite(model.gap)]
 
     def _promising(self, model: CrossValidated, most: int) -> list[Score]:
         """Explanations that could, to first order, make a set cheaper than the cheapest known."""
@@ -115,15 +112,10 @@ class Beam:
                 promising.append(score)
         return promising[:most]
 
-    def _with(self, model: CrossValidated, score: Score) -> CrossValidated | None:
-        """Fit a set with one explanation more; None where its numbers would not mean what its name says."""
-        explanations = model.explanations | {score.candidate.identity}
-        if explanations not in self.known:
-            longer = cross_validated(self.scale, model, (*model.parts, score))
-            if not self.search.sensible(longer):
-                return None
-            self.known[explanations] = longer
-        return self.known[explanations]
+    def _with(self, model: CrossValidated, score: Score) -> None:
+        """Fit a set with one explanation more, unless it is known."""
+        if model.explanations | {score.candidate.identity} not in self.known:
+            self.fit([(*model.parts, score)], model)
 
     def without(self, model: CrossValidated, gone: Identity) -> CrossValidated:
         """Fit a set less one of its explanations."""

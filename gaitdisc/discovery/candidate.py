@@ -11,6 +11,7 @@ from typing import NamedTuple
 
 from gaitdisc.discovery.catalogue import Shape, name_factors, with_names
 from gaitdisc.discovery.criteria import CRITERIA
+from gaitdisc.discovery.fitted import find_bounds
 from gaitdisc.discovery.places import Place, kinematic_rates
 from gaitdisc.simulation.expression import Tree, parse, substitute, written
 from gaitdisc.simulation.parts import Parameter, State, Term
@@ -306,12 +307,6 @@ def free_name(name: str, taken: Collection[str]) -> str:
     """
     numbered = (name, *(f"{name}_{number}" for number in range(2, len(taken) + 3)))
     return next(each for each in numbered if each not in taken)
-
-
-def find_bounds(parameter: Parameter) -> tuple[float, ...]:
-    """Return a parameter's `low` and `high`, or nothing where it has not both."""
-    low, high = parameter.low, parameter.high
-    return (low, high) if low is not None and high is not None and low < high else ()
 
 
 def _castings(shape: Shape, place: Place, driving: tuple[str, ...]) -> list[tuple[str, dict[str, str]]]:

@@ -11,6 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from gaitdisc.recording.arrays import Values
+from gaitdisc.simulation.parts import Parameter
 from gaitdisc.simulation.simulation import Simulation
 
 OF_SEGMENTS = ("starts", "states", "residual", "white", "slopes")  # of a fit, one row for each segment
@@ -174,17 +175,20 @@ def read_prior(simulation: Simulation, exact: frozenset[str] = frozenset()) -> P
     (('inertia', 'k'), [0.049, 19.5])
     """
     priors = [
-        (place, parameter.name, parameter.value, parameter.low, parameter.high)
+        (place, parameter.name, parameter.value, *find_bounds(parameter))
         for place, parameter in enumerate(simulation.parameters)
-        if parameter.low is not None
-        and parameter.high is not None
-        and parameter.low < parameter.high
-        and parameter.name not in exact
+        if find_bounds(parameter) and parameter.name not in exact
     ]
     if not priors:
         return Prior()
     places, names, *numbers = zip(*priors, strict=True)
     return Prior(names, np.array(places, dtype=np.intp), *(np.array(each, float) for each in numbers))
+
+
+def find_bounds(parameter: Parameter) -> tuple[float, ...]:
+    """Return a parameter's `low` and `high`, or nothing where it has not both."""
+    low, high = parameter.low, parameter.high
+    return (low, high) if low is not None and high is not None and low < high else ()
 
 
 def find_basis(slopes: Values) -> Values:

@@ -50,15 +50,6 @@ class Odd:
     errors: tuple[float, float, float, float]
 
 
-@dataclass(frozen=True)
-class Change:
-    """What may have happened to a trial, undone in every trial."""
-
-    words: str
-    channel: str
-    measured: Measured
-
-
 def agreeing_trials(case: Case, measured: Measured) -> Measured:
     """Return the trials, if three or more, without those turned in sign or shifted in time, each with a finding."""
     outliers = odd_trials(case) if len(measured.trials) > FEWEST_OTHERS else ()
@@ -89,14 +80,14 @@ def odd_trials(case: Case) -> tuple[Odd, ...]:
     as_read = fit_trials(case, case.measured, samples)
     before = trial_errors(as_read)
     suspects: dict[int, list[Odd]] = {}
-    for change in (*_turn(case), *_shift(case, as_read)):
-        after = trial_errors(fit_trials(case, change.measured, samples))
+    for change, channel, measured in (*_turn(case), *_shift(case, as_read)):
+        after = trial_errors(fit_trials(case, measured, samples))
         for trial in range(count):
             others_before, others_after = (float(np.median(np.delete(error, trial))) for error in (before, after))
             errors = (float(before[trial]), float(after[trial]), others_before, others_after)
-            likely = change.words.startswith(SIGN) or errors[1] < CRITERIA.apart * errors[2]
+            likely = change.startswith(SIGN) or errors[1] < CRITERIA.apart * errors[2]
             if CRITERIA.apart * errors[1] < errors[0] and errors[3] > CRITERIA.unlike * errors[2] and likely:
-                suspects.setdefault(trial, []).append(Odd(trial, change.words, change.channel, errors))
+                suspects.setdefault(trial, []).append(Odd(trial, change, channel, errors))
     clear = count - len(suspects) >= max(FEWEST_OTHERS, len(suspects) + 1)
     return tuple(_either(suspects[trial]) for trial in sorted(suspects)) if clear else ()
 
@@ -130,24 +121,23 @@ def trial_errors(model: ScoredModel) -> Values:
     return np.sqrt([np.nanmean(square[trials == trial]) for trial in np.unique(trials)])
 
 
-def _turn(case: Case) -> Iterator[Change]:
-    """Yield the trials with the sign of a channel, of all channels, or of an input turned."""
+def _turn(case: Case) -> Iterator[tuple[str, str, Measured]]:
+    """Yield the trials with the sign of a channel, of all channels, or of an input turned: words, which, trials."""
     measured, inputs = case.measured, case.search.base.inputs
     for number, name in enumerate(measured.channels):
         observed = measured.observed * np.where(np.arange(len(measured.channels)) == number, -1.0, 1.0)
-        yield Change(f"{SIGN}{name}", name, replace(measured, observed=observed))
+        yield f"{SIGN}{name}", name, replace(measured, observed=observed)
     if len(measured.channels) > 1:
-        changed = replace(measured, observed=-measured.observed)
-        yield Change(f"{SIGN}every channel", "", changed)
+        yield f"{SIGN}every channel", "", replace(measured, observed=-measured.observed)
     for number, part in enumerate(inputs):
         if not part.wraps and not part.computed:
             signs = np.where(np.arange(len(inputs)) == number, -1.0, 1.0)
             drive = replace(measured.drive, inputs=measured.drive.inputs * signs)
-            yield Change(f"{SIGN}{part.name}", part.name, replace(measured, drive=drive))
+            yield f"{SIGN}{part.name}", part.name, replace(measured, drive=drive)
 
 
-def _shift(case: Case, as_read: ScoredModel) -> Iterator[Change]:
-    """Yield the trials with all channels shifted against the inputs, by what serves one of the trials."""
+def _shift(case: Case, as_read: ScoredModel) -> Iterator[tuple[str, str, Measured]]:
+    """Yield the trials with all channels shifted against the inputs, by what serves one of them, as `_turn` does."""
     if not case.search.base.driving:  # a system that is left to itself has no clock to be shifted against
         return
     measured, fit, segments, spread = case.measured, as_read.fit, as_read.shooting.segments, as_read.noise.size
@@ -166,7 +156,7 @@ def _shift(case: Case, as_read: ScoredModel) -> Iterator[Change]:
         likely |= {shifts[place] for place in promising[:SHIFTS_TRIED]}
     for shift in sorted(likely):
         words = f"its channels are {abs(shift) / measured.rate:.3g} s too {'late' if shift > 0 else 'early'}"
-        yield Change(f"{words} for its inputs", "", shift_channels(measured, shift))
+        yield f"{words} for its inputs", "", shift_channels(measured, shift)
 
 
 def shift_channels(measured: Measured, shift: int) -> Measured:

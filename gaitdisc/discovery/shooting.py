@@ -103,10 +103,8 @@ class Shooting:
         nudges = NUDGE * np.concatenate([spans, np.maximum(np.abs(values[index]), 1e-2)])
         many_starts = np.repeat(starts[None], 1 + len(nudges), axis=0)
         many_values = np.repeat(values[None], 1 + len(nudges), axis=0)
-        for state in range(n):
-            many_starts[1 + state, :, state] += nudges[state]
-        for place, parameter in enumerate(index):
-            many_values[1 + n + place, parameter] += nudges[n + place]
+        many_starts[1 + np.arange(n), :, np.arange(n)] += nudges[:n, None]
+        many_values[1 + n + np.arange(len(index)), index] += nudges[n:]
         states, observed = self.run(machine, many_starts, many_values)
         residual = self.seen - observed[0]
         failed = ~np.isfinite(observed[0]).all(axis=(1, 2))

@@ -48,7 +48,7 @@ def test_what_is_dear_is_not_named_where_plain_words_close_as_much(beam, best):
 
 def test_an_explanation_that_closes_next_to_nothing_is_small(beam, best):
     load = next(one for one in beam.search.candidates if one.label == "constant_load@load")
-    more = beam._with(best, Score(load, {"factor": 0.001}, 0.0))
+    (more,) = beam.fit([(*best.parts, Score(load, {"factor": 0.001}, 0.0))], best)
     kept, small = beam.material(more)
     assert kept.explanations == beam.material(best)[0].explanations
     assert "constant_load" in {part.candidate.name for part in small}
