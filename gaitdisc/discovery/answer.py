@@ -22,7 +22,6 @@ from gaitdisc.discovery.held_out import (
     run_trials,
     tabulate_runs,
 )
-from gaitdisc.discovery.influence import nearly_off
 from gaitdisc.discovery.result import Correction, Discovery, Estimate, Explanation, FoundEffect, GapSize, Whereabouts
 from gaitdisc.discovery.scored_model import Part, ScoredModel
 from gaitdisc.discovery.search import Search
@@ -37,6 +36,7 @@ from gaitdisc.words import with_unit
 MOST_EXPLANATIONS = 5
 MOST_RIVALS = 6
 DRAWN = 200  # samples of a run
+NEARLY_OFF = 0.3  # a gain by which little of an input is left
 DIGITS = 3  # of the numbers in an expression that a person reads; those of the file are exact
 
 
@@ -47,11 +47,6 @@ class Rival:
     scored: ScoredModel
     gained: float  # fall of the information criterion from the simulation as read
     tied: bool  # whether these data cannot distinguish it from the answer
-
-    @property
-    def part(self) -> Part:
-        """The rival's explanation."""
-        return self.scored.parts[-1]
 
 
 def answer(
@@ -87,7 +82,7 @@ def answer(
         where=whereabouts(case, stated, train) if effects or not agrees else (),
         effects=effects,
         rivals=(
-            *(report_rival(case, rival) for rival in rivals if rival.part.candidate.label not in now.labels),
+            *(report_rival(case, rival) for rival in rivals if rival.scored.labels[-1] not in now.labels),
             *(
                 FoundEffect(part.candidate.kind, part.candidate.place, part.candidate.name, part.term, small=True)
                 for part in verdict.small  # that close too little of the gap to be named
@@ -138,8 +133,7 @@ def augment_with(base: Simulation, parts: tuple[Part, ...]) -> Simulation:
 
 def report_rival(case: Case, rival: Rival, part: int = -1) -> FoundEffect:
     """Say one of a rival's explanations, the last by default, with its numbers."""
-    number = part % len(rival.scored.parts)
-    return replace(_effect(case, rival.scored, number), term="", states={}, bic=rival.gained, tied=rival.tied)
+    return replace(_effect(case, rival.scored, part), term="", states={}, bic=rival.gained, tied=rival.tied)
 
 
 def _effect(case: Case, now: ScoredModel, number: int) -> FoundEffect:
@@ -274,6 +268,20 @@ def exact_inputs(case: Case, now: ScoredModel) -> tuple[Finding, ...]:
             spoils = "which effect is named, if an input has this error"
             findings.append(Finding("note", "exact inputs", case.measured.source, what, spoils))
     return tuple(findings)
+
+
+def nearly_off(effects: tuple[FoundEffect, ...], source: str) -> tuple[Finding, ...]:
+    """Warn where an answer takes several inputs nearly away: what nothing acts on follows its record by itself."""
+    gains = {
+        effect.place: effect.estimates["gain"].value
+        for effect in effects
+        if effect.name == "input_gain" and abs(effect.estimates["gain"].value) < NEARLY_OFF
+    }
+    if len(gains) < 2:
+        return ()
+    what = " and ".join(f"{name!r} (gain {gain:.2g})" for name, gain in gains.items()) + " are nearly switched off"
+    spoils = "the answer, if the simulation follows a recorded motion; combine signals of one recording into one input"
+    return (Finding("warning", "inputs switched off", source, what, spoils),)
 
 
 def find_region(part: Part) -> str:

@@ -14,10 +14,9 @@ from gaitdisc.discovery.estimated_filter import find_record_filter
 from gaitdisc.discovery.first_states import guess_states
 from gaitdisc.discovery.gap_share import GapScale
 from gaitdisc.discovery.grids import Rhythm, find_rhythm
-from gaitdisc.discovery.influence import Idle, idle_parts, refuse_idle
 from gaitdisc.discovery.input_errors import with_constant_errors
 from gaitdisc.discovery.linearised import linearise, linearise_along
-from gaitdisc.discovery.matched import match_channels
+from gaitdisc.discovery.matched import Idle, idle_parts, match_channels, refuse_idle
 from gaitdisc.discovery.noise import Noise, sensor_noise, white_noise
 from gaitdisc.discovery.places import kinematic_rates, list_places
 from gaitdisc.discovery.record_filter import RecordFilter

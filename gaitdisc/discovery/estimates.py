@@ -39,21 +39,21 @@ def name_estimates(part: Part, covariance: Values, base: Simulation) -> dict[str
     candidate, slots = part.candidate, part.candidate.slots
     units, names = slot_units(candidate, base), NAMES | dict(candidate.names or {})
     estimates: dict[str, Estimate] = {}
-    number, waning = 0, candidate.pieces and _WANING.match(candidate.pieces[0])
-    while number < len(slots):
-        slot, pair = slots[number], slots[number : number + 2]
-        if _is_wave(candidate, number):
-            both = np.array([part.values[term] for term in pair])
-            block = covariance[number : number + 2, number : number + 2]
-            for name, value, slope, unit in _wave(both, units[slot]):
-                estimates[free_name(name, estimates)] = _estimate(value, float(slope @ block @ slope), unit)
-            number += 2
-            continue
-        name = names.get(slot, slot)
-        sign = -1 if name in RESISTING and not waning else 1
-        value, variance = sign * part.values[slot], float(covariance[number, number])
-        estimates[free_name(name, estimates)] = _estimate(value, variance, units[slot])
-        number += 1
+    waning = candidate.pieces and _WANING.match(candidate.pieces[0])
+    for number, slot in enumerate(slots):
+        if _is_wave(candidate, number):  # a sin + b cos = A sin(. + phase), with its slopes by a and b
+            a, b = (part.values[term] for term in slots[number : number + 2])
+            size, both = float(np.hypot(a, b)), covariance[number : number + 2, number : number + 2]
+            for name, value, slope, unit in (
+                ("amplitude", size, np.array([a, b]) / (size or 1e-300), units[slot]),
+                ("phase", np.arctan2(b, a), np.array([-b, a]) / (size or 1e-300) ** 2, "rad"),
+            ):
+                estimates[free_name(name, estimates)] = _estimate(value, float(slope @ both @ slope), unit)
+        elif not (number and _is_wave(candidate, number - 1)):
+            name = names.get(slot, slot)
+            sign = -1 if name in RESISTING and not waning else 1
+            value, variance = sign * part.values[slot], float(covariance[number, number])
+            estimates[free_name(name, estimates)] = _estimate(value, variance, units[slot])
     return estimates
 
 
@@ -109,15 +109,6 @@ def _is_wave(candidate: Candidate, number: int) -> bool:
     if len(pair) < 2 or pair[0] is None or pair[1] is None:
         return False
     return (pair[0][1], pair[1][1]) == ("sin", "cos") and pair[0][2] == pair[1][2]
-
-
-def _wave(both: Values, unit: str) -> list[tuple[str, float, Values, str]]:
-    """Amplitude and phase of a sin + b cos = A sin(. + phase), with their slopes by a and b."""
-    size = float(np.hypot(*both)) or 1e-300
-    return [
-        ("amplitude", float(np.hypot(*both)), both / size, unit),
-        ("phase", float(np.arctan2(both[1], both[0])), np.array([-both[1], both[0]]) / size**2, "rad"),
-    ]
 
 
 def _estimate(value: float, variance: float, unit: str) -> Estimate:

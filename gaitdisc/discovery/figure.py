@@ -64,7 +64,7 @@ def explanations_figure(discovery: Discovery) -> list[Figure]:
 
 def display_runs(discovery: Discovery) -> pd.DataFrame:
     """Held-out runs in the units that are drawn, degrees in place of radians."""
-    table = pd.DataFrame(discovery.runs.table(discovery.channels)).dropna()
+    table = discovery.to_frame().dropna()
     for channel, unit in zip(discovery.channels, discovery.units, strict=True):
         table[[f"{channel}_{word}" for word in WORDS]] *= display_unit(unit)[1]
     return table

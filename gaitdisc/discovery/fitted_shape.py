@@ -116,14 +116,15 @@ def _thin_shape(model: ScoredModel) -> Iterator[Part]:
 def _local(model: ScoredModel) -> Iterator[Part]:
     """Yield one bump whose place and width are free, from each of the two strongest of a shape over one state."""
     (part,) = model.parts
-    strongest = sorted(part.candidate.pieces, key=lambda piece: -abs(part.values[_find_slot(part, piece)]))[:2]
-    for piece in strongest:
+    pairs = zip(part.candidate.slots, part.candidate.pieces, strict=False)  # constants come after the factors
+    strongest = sorted(pairs, key=lambda pair: -abs(part.values[pair[0]]))[:2]
+    for factor, piece in strongest:
         bump = _ONE_BUMP.fullmatch(piece)
         if not bump:
             continue
         name, centre, width, rest = bump.groups()
         constants = {"c": "quantiles of x", "w": "half widths of x"}
-        begin = {"factor": part.values[_find_slot(part, piece)], "c": float(centre.strip("()")), "w": float(width) / 2}
+        begin = {"factor": part.values[factor], "c": float(centre.strip("()")), "w": float(width) / 2}
         rise = _RISE.fullmatch(rest)
         if rise:
             rest, begin["s"] = f"*tanh({rise[1]}/_s)", float(rise[2]) / 2
@@ -131,10 +132,6 @@ def _local(model: ScoredModel) -> Iterator[Part]:
         yield Part(
             replace(part.candidate, pieces=(f"exp(-((({name} - _c)/_w)**2)){rest}",), constants=constants), begin
         )
-
-
-def _find_slot(part: Part, piece: str) -> str:
-    return part.candidate.slots[part.candidate.pieces.index(piece)]
 
 
 def _bumps(ranges: dict[str, Values], counts: dict[str, int]) -> list[str]:

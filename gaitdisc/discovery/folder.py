@@ -38,10 +38,8 @@ FORMAT = 1
 @write_together()
 def save_discovery(discovery: Discovery, folder: Path, models: Sequence[str] = ()) -> Path:
     """Save a discovery; models: files of the augmented model, which were written into the folder together with it."""
-    import pandas as pd
-
     discovery = discovery.public
-    write_csv(pd.DataFrame(discovery.runs.table(discovery.channels)).dropna(), folder / RUNS, "%.8g")
+    write_csv(discovery.to_frame().dropna(), folder / RUNS, "%.8g")
     hashes = {name: file_sha256(find_written(folder / name)) for name in (RUNS, *models)}
     return write_whole(folder / NAME, seal_text({**discovery.to_json(), "format": FORMAT, "sha256": hashes}))
 

@@ -198,8 +198,10 @@ class Runs:
     augmented: Values  # (run, sample, channel), [the channel's unit]
     names: tuple[str, ...] = ()  # of all trials of the measured data, by their number
 
-    def table(self, channels: tuple[str, ...]) -> dict[str, NDArray[Any]]:
-        """Return the runs as columns: run, trial, time, phase, and each channel three times."""
+    def to_frame(self, channels: tuple[str, ...]) -> pd.DataFrame:
+        """Return the runs as a table: run, trial, time, phase, and each channel three times."""
+        import pandas as pd
+
         runs, samples = self.time.shape
         trial = np.asarray(self.names)[self.trial] if self.names else self.trial + 1
         columns = {
@@ -212,7 +214,7 @@ class Runs:
         for number, channel in enumerate(channels):
             for word in ("measured", "simulated", "augmented"):
                 columns[f"{channel}_{word}"] = getattr(self, word)[:, :, number].ravel()
-        return columns
+        return pd.DataFrame(columns)
 
 
 NO_GAP = GapSize(0.0, 0.0, 0.0)
@@ -295,9 +297,7 @@ class Discovery(Saved, file="discovery.json"):
 
     def to_frame(self) -> pd.DataFrame:
         """Held-out runs as a table: run, trial, time [s], and each channel as measured, simulated and augmented."""
-        import pandas as pd
-
-        return pd.DataFrame(self.runs.table(self.channels))
+        return self.runs.to_frame(self.channels)
 
     def __repr__(self) -> str:
         return f"Discovery({self.verdict}: {self.sentence})"

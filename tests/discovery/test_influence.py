@@ -5,9 +5,9 @@ import pytest
 from hidden_in_a_mass import MASS, Experiment, mass, record, with_load
 from texts import says
 
+from gaitdisc.discovery.answer import nearly_off
 from gaitdisc.discovery.case import set_up_case
 from gaitdisc.discovery.discover import discover
-from gaitdisc.discovery.influence import nearly_off
 from gaitdisc.discovery.places import list_places
 from gaitdisc.discovery.process_noise import rank_process_noise
 from gaitdisc.discovery.result import Estimate, FoundEffect

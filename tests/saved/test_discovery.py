@@ -49,7 +49,7 @@ def test_what_was_not_computed_is_null():
 
 
 def test_runs_are_given_sample_by_sample_under_the_trials_name():
-    columns = manufactured().runs.table(("theta",))
+    columns = manufactured().runs.to_frame(("theta",))
     assert list(columns) == ["run", "trial", "time", "phase", "theta_measured", "theta_simulated", "theta_augmented"]
     assert set(columns["trial"]) == {"d"}
     assert np.unique(columns["run"]).tolist() == [1, 2]
