@@ -19,7 +19,7 @@ from gaitdisc.discovery.estimated_filter import find_record_filter
 from gaitdisc.discovery.first_states import guess_states
 from gaitdisc.discovery.fit_by_engine import EngineFit, at_other_cutoffs, base_runs, errs_less, held_out, with_own_runs
 from gaitdisc.discovery.grids import find_rhythm
-from gaitdisc.discovery.result import ENGINE, Discovery, FoundEffect
+from gaitdisc.discovery.result import ENGINE, Discovery
 from gaitdisc.discovery.scored_model import Part
 from gaitdisc.discovery.spiked_samples import without_spikes
 from gaitdisc.engines.conventions import refuse_other_conventions, refuse_other_units
@@ -146,10 +146,7 @@ def search(
                 return other if other and other.found.effects else replace(base, found=discovery, runs=runs)
             discovery, augmented, written = replace(discovery, effects=(), corrections=()), mapping, base.written
         elif len(kept) < len(fit.parts):
-            both = list(zip(discovery.effects, fit.parts, strict=True))
-            idle = tuple(replace(effect, small=True) for effect, part in both if part not in kept)
-            effects = tuple(effect for effect, part in both if part in kept)
-            fit.parts, discovery = kept, without_beside(discovery, effects, idle)
+            fit.parts, discovery = kept, keep_some(discovery, fit.parts, kept)
             runs = replace(runs, after=fit.left(discovery, kept, runs))
         if kept:
             augmented, written = fit.compared(discovery, runs)
@@ -231,8 +228,11 @@ def with_forces_of_muscles(fit: EngineFit, discovery: Discovery, base: Simulatio
     return discovery
 
 
-def without_beside(discovery: Discovery, effects: tuple[FoundEffect, ...], idle: tuple[FoundEffect, ...]) -> Discovery:
-    """Return an answer of some of its effects, and without explanations that only add to these."""
+def keep_some(discovery: Discovery, parts: tuple[Part, ...], some: tuple[Part, ...]) -> Discovery:
+    """Return an answer of some of its parts, and without explanations that only add to these."""
+    both = list(zip(discovery.effects, parts, strict=True))
+    idle = tuple(replace(effect, small=True) for effect, part in both if part not in some)
+    effects = tuple(effect for effect, part in both if part in some)
     kept = {(effect.name, effect.place) for effect in effects}
     first, others = discovery.explanations[:1], discovery.explanations[1:]
     adding = [other for other in others if kept < {(effect.name, effect.place) for effect in other.effects}]
@@ -240,7 +240,8 @@ def without_beside(discovery: Discovery, effects: tuple[FoundEffect, ...], idle:
     alone = [(rival, (rival.name, rival.place) not in added) for rival in discovery.rivals]
     rivals = (*idle, *(replace(rival, tied=rival.tied and is_alone) for rival, is_alone in alone))
     others = (explanation for explanation in others if explanation not in adding)
-    return replace(discovery, effects=effects, rivals=rivals, explanations=(*first, *others))
+    verdict, explanations = some[0].candidate.verdict, (*first, *others)
+    return replace(discovery, verdict=verdict, effects=effects, rivals=rivals, explanations=explanations)
 
 
 def withdraw_effects(discovery: Discovery, runs: OwnRuns) -> Discovery:

@@ -8,11 +8,11 @@ import pytest
 from saved_folders import PENDULUM
 
 from gaitdisc.discovery.candidate import Candidate
-from gaitdisc.discovery.discover_engine import _NOTHING, keep_borne_out
+from gaitdisc.discovery.discover_engine import _NOTHING, keep_borne_out, keep_some
 from gaitdisc.discovery.fit_by_engine import NO_FILTER, EngineFit, at_other_cutoffs, base_runs
 from gaitdisc.discovery.kept_work import kept_work
 from gaitdisc.discovery.record_filter import RecordFilter
-from gaitdisc.discovery.result import FoundEffect
+from gaitdisc.discovery.result import Explanation, FoundEffect
 from gaitdisc.discovery.scored_model import Part
 from gaitdisc.engines.mapping import draft
 from gaitdisc.engines.motion import Motion
@@ -120,6 +120,24 @@ def test_a_late_feedback_is_borne_out_by_the_engine_where_it_acts_and_not_where_
     assert fit.written(found, fit.parts)[1].absent == () and runs.leave_mere_noise == (gain == 0.0)
     kept = keep_borne_out(fit, found, runs, runs.at.trial == 2)
     assert kept == ((part,) if gain else ())
+
+
+def test_an_answer_of_which_one_part_stays_is_of_that_parts_kind():
+    """Own runs bear out the late input beside the spring, not the mass that was named first."""
+    mass = Part(Candidate("wrong_parameter", "parameter", "rod_mass", "wrong_parameter", value=2.0), {"value": 2.1})
+    late = Part(Candidate("input_error", "input", "drive", "input_delay"), {"seconds": 0.05})
+    effects = tuple(
+        FoundEffect(part.candidate.kind, part.candidate.place, part.candidate.name, "") for part in (mass, late)
+    )
+    both, alone, more = effects, effects[1:], FoundEffect("port", "pivot_moment", "viscous_damping", "", tied=True)
+    others = tuple(map(Explanation, (both, alone, (effects[1], more))))
+    found = replace(_NOTHING, verdict="wrong_parameter", effects=both, rivals=(more,), explanations=others)
+    kept = keep_some(found, (mass, late), (late,))
+    assert (kept.verdict, kept.effects) == ("input_error", alone) and len(kept.explanations) == 2
+    assert [(rival.place, rival.small, rival.tied) for rival in kept.rivals] == [
+        ("rod_mass", True, False),
+        ("pivot_moment", False, False),
+    ]
 
 
 @pytest.mark.parametrize("weak", ["force", "excitation"])
