@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Callable, Iterator
+from collections.abc import Callable
 from contextlib import suppress
 from dataclasses import dataclass, replace
 from pathlib import Path
@@ -22,16 +22,21 @@ from gaitdisc.discovery.grids import find_rhythm
 from gaitdisc.discovery.result import ENGINE, Discovery
 from gaitdisc.discovery.scored_model import Part
 from gaitdisc.discovery.spiked_samples import without_spikes
-from gaitdisc.engines.conventions import refuse_other_conventions, refuse_other_units
+from gaitdisc.engines.conventions import (
+    list_warnings,
+    refuse_other_conventions,
+    refuse_other_units,
+    refuse_unmeasured,
+    report_limits,
+    report_saturation,
+)
 from gaitdisc.engines.engine import Engine
 from gaitdisc.engines.expansion import expand
 from gaitdisc.engines.mapping import other_values, read_mapping
-from gaitdisc.engines.motion import Values
 from gaitdisc.engines.own_runs import OwnRuns, trial_called
 from gaitdisc.engines.written import WrittenModel, write_model
-from gaitdisc.errors import ChannelError, SimulationError
+from gaitdisc.errors import SimulationError
 from gaitdisc.recording import Finding
-from gaitdisc.simulation.expression import names, parse
 from gaitdisc.simulation.measured import Measured
 from gaitdisc.simulation.measured_table import gather_recordings, read_measured
 from gaitdisc.simulation.simulation import Simulation
@@ -75,7 +80,7 @@ def discover_engine(
     states = guess_states(replace(mapping, model=""), clean, window, rate_of)  # coordinates, then speeds
     refuse_other_units(mapping, engine, data, states)
     refuse_other_conventions(mapping, engine, data, states)
-    met, read = tuple(_report_limits(engine, states, data)), {engine.path: "model", **(files or {})}
+    met, read = tuple(report_limits(engine, states, data)), {engine.path: "model", **(files or {})}
     passed, noted = find_record_filter(mapping, clean, period)
     fit = EngineFit(mapping, engine, data, states, low_pass=passed, progress=request.progress)
     request.progress(f"running {engine.path.name} with {engine.called} along every trial")
@@ -96,8 +101,8 @@ def discover_engine(
         *discovery.findings,
         *other_values(mapping, engine),
         *met,
-        *_report_saturation(answer.written.engine, data),
-        *_list_warnings(engine, answer.written.engine),
+        *report_saturation(answer.written.engine, data),
+        *list_warnings(engine, answer.written.engine),
         *(Finding("note", "written back", "model", what, "") for what in answer.written.notes),
         Finding("note", "own runs", "model", answer.runs.sentence, ""),
     )
@@ -290,46 +295,3 @@ def write_answer(answer: EngineAnswer, out: Path) -> list[str]:
 def name_augmented(model: Path) -> str:
     """Name of a model's file with what was found in it."""
     return f"{model.stem}_augmented{model.suffix}"
-
-
-def refuse_unmeasured(mapping: Simulation, engine: Engine, data: Measured) -> None:
-    """Refuse a record that does not show every free coordinate."""
-    seen = {name for channel, text in mapping.observations if channel in data.channels for name in names(parse(text))}
-    for coordinate in engine.coordinates:
-        if coordinate.name not in seen:
-            raise ChannelError(
-                "every free coordinate of the model must be measured",
-                f"no column shows {coordinate.called!r} (the observations show {', '.join(sorted(seen)) or 'none'})",
-                "Name its column under [observations], or lock the coordinate in the model.",
-            )
-
-
-def _report_limits(engine: Engine, states: Values, data: Measured) -> Iterator[Finding]:
-    """Say in which samples a limit or a contact of the model acts: its own runs pass through these."""
-    inside = np.arange(states.shape[1]) < data.samples[:, None]
-    for coordinate, q in zip(engine.coordinates, states[inside].T, strict=False):
-        if share := 100 * np.mean((q <= coordinate.low) | (q >= coordinate.high)):
-            limits = f"{coordinate.low:.3g} to {coordinate.high:.3g} {coordinate.unit}"
-            what = f"{coordinate.called} is at its limit ({limits}) in {share:.2g} % of the samples"
-            yield Finding("note", "limit", "model", f"{what}: there the model itself limits the movement", "")
-    if touched := getattr(engine, "contacts", 0):
-        what = f"bodies touch (at most {touched} contacts): the expansion of the model is not valid during a contact"
-        yield Finding("warning", "contact", "model", what, "results that depend on runs through a contact")
-
-
-def _report_saturation(engine: Engine, data: Measured) -> Iterator[Finding]:
-    """Say in which samples a control is beyond its range, the model's own or one that was found."""
-    driven = data.drive.inputs[np.arange(data.drive.inputs.shape[1]) < data.samples[:, None]]
-    for control, u, (low, high) in zip(engine.controls, driven.T, engine.control_ranges, strict=False):
-        if share := 100 * np.mean((u < low) | (u > high)):
-            what = f"{control.name} is beyond its range ({low:.3g} to {high:.3g}) in {share:.2g} % of the samples"
-            yield Finding("note", "saturated", "model", f"{what}: the engine clips it there", "")
-
-
-def _list_warnings(*engines: Engine) -> tuple[Finding, ...]:
-    """What MuJoCo warned of: it is said here, and in no file of the user's folder."""
-    warnings = dict.fromkeys(what for engine in engines for what in getattr(engine, "warnings", ()))
-    return tuple(
-        Finding("warning", "engine", "model", f"{engines[0].called} warns: {what}", "results of runs with this warning")
-        for what in warnings
-    )

@@ -23,7 +23,7 @@ from gaitdisc.discovery.wording import write_sentence
 from gaitdisc.engines.engine import Engine
 from gaitdisc.engines.mapping import replace_inputs, with_input_changed, with_strength
 from gaitdisc.engines.motion import Values
-from gaitdisc.engines.own_runs import Driven, OwnRuns, cut_stretches, residual_by, trial_called
+from gaitdisc.engines.own_runs import MERE_NOISE, Driven, OwnRuns, cut_stretches, residual_by, trial_called
 from gaitdisc.engines.written import WrittenModel, forces_at, write_model
 from gaitdisc.processing.kept_parts import hash_content
 from gaitdisc.recording import Finding
@@ -233,7 +233,9 @@ def at_other_cutoffs(
     for other in (again, *again.within_error(stated)) if again.margin else ():
         left, fit = seen - other.filtered(simulated, 1), replace(fit, low_pass=other)
         left[:, : at.margin], left[:, at.length - at.margin :] = np.nan, np.nan
-        if (tried := with_noise(replace(runs, before=left, after=left), fit)).leave_mere_noise:
+        # noise is in the record alone: at the true cut-off no more is left than at another
+        no_worse = np.mean((root_mean_square(left) / root_mean_square(runs.before)) ** 2) < MERE_NOISE
+        if (tried := with_noise(replace(runs, before=left, after=left), fit)).leave_mere_noise and no_worse:
             return tried, fit, noted if other == again else (*noted, note_other(other, clean.source))
     return None
 

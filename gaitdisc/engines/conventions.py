@@ -1,4 +1,4 @@
-"""Records in another convention than the model's: degrees for radians, the other sign, millimetres for metres.
+"""A record beside its model: what it does not show, another unit or sign, and samples in which a limit acts.
 
 states (trial, sample, state): smoothed: coordinates, then speeds
 """
@@ -14,7 +14,9 @@ from numpy.typing import NDArray
 from gaitdisc.engines.ball_joints import STEEPEST
 from gaitdisc.engines.engine import Engine
 from gaitdisc.engines.motion import Coordinate, Values
-from gaitdisc.errors import SchemaError
+from gaitdisc.errors import ChannelError, SchemaError
+from gaitdisc.recording import Finding
+from gaitdisc.simulation.expression import names, parse
 from gaitdisc.simulation.measured import Measured
 from gaitdisc.simulation.simulation import Simulation
 
@@ -47,6 +49,20 @@ CONVENTIONS = {
     ),
     "m": (_TURNED, _Convention(1e-3, "is in millimetres", _UNIT % ("mm", "1000*"))),
 }
+
+
+def refuse_unmeasured(mapping: Simulation, engine: Engine, measured: Measured) -> None:
+    """Refuse a record that does not show every free coordinate."""
+    seen = {
+        name for channel, text in mapping.observations if channel in measured.channels for name in names(parse(text))
+    }
+    for coordinate in engine.coordinates:
+        if coordinate.name not in seen:
+            raise ChannelError(
+                "every free coordinate of the model must be measured",
+                f"no column shows {coordinate.called!r} (the observations show {', '.join(sorted(seen)) or 'none'})",
+                "Name its column under [observations], or lock the coordinate in the model.",
+            )
 
 
 def refuse_other_units(mapping: Simulation, engine: Engine, measured: Measured, states: Values) -> None:
@@ -144,3 +160,34 @@ def _limit(coordinate: Coordinate) -> float:
 
 def _column(mapping: Simulation, coordinate: Coordinate) -> str:
     return next((name for name, text in mapping.observations if coordinate.name in text), coordinate.name)
+
+
+def report_limits(engine: Engine, states: Values, measured: Measured) -> Iterator[Finding]:
+    """Say in which samples a limit or a contact of the model acts: its own runs pass through these."""
+    inside = np.arange(states.shape[1]) < measured.samples[:, None]
+    for coordinate, q in zip(engine.coordinates, states[inside].T, strict=False):
+        if share := 100 * np.mean((q <= coordinate.low) | (q >= coordinate.high)):
+            limits = f"{coordinate.low:.3g} to {coordinate.high:.3g} {coordinate.unit}"
+            what = f"{coordinate.called} is at its limit ({limits}) in {share:.2g} % of the samples"
+            yield Finding("note", "limit", "model", f"{what}: there the model itself limits the movement", "")
+    if touched := getattr(engine, "contacts", 0):
+        what = f"bodies touch (at most {touched} contacts): the expansion of the model is not valid during a contact"
+        yield Finding("warning", "contact", "model", what, "results that depend on runs through a contact")
+
+
+def report_saturation(engine: Engine, measured: Measured) -> Iterator[Finding]:
+    """Say in which samples a control is beyond its range, the model's own or one that was found."""
+    driven = measured.drive.inputs[np.arange(measured.drive.inputs.shape[1]) < measured.samples[:, None]]
+    for control, u, (low, high) in zip(engine.controls, driven.T, engine.control_ranges, strict=False):
+        if share := 100 * np.mean((u < low) | (u > high)):
+            what = f"{control.name} is beyond its range ({low:.3g} to {high:.3g}) in {share:.2g} % of the samples"
+            yield Finding("note", "saturated", "model", f"{what}: the engine clips it there", "")
+
+
+def list_warnings(*engines: Engine) -> tuple[Finding, ...]:
+    """What MuJoCo warned of: it is said here, and in no file of the user's folder."""
+    warnings = dict.fromkeys(what for engine in engines for what in getattr(engine, "warnings", ()))
+    return tuple(
+        Finding("warning", "engine", "model", f"{engines[0].called} warns: {what}", "results of runs with this warning")
+        for what in warnings
+    )

@@ -50,7 +50,8 @@ def test_degrees_for_radians_and_a_column_that_is_not_there_are_refused(lab, tmp
 
 
 def test_a_coordinate_that_no_column_shows_is_refused(lab):
-    from gaitdisc.discovery.discover_engine import read_trials, refuse_unmeasured
+    from gaitdisc.discovery.discover_engine import read_trials
+    from gaitdisc.engines.conventions import refuse_unmeasured
     from gaitdisc.engines.engine import read_model
     from gaitdisc.engines.mapping import draft
     from gaitdisc.errors import ChannelError

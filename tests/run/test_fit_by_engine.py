@@ -77,6 +77,15 @@ def test_a_cut_off_that_its_record_hides_is_found_beside_the_engines_own_runs(tm
         assert missing if found is None else found[1].low_pass.cutoffs_hz == pytest.approx([4.0], rel=0.15)
 
 
+def test_a_cutoff_at_which_runs_leave_more_hides_nothing(tmp_path, monkeypatch):
+    """At 1.2 Hz the gap of a wrong damping would be noise; the runs leave more than at the true 4 Hz."""
+    low = RecordFilter((1.2,), 100.0)
+    monkeypatch.setattr("gaitdisc.discovery.fit_by_engine.find_record_filter", lambda *_, **__: (low, ()))
+    plain, measured, states = driven(tmp_path, ('damping="0.3"', 'damping="0.33"'), RecordFilter((4.0,), 100.0))
+    fit = EngineFit(draft(plain), plain, measured, states, low_pass=RecordFilter((4.0,), 100.0))
+    assert at_other_cutoffs(plain, fit, base_runs(plain, fit), measured, 1.0) is None
+
+
 @pytest.mark.parametrize("done", [2, 4])
 def test_a_fit_that_was_stopped_goes_on_to_the_same_numbers(tmp_path, monkeypatch, done):
     """Its runs are kept, two of three trials of the base or more, though a low-pass leaves samples without a value."""
