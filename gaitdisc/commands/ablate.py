@@ -19,7 +19,7 @@ def ablate(
     cluster: Cluster = "",
     quiet: Quiet = False,
 ) -> None:
-    """Fit the models to shorter and shorter training data, to find how much data is enough."""
+    """Fit the models to shorter and shorter training data, to find how much data they require."""
     from gaitdisc.response.vary import LENGTHS_S
     from gaitdisc.run.vary_study import ablate_study
     from gaitdisc.run.workers import Workers

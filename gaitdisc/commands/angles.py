@@ -16,20 +16,20 @@ def angles(
         typer.Option("--static", help="Static trial of the same person (.c3d, .trc); not needed for segments."),
     ] = None,
     marker_set: Annotated[
-        str, typer.Option(help="Marker set such as plug_in_gait, or a .toml file; by default recognised by the labels.")
+        str, typer.Option(help="Marker set such as plug_in_gait, or its .toml file; by default found from the labels.")
     ] = "",
     joints: Annotated[
-        str, typer.Option(help="Joints: free, held (at joint centres) or planar; by default those of the marker set.")
+        str, typer.Option(help="Type of joints: free, held (at joint centres), planar; default: that of the marker set")
     ] = "",
     forward: Annotated[
-        tuple[float, float, float] | None, typer.Option(help="Walking direction x y z; by default the pelvis's path.")
+        tuple[float, float, float] | None, typer.Option(help="Walking direction x y z; default: along the pelvis path.")
     ] = None,
     widths: Annotated[
         tuple[float, float, float, float] | None,
         typer.Option(help="Widths of left knee, right knee, left ankle, right ankle [m], if the static file has none."),
     ] = None,
 ) -> None:
-    """Compute joint angles from markers or segments; joint widths come from the static C3D file, if it has any."""
+    """Compute joint angles from markers or segments; by default, joint widths come from the static C3D file."""
     from dataclasses import replace
 
     from gaitdisc.ingest.c3d_parameters import read_body_measures

@@ -14,9 +14,9 @@ def apply(
     model: Annotated[Path, typer.Argument(help="Folder of a model that `gaitdisc reconstruct` saved.")],
     recording: Annotated[Path, typer.Argument(help="Recording with the model's sensors.")],
     calibrate: Annotated[
-        Path | None, typer.Option(help="A walk of the same person that has all states, to correct the model.")
+        Path | None, typer.Option(help="Walk of the same person with all states, used to correct the model.")
     ] = None,
-    missing: Annotated[str, typer.Option(help="Replacement of a missing reading: none, mean or last.")] = "none",
+    missing: Annotated[str, typer.Option(help="Replacement for a missing reading: none, mean or last.")] = "none",
     out: Annotated[
         Path | None, typer.Option(help="File to write; by default RECORDING_reconstructed.mot in the current folder.")
     ] = None,

@@ -17,11 +17,11 @@ NEARLY = 0.97  # of the time that a part is expected to take, as far as the bar 
 
 def chapter(
     number: Annotated[int, typer.Argument(metavar="3|4|5", help="Number of the chapter: 3, 4 or 5.")],
-    out: Annotated[Path, typer.Argument(help="Folder to write, with one folder for each part.")],
+    out: Annotated[Path, typer.Argument(help="Folder for the results; each part has its own folder.")],
     part: Annotated[str, typer.Option(help="Compute only this part of the chapter.")] = "",
     quick: Annotated[bool, typer.Option("--quick", help="Compute only a small part of each study as a check.")] = False,
     data: Annotated[
-        Path | None, typer.Option(help="Folder of recordings with gait/ and fields/; by default GAITDISC_DATA.")
+        Path | None, typer.Option(help="Folder that contains gait/ and fields/; by default $GAITDISC_DATA.")
     ] = None,
     quiet: Quiet = False,
 ) -> None:
@@ -38,7 +38,7 @@ def chapter(
         for place, current in enumerate(possible, 1):
             before, words = sum(seconds.values()) - remaining_s, f"{current.name}, {place} of {len(possible)}"
             if not quiet:
-                LOG.info(f"{words}: about {remaining_s / 60:.1f} min on one core remain in total")
+                LOG.info(f"{words}: the remaining parts take about {remaining_s / 60:.1f} min on one core")
             remaining_s -= seconds[current]
 
             def ticked(spent: float, current: Part = current, before: float = before, words: str = words) -> None:
@@ -55,8 +55,8 @@ def chapter(
 
 chapter.__doc__ = f"""Compute the tables, figures and studies of chapter 3, 4 or 5 again.
 
-Finished parts are kept; the same command continues after an interruption. Each part writes its page or tables, and its
-output to `printed.md`. Times are approximate minutes on one core, and in brackets with --quick.
+Finished parts are kept; the same command continues after an interruption. Each part writes its page or tables, and
+saves what it prints as `printed.md`. Times are approximate minutes on one core; in brackets: with --quick.
 
 \b
 {costs()}

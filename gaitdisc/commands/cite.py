@@ -12,7 +12,7 @@ def cite(
     folder: Annotated[Path, typer.Argument(help="Folder of a result, or of a part of a chapter.")],
     out: Annotated[Path | None, typer.Option(help="File to write (.bib); by default the entries are printed.")] = None,
 ) -> None:
-    """Print BibTeX entries of this program and of the methods that the result in a folder used."""
+    """Print BibTeX entries of this program and of the methods used for the result in a folder."""
     from gaitdisc.run.citations import list_citations
     from gaitdisc.whole_file import write_whole
 

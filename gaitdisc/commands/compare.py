@@ -21,20 +21,20 @@ def compare(  # noqa: PLR0913, PLR0917 these are the options of a command
     ] = None,
     participant: Annotated[
         str,
-        typer.Option(help="In a study: compare the strides of this participant; by default all participants, paired."),
+        typer.Option(help="In a study: compare the strides of this participant; default: a paired test of all."),
     ] = "",
     channel: Annotated[list[str] | None, typer.Option(help="Compare only this channel; may be repeated.")] = None,
     cutoff: Annotated[float, typer.Option(min=1.0, help="For two files: low-pass of angles and moments [Hz].")] = 6.0,
     detector: Annotated[
         str, typer.Option(help="For two files: detector of initial contact (auto, force, events, markers or angles).")
     ] = "auto",
-    smallest_angle: Annotated[float, typer.Option(min=0.0, help="Smallest angle difference to name [deg].")] = 2.0,
+    smallest_angle: Annotated[float, typer.Option(min=0.0, help="Smallest angle difference to report [deg].")] = 2.0,
     smallest_moment: Annotated[float, typer.Option(min=0.0, help="Smallest moment difference to name [N m/kg].")] = 0.1,
     smallest_share: Annotated[
-        float, typer.Option(min=0.0, help="Smallest other difference to name, as a fraction of the curve's range.")
+        float, typer.Option(min=0.0, help="Smallest other difference to report, as a fraction of the curve's range.")
     ] = 0.05,
     body_weight: Annotated[
-        float | None, typer.Option(min=1.0, help="Body weight [N], to which the fraction for forces refers.")
+        float | None, typer.Option(min=1.0, help="Body weight [N]; for forces, the fraction refers to it.")
     ] = None,
 ) -> None:
     """Compare two walks over the stride: where they differ, by how much, and whether significantly."""

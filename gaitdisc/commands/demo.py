@@ -17,7 +17,7 @@ def demo(  # noqa: PLR0913, PLR0917 these are the options of a command
     seconds: Annotated[float, typer.Option(min=30.0, help="Length of each walk [s]; dissertation: 240 s.")] = 60.0,
     people: Annotated[int, typer.Option(min=1, max=12, help="Number of participants, at most twelve.")] = 12,
     hide: Annotated[
-        str, typer.Option(help="Difference of the walks, such as spring, weak plantarflexor or stiff knee.")
+        str, typer.Option(help="Difference between the walks, such as spring, weak plantarflexor or stiff knee.")
     ] = "spring",
     clinic: Annotated[
         bool, typer.Option("--clinic", help="Simulate a week of a clinic instead, with a page for each person.")
@@ -42,7 +42,7 @@ def demo(  # noqa: PLR0913, PLR0917 these are the options of a command
 
     claim_folder(folder, "study.toml", "raw", "truth")
     claim_run(folder / "run")
-    typer.echo(f"Data of simulated people ({people}) of the embedded cohort, {seconds:g} s in each condition.")
+    typer.echo(f"Simulated data of the embedded cohort (n = {people}), {seconds:g} s in each condition.")
     write_demonstration(folder, seconds, people, hide, lambda who, _: LOG.info(f"  {who}"), laboratory)
     study = load_study(folder)
     try:

@@ -24,7 +24,7 @@ def export(
     rate: Annotated[float, typer.Option(min=1.0, help="Sampling rate of the result [samples per second].")] = 100.0,
     stream: Annotated[list[str] | None, typer.Option(help="Only this stream, such as emg; may be repeated.")] = None,
     labels: Annotated[
-        bool, typer.Option("--labels", help="Keep labels that are not in the vocabulary; by default they are numbered.")
+        bool, typer.Option("--labels", help="Keep labels that are not in the vocabulary; default: numbered names.")
     ] = False,
     parquet: Annotated[bool, typer.Option("--parquet", help="Write tables of a run as Parquet, not CSV.")] = False,
     mot: Annotated[

@@ -12,16 +12,16 @@ def moments(
     trial: Annotated[list[Path], typer.Argument(help="Files of one walk: a .c3d, or a .trc and a .mot.")],
     static: Annotated[Path, typer.Option("--static", help="Static trial of the same person: .c3d or .trc.")],
     out: Annotated[Path, typer.Option("--out", help="File to write: .csv, .tsv, .parquet, .mot, .sto.")],
-    mass: Annotated[float | None, typer.Option(help="Body mass [kg], if the static C3D has none.")] = None,
+    mass: Annotated[float | None, typer.Option(help="Body mass [kg], if the static trial does not state it.")] = None,
     sex: Annotated[str, typer.Option(help="Sex for the segments' inertia, f or m; by default the mean of both.")] = "",
     marker_set: Annotated[
-        str, typer.Option(help="Marker set such as plug_in_gait, or a .toml file; by default recognised by the labels.")
+        str, typer.Option(help="Marker set such as plug_in_gait, or its .toml file; by default found from the labels.")
     ] = "",
     force_hz: Annotated[
-        float, typer.Option(help="Low-pass cut-off of the ground force [Hz]; that of the markers is 6 Hz.")
+        float, typer.Option(help="Low-pass cut-off of the ground force [Hz]; the markers' cut-off is 6 Hz.")
     ] = 20.0,
 ) -> None:
-    """Compute internal joint moments [N m/kg] and powers [W/kg]; frames with unknown load of the foot are empty."""
+    """Compute internal joint moments [N m/kg] and powers [W/kg]; frames in which a foot's load is unknown are empty."""
     from gaitdisc.ingest.c3d_parameters import read_body_measures
     from gaitdisc.ingest.reading import read_trial, write_recording
     from gaitdisc.kinematics.motion import move_body
@@ -45,5 +45,5 @@ def moments(
     for finding in dict.fromkeys((*stood.findings, *weighed, *walk.findings, *moved.findings, *kinetics.findings)):
         typer.echo(finding.line())
     for step in (step for step in kinetics.steps if step.clean):
-        typer.echo(f"foot {step.side} was alone on {step.platform} from {step.start:.2f} to {step.end:.2f} s")
+        typer.echo(f"foot '{step.side}' was alone on {step.platform} from {step.start:.2f} to {step.end:.2f} s")
     typer.echo(f"{out}: {len(kinetics.moments.names)} channels, {len(kinetics.moments.time)} samples")

@@ -13,12 +13,12 @@ from gaitdisc.own_files import claim_file
 
 def new(
     out: Annotated[
-        Path, typer.Argument(metavar="STUDY", help="Folder of the new study; for a model, its mapping file (leg.toml).")
+        Path, typer.Argument(metavar="STUDY", help="Folder of the new study; for a model, its mapping file (.toml).")
     ],
     recordings: Annotated[
         Path, typer.Option("--from", help="Folder of recordings, or a MuJoCo or OpenSim model; it is not changed.")
     ],
-    degrees: Annotated[bool, typer.Option("--degrees", help="For a model: angles were recorded in degrees.")] = False,
+    degrees: Annotated[bool, typer.Option("--degrees", help="For a model: recorded angles are in degrees.")] = False,
     external_loads: Annotated[
         Path | None,
         typer.Option(help="For an .osim model: recorded ground forces (.xml, ExternalLoads)."),

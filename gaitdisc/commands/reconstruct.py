@@ -35,7 +35,7 @@ def reconstruct(  # noqa: PLR0913, PLR0917 these are the options of a command
         float, typer.Option(min=0.001, help="Sampling interval in a window [s]; a window covers the last second.")
     ] = 0.04,
     kinds: Annotated[
-        str, typer.Option(help='Kinds of model, separated by commas, such as "ridge,shred"; default: five.')
+        str, typer.Option(help='Kinds of model; default: "linear,shallow decoder,delay ridge,fourier ridge,shred".')
     ] = "",
     device: Annotated[
         str, typer.Option(help="Device for the networks: cpu, cuda, or auto, which uses a GPU if there is one.")

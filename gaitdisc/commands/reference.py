@@ -71,7 +71,7 @@ def _keep_normal_data(file: Path, out: Path, people: int) -> None:
     from gaitdisc.whole_file import write_whole
 
     if not people:
-        remedy = f"Add it: gaitdisc reference {file} --out {out} --people 30."
+        remedy = f"Add the number: gaitdisc reference {file} --out {out} --people 30."
         raise SchemaError("the number of people in normal data must be given", "it is missing", remedy)
     claim_folder(out, PUBLISHED)
     table = read_normal_data(file, people)

@@ -22,11 +22,11 @@ def report(
     language: Annotated[
         str,
         typer.Option(
-            help="Table of translated words (CSV), kept by the run and written if it does not exist; `en` for English."
+            help="Table of translated words (CSV), written if missing and kept for this run; `en` selects English."
         ),
     ] = "",
 ) -> None:
-    """Draw the page of a saved result again, without fitting; for a run, also those of modalities and sensitivity."""
+    """Draw a saved result's page again, without fitting; for a run, also the pages of modalities and sensitivity."""
     from gaitdisc.clinic.page_words import write_words
     from gaitdisc.clinic.run_pages import keep_words
     from gaitdisc.own_files import claim_folder

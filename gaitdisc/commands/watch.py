@@ -27,8 +27,8 @@ def watch(
 ) -> None:
     """Add new trials as they are saved, and run the study each time, until Ctrl-C; nothing is computed twice.
 
-    A file is used when its size and time no longer change. An unreadable file may be incomplete: it is named and tried
-    again. Pseudonyms of the study are kept; trials are only added. The exit code is that of the last run.
+    A file is used when its size and time no longer change. An unreadable file may be incomplete: it is reported and
+    read again later. Pseudonyms of the study are kept; trials are only added. The exit code is that of the last run.
     """
     from gaitdisc.run.watched_folder import WatchedFolder
 
