@@ -28,7 +28,7 @@ class Channel:
     quantity : str
         One of `QUANTITIES`; `signal` is for all other quantities (a voltage, a synchronisation pulse).
     unit : str
-        One of `gaitdisc.units.list_units()`, or a rate of one of them.
+        One of `gaitdisc.units.list_units()`, or its time derivative, such as `deg/s`.
     side : str
         `r`, `l`, or empty if the quantity has no side.
 

@@ -84,7 +84,7 @@ class Mismatch(Saved, file="mismatch.json"):
     Parameters
     ----------
     first, second : str
-        Names of the two walks; the second is the reference, and its strides give the spread.
+        Names of the two walks. The second is the reference: gaps are related to the SD of its strides.
     channels : tuple of Channel
         Channels that both walks have.
     curves : mapping of str to ndarray (phase, channel) [channel's unit]
@@ -97,12 +97,12 @@ class Mismatch(Saved, file="mismatch.json"):
     summary : DataFrame
         One row per channel, columns `CHANNEL_COLUMNS`: whether it differs; largest gap and its place; rms over the
         stride of the gap and of the second walk's SD; p of the largest |t|, corrected; `within`, the largest gap that
-        the band allows; `visible`, the gap that is detected with a power of 80 %; `shift_percent`, the
-        best-fitting delay of the first walk's curve, and `rms_shifted`, the rms gap after this shift; `limit`, the
-        smallest difference that is reported; `offset`, the mean gap over the stride, and `shape`, the largest gap
-        without the offset; `too_small`, whether it is significant but below `limit`.
+        the band allows; `visible`, the gap that is detected with a power of 80 %; `shift_percent`, the best-fitting
+        delay of the first walk's curve, and `rms_shifted`, the rms gap after this shift; `limit`, the smallest
+        difference that is reported; `offset`, the mean gap over the stride, and `shape`, the largest gap without the
+        offset; `too_small`, whether the gap is significant but smaller than `limit`.
     exchange : Exchange
-        Units and permutations of the test.
+        Exchanged units (such as strides) and permutations of the test.
     findings : tuple of Finding
         Findings in both walks, and channels that could not be compared.
     provenance : Provenance
@@ -194,7 +194,7 @@ class Mismatch(Saved, file="mismatch.json"):
         return table
 
     def ordered(self) -> list[str]:
-        """Names of the channels that differ, sorted by the gap in multiples of the smallest difference named."""
+        """Names of the channels that differ, sorted by the gap as a multiple of the smallest reported difference."""
         differing = self.summary[self.summary["differs"].astype(bool)]
         reaches = dict(zip(self.names, np.ptp(self.curves["second"], axis=0), strict=True))
         size = {
@@ -205,7 +205,7 @@ class Mismatch(Saved, file="mismatch.json"):
         return sorted(size, key=lambda name: -size[name])
 
     def regions_of(self, name: str) -> list[dict[str, Any]]:
-        """Regions of one channel, in order of the stride: rows of `regions`.
+        """Rows of `regions` for one channel, in order of the stride.
 
         Parameters
         ----------

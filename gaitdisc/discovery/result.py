@@ -253,8 +253,8 @@ class Discovery(Saved, file="discovery.json"):
     beside : mapping of str to float
         For a device walk: name of each model -> its held-out error [unit of the last channel].
     explanations : tuple of Explanation
-        The first five explanations of the entire gap (single effects or sets): the named one, then those that close
-        most of the gap on held-out data.
+        The first five explanations of the entire gap (single effects or sets): first the identified one, then those
+        that close most of the gap on held-out data.
     conditions : tuple of ConditionAnswer
         Answers for all conditions, if a study has several in addition to Nominal.
     given : str

@@ -39,7 +39,7 @@ class C3DReader:
     """Reads C3D, `.mat` and `.npz` files one after the other in one isolated process.
 
     The process starts with the first file, restarts after a crash and after 100 files, and ends with the `with` block.
-    The reader may be used again after that. Threads that share a reader take turns.
+    The reader can be used again afterwards. Threads that share a reader take turns.
 
     >>> with C3DReader() as reader:
     ...     reader.read("missing.c3d")
@@ -65,11 +65,11 @@ class C3DReader:
         """Read one C3D file as a trial.
 
         Streams: `markers` [m], as `<marker>.x`; `segments`, the poses of the group ROTATION (see `file_segments`);
-        `kinematics` [deg], the angles that a model wrote into the file, with names of the vocabulary or as `<label>.x`;
-        `moments`, internal moments, forces and powers of that model [N m/kg, N/kg, W/kg; or N m, N, W]; `emg` [V];
-        `forces` of the ground on the foot [N, N m, m] (see `force_plates`); `signals`, every other analog channel. The
-        first frame is at 0 s. Everything that names a person is removed: label prefixes and the groups SUBJECTS, TRIAL,
-        MANUFACTURER.
+        `kinematics` [deg], the angles that a gait model wrote into the file, with names of the vocabulary or as
+        `<label>.x`; `moments`, internal moments, forces and powers of that model [N m/kg, N/kg, W/kg; or N m, N, W];
+        `emg` [V]; `forces` of the ground on the foot [N, N m, m] (see `force_plates`); `signals`, every other analog
+        channel. The first frame is at 0 s. Everything that names a person is removed: label prefixes and the groups
+        SUBJECTS, TRIAL, MANUFACTURER.
 
         Parameters
         ----------
@@ -82,7 +82,7 @@ class C3DReader:
         Returns
         -------
         Trial
-            The trial, with findings for everything that the file does not state or contradicts.
+            The trial, with findings for everything that is missing from the file or contradictory.
         """
         path = Path(path)
         try:

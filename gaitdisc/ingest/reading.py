@@ -47,8 +47,8 @@ def read_trial(
     Parameters
     ----------
     paths : path, DataFrame, or sequence of these
-        Files of the walk, for example inverse kinematics, ground forces and EMG, with their clocks unchanged. A
-        DataFrame has times in a column `time` [s] or in an index of that name, and one column per channel: a name of
+        Files of the walk, such as inverse kinematics, ground forces and EMG; their times must refer to the same clock.
+        A DataFrame has times in a column `time` [s] or in an index of that name, and one column per channel: a name of
         the vocabulary (`knee_angle_r` in deg), or `name [unit]`.
     channels : mapping of str to str, optional
         The study's `[channels]`: label -> `name` or `name [unit]`.
@@ -64,7 +64,7 @@ def read_trial(
     Returns
     -------
     Trial
-        Streams on their own time bases, events in order of time, findings of all files.
+        Streams on their own time bases, events in chronological order, findings of all files.
 
     Raises
     ------

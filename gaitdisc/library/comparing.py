@@ -50,7 +50,7 @@ def compare(
     first, second : path, Trial, DataFrame or Recording
         A simulated and a measured walk, or two conditions; the gap is second minus first.
     channels : sequence of str, or str
-        Channels to compare; by default all that both walks have.
+        Channels to compare; by default all channels that both walks have.
     cutoff_hz : float
         Cut-off of the low-pass of angles and moments [Hz], at -3 dB of one pass.
     detector : str
@@ -92,8 +92,7 @@ def compare(
 def paired_tests(first: pd.DataFrame, second: pd.DataFrame, alpha: float = 0.05) -> pd.DataFrame:
     """Test each column of the second table against the first; both tables have one row per participant.
 
-    The test is Wilcoxon's exact signed-rank test of the pairs, with Holm's step-down and Sidak's levels over the
-    columns.
+    The test is Wilcoxon's exact signed-rank test of the pairs, with a Holm-Sidak correction over the columns.
 
     Parameters
     ----------
@@ -150,7 +149,7 @@ def permutation_clusters(
     permutations: int = 2000,
     seed: int = 0,
 ) -> pd.DataFrame:
-    """Find where two sets of curves differ, corrected for all points and channels together.
+    """Find where two sets of curves differ, with a correction for all points and channels together.
 
     Parameters
     ----------
@@ -163,7 +162,7 @@ def permutation_clusters(
     channels : sequence of str, or str, optional
         Names of the channels; by default their numbers.
     alpha : float
-        Probability of a false positive anywhere.
+        Probability of any false positive.
     permutations : int
         Maximum number of permutations; if fewer are possible, all are used.
     seed : int
@@ -173,8 +172,7 @@ def permutation_clusters(
     -------
     DataFrame
         One row per cluster: channel, first_point and last_point (both included), sign of second minus first (1 where
-        the second set lies above), mass, p; empty where nothing differs. `attrs` holds threshold, permutations and
-        exact.
+        the second set lies above), mass, p; empty if nothing differs. `attrs` holds threshold, permutations and exact.
 
     Raises
     ------

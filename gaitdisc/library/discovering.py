@@ -44,9 +44,9 @@ def discover(
         A simulation file, the result of `read_simulation`, a Python function (`simulation_from_function`), or a model
         of MuJoCo or OpenSim or its mapping file (docs/engines.md).
     data : path, DataFrame, Recording, or sequence of Recording or of DataFrame
-        Measured trials: a table (or its CSV or Parquet file) with the columns `time` [s], each input and each observed
-        channel in the model's units, and `trial` where there are several; or one table per trial; or one Recording per
-        trial, whose units are converted to those of the model.
+        Measured trials: one table (or its CSV or Parquet file), one table per trial, or one Recording per trial. A
+        table has the columns `time` [s], each input and each observed channel in the model's units, and `trial` if it
+        contains several trials. Units of a Recording are converted to those of the model.
     catalogue : path, optional
         A file of your own effects, in addition to the included ones.
     progress : callable, optional
@@ -56,18 +56,18 @@ def discover(
         Fit exactly these effects without a search, each ``"effect@place"`` (``"viscous_damping@air"``); held-out data
         support or refute them together.
     alpha : float, optional
-        Maximum false-positive rate: the p-value of a named effect on held-out data is below alpha. For a tracked walk,
-        alpha is 0.05.
+        Maximum false-positive rate: the p-value of an identified effect on held-out data is below alpha. For a tracked
+        walk, alpha is 0.05.
     twins : int, optional
-        Number of records like yours that are simulated with the identified effect, and as many without it. All are
-        searched like yours; `found.twins` has the answers. Not available for models of MuJoCo and OpenSim.
+        Number of records like yours to simulate with the identified effect, and the same number without it. All are
+        searched in the same way; `found.twins` has the answers. Not available for models of MuJoCo and OpenSim.
 
     Returns
     -------
     found : Discovery
         Verdict, summary in one sentence, effects with intervals, other explanations, and the gap of both models.
     augmented : Simulation
-        The model with the identified effect, for `simulate`; of a MuJoCo or OpenSim model, the mapping.
+        The model with the identified effect, for `simulate`; for a MuJoCo or OpenSim model, its mapping.
 
     Raises
     ------
@@ -77,8 +77,8 @@ def discover(
 
     References
     ----------
-    docs/discover.md: multiple shooting; effects are ranked by how well the model with the effect predicts held-out
-    data.
+    docs/discover.md describes the method: multiple shooting, and a ranking of effects by their held-out prediction
+    error.
 
     Examples
     --------

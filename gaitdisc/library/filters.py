@@ -37,8 +37,8 @@ def lowpass(
     """Remove frequencies above the cut-off, without lag.
 
     A Butterworth filter runs forwards and backwards. Gaps up to `max_gap_s` are interpolated by a cubic spline and
-    marked suspect; longer gaps stay NaN, and the segments between them are filtered separately. 1.8 periods of the
-    cut-off at both ends of each segment are marked suspect. A heading that passes 180 deg is unwrapped, filtered and
+    marked suspect; longer gaps stay NaN, and the segments between them are filtered separately. The first and last 1.8
+    periods of the cut-off in each segment are marked suspect. A heading that passes 180 deg is unwrapped, filtered and
     wrapped again.
 
     Parameters
@@ -49,7 +49,7 @@ def lowpass(
     cutoff_hz : float
         -3 dB frequency of one pass [Hz]; for 6 Hz (order 4, 100 Hz), both passes together have -3 dB at 5.39 Hz.
     order : int
-        Order of one pass; both passes together have twice the order's roll-off.
+        Order of one pass; both passes together have twice the roll-off of one.
     max_gap_s : float
         Longest gap that is bridged [s].
     rate_hz : float, optional
@@ -63,13 +63,13 @@ def lowpass(
     Raises
     ------
     SamplingError
-        If the cut-off is not between 0 and half the rate, the signal is too short for it, or an array comes without
-        its rate.
+        If the cut-off is not between 0 and half the rate, the signal is too short for it, or an array is given without
+        `rate_hz`.
 
     References
     ----------
-    Ebers (2023), section 4.2.1. Not stated there, and chosen here: the two passes, the meaning of the cut-off, and the
-    edges.
+    Ebers (2023), section 4.2.1. The two passes, the meaning of the cut-off and the treatment of the edges are not
+    stated there, but chosen here.
 
     Examples
     --------
@@ -89,7 +89,7 @@ def highpass(
     max_gap_s: float = MAX_SPLINE_S,
     rate_hz: float | None = None,
 ) -> Signal:
-    """Remove frequencies below the cut-off, without lag; otherwise as `lowpass`.
+    """Remove frequencies below the cut-off, without lag, by the method of `lowpass`.
 
     Parameters
     ----------
@@ -160,7 +160,7 @@ def envelope(
     References
     ----------
     Ebers (2023), section 4.2.1: high-passed at 40 Hz, rectified, low-passed at 10 Hz, "fourth-order Butterworth
-    filters". Not stated there, and chosen here: order 4 in each of two passes, without lag.
+    filters". The number of passes is not stated there; here, two passes of order 4 are used, without lag.
 
     Examples
     --------
@@ -178,7 +178,7 @@ def differentiate(signal: Signal, order: int = 1, rate_hz: float | None = None) 
     Parameters
     ----------
     signal : Recording, DataFrame, Series or array_like (time,) or (time, channel)
-        Filtered signal, because differentiation amplifies noise; in a form that `lowpass` accepts.
+        Signal in a form that `lowpass` accepts; filter it first, because differentiation amplifies noise.
     order : int
         Order of the derivative, 1 or 2.
     rate_hz : float, optional
@@ -187,13 +187,13 @@ def differentiate(signal: Signal, order: int = 1, rate_hz: float | None = None) 
     Returns
     -------
     Recording, DataFrame, Series or ndarray
-        In the form of `signal`, per second; units of a Recording, and of a table's `attrs` and labels, are adapted
-        (`deg/s`). NaN at two samples of each end and within two samples of a missing one.
+        Derivative in the form of `signal`; units in a Recording, or in a table's `attrs` and labels, are adapted
+        (`deg/s`). NaN at the first and last two samples, and within two samples of a missing sample.
 
     Raises
     ------
     SamplingError
-        If the signal is too short, the order is neither 1 nor 2, or an array comes without its rate.
+        If the signal is too short, the order is neither 1 nor 2, or an array is given without `rate_hz`.
 
     References
     ----------

@@ -35,10 +35,11 @@ def angles(
     static : Trial or path
         Static trial of the same person with the same markers; joint widths are read from its C3D file.
     marker_set : str or path, optional
-        `plug_in_gait`, `oxford_foot`, `helen_hayes`, `rajagopal`, `gait2354`, or a `.toml` file; by default recognised
-        by the labels.
+        `plug_in_gait`, `oxford_foot`, `helen_hayes`, `rajagopal`, `gait2354`, or a `.toml` file; by default found from
+        the labels.
     joints : str, optional
-        `free` (each segment fitted separately), `held` (joined at joint centres) or `planar`; if omitted, the set's.
+        `free` (each segment fitted separately), `held` (joined at joint centres), `planar`; default: that of the marker
+        set.
     forward : sequence of 3 floats, optional
         Direction of walking in the laboratory's axes; by default computed from the pelvis.
 
@@ -50,7 +51,7 @@ def angles(
     Raises
     ------
     ChannelError
-        If a marker or a width is missing, or the labels belong to no known set.
+        If a marker or a joint width is missing, or the labels match no known marker set.
     ShapeError
         If the laboratory's frame is mirrored or tilted, or left and right are exchanged.
 
@@ -93,7 +94,7 @@ def moments(
     Returns
     -------
     Recording
-        Internal moments [N m/kg] and powers [W/kg]; NaN in frames with an unknown load of the foot.
+        Internal moments [N m/kg] and powers [W/kg]; NaN in frames in which a foot's load is unknown.
 
     Raises
     ------

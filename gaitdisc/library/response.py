@@ -42,7 +42,7 @@ def fit_response(
     outputs : sequence of str, or str
         Angles whose second derivative is predicted.
     angles : sequence of str, or str, optional
-        Angles among the inputs; by default the usual ones that both walks have.
+        Angles among the inputs; by default the hip, knee and ankle angles that both walks have.
     emg : sequence of str, or str
         EMG channels among the inputs.
     held_out_share : float

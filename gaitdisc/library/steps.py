@@ -23,7 +23,7 @@ def contacts(trial: Walk, detector: str = "auto") -> dict[str, Contacts]:
     """Find the initial contacts of both feet.
 
     `auto` uses ground force, the file's events, heel markers or joint angles, in this order, but skips a detector that
-    finds fewer than 80 % of the strides of another.
+    finds fewer than 80 % of the strides that another one finds.
 
     Parameters
     ----------
@@ -100,7 +100,7 @@ def cycles(
     min_s, max_s : float
         Shortest and longest cycle [s].
     contacts : array_like (contact,), Contacts, or the dict of `gaitdisc.contacts`, optional
-        Known initial contacts of that foot [s], on the walk's clock; no detector is used then.
+        Known initial contacts of that foot [s], on the walk's clock; they replace the detector.
 
     Returns
     -------

@@ -43,17 +43,17 @@ class PooledCycles(Saved, file="cycles.json"):
     detectors : mapping of str to int
         Detector of the contacts -> number of trials.
     contact_offset_s, foot_off_offset_s : float, optional
-        Shift of contacts and foot offs from markers or angles [s], positive towards later times: their median
-        difference from a plate or the file's events, over the steps that both contain. None without a shift.
+        Shift of contacts and foot offs from markers or angles [s]; positive: later. It is the median difference from a
+        plate or the file's events, over the steps that both contain. None without a shift.
     offset_steps : int
-        Number of contacts that both detectors found.
+        Number of contacts from which `contact_offset_s` was computed.
     over_ground : bool
         Whether the pelvis moves through the laboratory; False on a treadmill.
     channels : tuple of Channel
         Channels of `curves`.
     curves : ndarray (cycle, phase, channel) [channel's unit]
-        Every kept cycle on 101 points, in the order of the kept rows of `cycles`; NaN where a channel has no value, as
-        moments and powers of a foot that is not on a plate.
+        Every kept cycle on 101 points, in the order of the kept rows of `cycles`; NaN where a channel has no value,
+        such as the moments of a foot that is not on a plate.
     cycles : DataFrame
         One row per cycle, kept or left out: `CYCLE_COLUMNS`.
     findings : tuple of Finding
@@ -147,7 +147,7 @@ class PooledCycles(Saved, file="cycles.json"):
         return f"PooledCycles({self.subject}, {self.where}: {n_kept} of {n_cut} cycles kept, {self.trials} trials)"
 
     def mean_curves(self) -> pd.DataFrame:
-        """Mean and standard deviation of every channel on 101 points, over the kept cycles of its own foot.
+        """Mean and standard deviation of every channel on 101 points, over the kept cycles of the channel's side.
 
         Channels without a side occur twice, once for the cycles of each foot.
 

@@ -74,12 +74,12 @@ class Reconstruction(Saved, file="reconstruction.json"):
 
     @property
     def participants(self) -> tuple[str, ...]:
-        """Pseudonyms of the participants in the tables, in their order."""
+        """Pseudonyms of the participants, in the order of the tables."""
         return tuple(dict.fromkeys(str(name) for name in self.summary["participant"]))
 
     @property
     def recommended(self) -> str:
-        """Recommended model: the cheapest whose error on the validation part is within 2 % of the smallest.
+        """Recommended model: the cheapest one to fit with a validation error within 2 % of the smallest.
 
         The test part is not used. A calibrated model is recommended by its error before calibration; the baselines of a
         forecast are never recommended. `gaitdisc reconstruct` saves a model of this kind for every participant.
@@ -89,7 +89,7 @@ class Reconstruction(Saved, file="reconstruction.json"):
         return str(loss.index[np.sqrt(loss / loss.min()) <= NEAR][0])
 
     def over_participants(self) -> pd.DataFrame:
-        """Mean of each measure over participants, by model, with its 95 % CI (Student's t, from 3 participants on)."""
+        """Mean of each measure over participants, by model, with a 95 % CI (Student's t; for 3 or more)."""
         means: dict[object, dict[str, float]] = {}
         for model, rows in self.summary.groupby("model", sort=False):
             means[model] = {"n": len(rows)}

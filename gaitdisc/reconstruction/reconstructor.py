@@ -38,9 +38,9 @@ class Reconstructor(Saved, file="model.json"):
     Parameters
     ----------
     kind : str
-        A kind of `gaitdisc reconstruct --kinds`: `linear` (ridge regression on the current readings), `delay ridge` (on
-        readings and their history), `fourier ridge` (on random Fourier features of these), `shallow decoder` (SDN,
-        present readings), `shred` (recurrent network on readings and history, shallow decoder), or another.
+        Kind of model: `linear` (ridge regression on the current readings), `delay ridge` (on readings and history),
+        `fourier ridge` (on random Fourier features of both), `shallow decoder` (SDN, current readings), `shred`
+        (recurrent network on readings and history, shallow decoder), or another kind of `docs/reconstruct.md`.
     rate_hz : float
         Sampling rate of all arrays [Hz].
     history_s : float
@@ -87,14 +87,14 @@ class Reconstructor(Saved, file="model.json"):
     def fit(self, x: Trials, y: Trials) -> Reconstructor:
         """Fit the model to one trial, or to several.
 
-        Penalties, epochs and the interval are chosen on the last 15 % of each trial, separated from the rest by one
-        window and 0.3 s. Filter `x` and `y` first, and hold out your test data before you call `fit`.
+        Penalties, epochs and `half_widths` are determined on the last 15 % of each trial, separated from the rest by
+        one window and 0.3 s. Filter `x` and `y` first, and hold out your test data before you call `fit`.
 
         Parameters
         ----------
         x : array_like (time, sensor), DataFrame, Series, Recording, or a sequence of them
-            Readings. `predict` finds the columns of a DataFrame or Recording by name. Times, in a column `time` or an
-            index of that name, are not a sensor; they must agree with `rate_hz`.
+            Readings. `predict` finds the columns of a DataFrame or Recording by name. A column or index `time` contains
+            times, which must agree with `rate_hz`; it is not a sensor.
         y : array_like (time, state), DataFrame, Series, Recording, or a sequence of them
             States at the same times.
 
@@ -158,8 +158,8 @@ class Reconstructor(Saved, file="model.json"):
         Returns
         -------
         ndarray (time, state)
-            States at the times of `x`; a forecast uses readings up to `ahead_s` before its time. NaN if the history is
-            incomplete or a reading is missing.
+            States at the times of `x`; NaN if the history is incomplete or a reading is missing. A forecast for a time
+            uses readings until `ahead_s` before that time.
 
         Raises
         ------
@@ -214,7 +214,7 @@ class Reconstructor(Saved, file="model.json"):
         Parameters
         ----------
         deep : bool
-            Without effect, because there is no inner estimator.
+            Has no effect, because there is no inner estimator.
         """
         return {name: getattr(self, name) for name in SETTINGS}
 

@@ -39,7 +39,7 @@ class Finding:
     what : str
         The observation, with number and unit.
     spoils : str
-        What the observation affects, and what the user can do.
+        Affected samples, channels or results, and the remedy.
     channel : str
         Name of the channel; empty for the entire file.
     spans : tuple of Span
@@ -306,7 +306,7 @@ class Recording:
         Parameters
         ----------
         units : bool
-            Whether columns are called `name [unit]`, which `gaitdisc.read` reads back from the table or its CSV file.
+            Whether columns are called `name [unit]`; `gaitdisc.read` can read such a table or its CSV file.
         """
         import pandas as pd
 

@@ -62,7 +62,7 @@ def fit_scale(values: Values) -> Scale:
 
 @dataclass(frozen=True, eq=False)
 class Samples:
-    """Inputs and outputs of a model, one row per sample, in order of time.
+    """Inputs and outputs of a model, one row per sample, in chronological order.
 
     Parameters
     ----------
@@ -135,7 +135,7 @@ class Samples:
         return replace(self, y=y)
 
     def last_block(self, share: float, seam_s: float = 0.0) -> tuple[Samples, Samples]:
-        """Split off the last part, contiguous in time.
+        """Split off the last samples, which are contiguous in time.
 
         Parameters
         ----------

@@ -134,8 +134,8 @@ class Strides:
     def normalised(self, recording: Recording | pd.DataFrame) -> Values:
         """Every stride of a recording on 0 to 100 % in 101 points, (stride, phase, channel) [channel's unit].
 
-        Linear interpolation; NaN next to a missing sample or outside the recording. A heading that passes 180 deg
-        continues within its stride, and all strides are shifted by whole turns to one range.
+        Linear interpolation; NaN next to a missing sample or outside the recording. A heading that passes 180 deg is
+        unwrapped within its stride; whole turns are then added, so that all strides lie in one range.
 
         Parameters
         ----------

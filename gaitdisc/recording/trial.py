@@ -168,11 +168,11 @@ class Trial:
     name : str
         Name of the file without its ending, or the trial's name in the study.
     streams : mapping of str to Recording
-        Keys among `STREAMS`: `kinematics` (joint angles, pelvis translations), `markers`, `segments` (poses, as systems
-        without markers give them), `emg`, `forces` (ground reactions), `moments` (joint moments and powers), `signals`
-        (everything else that was digitised).
+        Keys among `STREAMS`: `kinematics` (joint angles, pelvis translations), `markers`, `segments` (poses from a
+        markerless system), `emg`, `forces` (ground reactions), `moments` (joint moments and powers), `signals` (all
+        other digitised channels).
     events : tuple of Event
-        Events of the file, in order of time.
+        Events of the file, in chronological order.
     findings : tuple of Finding
         Findings of the reader.
     subject, condition : str
@@ -245,8 +245,8 @@ class Trial:
     def on_one_base(self, rate_hz: float, keys: tuple[str, ...] | None = None) -> Recording:
         """Resample streams to one time base, the period that all of them cover.
 
-        Streams are interpolated linearly. Slower streams gain no information; faster ones must have been low-passed
-        before (an EMG envelope at 10 Hz, kinematics at 6 Hz), or they alias.
+        Streams are interpolated linearly. Slower streams gain no information. Faster streams must first be low-passed,
+        to avoid aliasing (EMG envelopes at 10 Hz, kinematics at 6 Hz).
 
         Parameters
         ----------

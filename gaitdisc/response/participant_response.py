@@ -208,12 +208,12 @@ class ResponseRun(StudyRun):
 
     @property
     def walks(self) -> tuple[WalkSummary, ...]:
-        """Every walk that could be processed."""
+        """Summary of every walk that could be processed."""
         return self.of(WALK)
 
     @property
     def responses(self) -> tuple[ParticipantResponse, ...]:
-        """Every participant whose models could be fitted."""
+        """Results of every participant whose models could be fitted."""
         return self.of(RESPONSE)
 
     @property
@@ -228,7 +228,7 @@ class ResponseRun(StudyRun):
 
     @property
     def over(self) -> OverParticipants | None:
-        """Training lengths, residuals and baselines compared over participants, and sub-groups; None in older runs."""
+        """Training lengths, residuals, baselines and sub-groups, over participants; None in runs of older versions."""
         return next(iter(self.of(OVER)), None)
 
     @property
@@ -257,7 +257,7 @@ class ResponseRun(StudyRun):
         Returns
         -------
         Recording
-            Outputs [unit/s2], as `gaitdisc.differentiate` returns measured ones; NaN where an input is missing.
+            Second derivatives of the outputs [unit/s2], as from `differentiate`; NaN where an input is missing.
 
         Raises
         ------

@@ -96,8 +96,8 @@ class Contacts:
         Returns
         -------
         Agreement
-            `difference_s` of each pair (other minus these); the unpaired contacts of these, `missed`, and of the other,
-            `extra` [s]. Contacts more than `within_s` before the first or after the last of the other detector are
+            `difference_s` [s]: other minus these, for each pair; `missed` and `extra` [s]: unpaired contacts of these
+            and of the other. Contacts more than `within_s` before the first or after the last of the other detector are
             ignored, because a plate records only two steps of a walk.
 
         Raises

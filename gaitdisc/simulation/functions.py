@@ -37,16 +37,16 @@ def simulation_from_function(
 ) -> Simulation | PythonSimulation:
     """Make a simulation from a Python function that returns the time derivative of each state.
 
-    The first arguments are the states, one for each derivative that the function returns. Arguments after them without
-    a default are inputs, columns of the data; those with a default are parameters, and the default is their value (or a
-    dict of several). Arguments after a `*` are ports: places where a missing effect may act, zero in the initial model.
-    An argument called `t` is the time [s]. With `states`, the function has the form that solvers use, `rates(t, x, u,
-    p)`: time, vector of states, vector of inputs (if any) and dict of parameters (if any).
+    The first arguments are the states, one for each derivative that the function returns. Further arguments without a
+    default are inputs, which are columns of the data. Arguments with a default are parameters; the default is the value
+    (or a dict of several values). Arguments after a `*` are ports: places where a missing effect may act, zero in the
+    initial model. An argument called `t` is the time [s]. With `states`, the function has the form that solvers use,
+    `rates(t, x, u, p)`: time, vector of states, vector of inputs (if any) and dict of parameters (if any).
 
     The function is called once with symbols, which derives its equations from arithmetic, NumPy, `math`, `if`, loops
-    and other functions. The simulation then runs as fast as one from a file. If the function does something else (it
-    solves for a mass matrix or calls a program), the simulation calls the function itself, with arrays of points if
-    possible, otherwise point by point: ten to a thousand times slower.
+    and other functions. The simulation then runs as fast as one from a file. If the function does something else (such
+    as calling a program), the simulation calls the function itself, with arrays of points if possible, otherwise point
+    by point. This is ten to a thousand times slower.
 
     Parameters
     ----------
@@ -57,7 +57,7 @@ def simulation_from_function(
         none: with units, a discovery reports terms whose units do not match.
     observations : mapping of str to str, optional
         Measured column and its expression of states, inputs and parameters: `{"height": "level + offset"}`. By default
-        each state is measured under its own name, as far as the data have such a column.
+        each state is measured under its own name, if the data have such a column.
     states, inputs : sequence of str, or str, optional
         Names of the elements of the vectors of states and of inputs, if the function takes vectors.
     parameters : mapping of str to float, optional

@@ -71,7 +71,7 @@ class Term:
     name : str
         Name of the effect, such as `coulomb_friction`.
     term : str
-        The added expression of states, inputs and parameters [the place's unit].
+        The added expression of states, inputs and parameters [unit of the place].
 
     Examples
     --------

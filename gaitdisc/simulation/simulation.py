@@ -30,11 +30,11 @@ class Simulation:
     ports : tuple of Port
         Places where a missing effect may act; zero in the initial model.
     definitions : tuple of (str, str)
-        Name and expression; each may use earlier definitions.
+        Name and expression; an expression may use earlier definitions.
     equations : tuple of (str, str)
         State and expression of its time derivative, in the order of the states.
     observations : tuple of (str, str)
-        Measured column and expression; by default each state under its own name.
+        Measured column and expression; by default, each state is measured under its own name.
     effects : tuple of Term
         The added effects and their places.
     sensors : tuple of Sensor
@@ -46,8 +46,8 @@ class Simulation:
     model : str
         Model file of an engine (OpenSim, MuJoCo) that contains the equations.
     inexact : float
-        Error of the runs that does not indicate a missing effect, as a share of an observed channel's spread; treated
-        as white noise.
+        Error of the runs that does not indicate a missing effect, as a fraction of each observed channel's standard
+        deviation; treated as white noise.
 
     Raises
     ------
@@ -110,7 +110,7 @@ class Simulation:
 
     @property
     def driving(self) -> tuple[Input, ...]:
-        """The inputs that were measured."""
+        """Measured inputs, without computed ones."""
         return tuple(signal for signal in self.inputs if not signal.computed)
 
     def expressions(self) -> Iterator[tuple[tuple[str, str], str]]:
@@ -165,7 +165,7 @@ class Simulation:
         Parameters
         ----------
         values : mapping of str to float
-            Values by the name of the parameter.
+            New values by the name of the parameter [the parameter's unit].
 
         Raises
         ------
@@ -204,7 +204,7 @@ class Simulation:
         state : State
             State with its name, unit and initial value.
         equation : str
-            Expression of its time derivative, in the names of the simulation and the new state.
+            Expression of its time derivative; it may use the names of the simulation and of the new state.
         """
         return replace(self, states=(*self.states, state), equations=(*self.equations, (state.name, equation)))
 
@@ -216,13 +216,13 @@ class Simulation:
         state : str
             Name of the state.
         equation : str
-            Expression in the names of the simulation.
+            Expression; it may use the names of the simulation.
         """
         equations = ((name, equation if name == state else text) for name, text in self.equations)
         return replace(self, equations=tuple(equations))
 
     def with_parameter(self, parameter: Parameter) -> Simulation:
-        """Simulation with an additional parameter, which replaces one of the same name.
+        """Simulation with a new parameter, in place of an existing parameter of the same name.
 
         Parameters
         ----------
@@ -233,14 +233,14 @@ class Simulation:
         return replace(self, parameters=tuple(parameters.values()))
 
     def with_observation(self, name: str, expression: str) -> Simulation:
-        """Simulation with an additional observed channel, or with another expression for an existing one.
+        """Simulation with an additional observed channel, or another expression for an existing channel.
 
         Parameters
         ----------
         name : str
             Name of the measured column.
         expression : str
-            Expression in the names of the simulation.
+            Expression; it may use the names of the simulation.
         """
         return replace(self, observations=tuple((dict(self.observations) | {name: expression}).items()))
 

@@ -29,8 +29,8 @@ def write_simulation(simulation: Simulation | PythonSimulation, path: Path | str
     Parameters
     ----------
     simulation : Simulation or PythonSimulation
-        Simulation to write. The right-hand side of a `PythonSimulation` is not written; `read_into` restores
-        the rest.
+        Simulation to write. The right-hand side of a `PythonSimulation` is not written; `read_into` restores everything
+        else.
     path : Path or str
         Path of the file.
     overwrite : bool

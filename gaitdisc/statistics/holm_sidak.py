@@ -35,9 +35,9 @@ def step_levels(tests: int, alpha: float = 0.05) -> NDArray[np.float64]:
 def holm_sidak(p: ArrayLike, alpha: float = 0.05) -> StepDown:
     """Correct a family of tests by Holm's step-down procedure with Sidak's levels.
 
-    The smallest p is compared with the level of m tests, the next with that of m - 1, and so on. The procedure stops at
-    the first p that is too large; later hypotheses are not rejected. Adjusted p-values are 1 - (1 - p)^k, never below
-    that of a smaller p. The family-wise error is at most alpha for independent and for positively dependent tests.
+    The smallest p is compared with the level of m tests, the next with that of m - 1, and so on, until a p is too
+    large; this and later hypotheses are not rejected. Adjusted p-values are 1 - (1 - p)^k, but never below the adjusted
+    value of a smaller p. The family-wise error is at most alpha for independent or positively dependent tests.
 
     Parameters
     ----------
@@ -55,8 +55,9 @@ def holm_sidak(p: ArrayLike, alpha: float = 0.05) -> StepDown:
     ComparisonError
         If there is no test, or a p-value or alpha is missing or outside 0 to 1.
 
-    References ---------- Holm 1979; Sidak 1967. Ebers 2023, section 4.2.3: of 8 variables 4 are rejected; the level of
-    the fifth step is the printed 0.013.
+    References
+    ----------
+    Holm 1979; Sidak 1967. Ebers 2023, section 4.2.3: 4 of 8 hypotheses are rejected; the fifth level is 0.013.
 
     Examples
     --------

@@ -38,16 +38,15 @@ def signed_rank(
 ) -> SignedRank:
     """Test whether the differences of pairs (second minus first) are centred on zero.
 
-    Differences are compared in float64. Zeros are excluded from the ranking (Wilcoxon) and counted; ties share their
-    mean rank.
+    Differences are compared in float64. Zeros are counted but not ranked (Wilcoxon); ties share their mean rank.
 
     Parameters
     ----------
     first, second : array_like (pair,)
         Numbers in one unit, in the order of the pairs. Two Series are paired by their index.
     left_out : mapping of int to str, optional
-        Pairs that are left out, with the reason. Other missing numbers are refused, because silently dropping one of 11
-        pairs doubles the smallest possible p.
+        Number of each pair that is left out -> reason. Other missing numbers are refused, because silently dropping one
+        of 11 pairs doubles the smallest possible p.
     level : float
         Confidence level of the interval.
 
@@ -64,8 +63,8 @@ def signed_rank(
 
     References
     ----------
-    Wilcoxon 1945; Hodges and Lehmann 1963; matched rank-biserial correlation: Kerby 2014, by pingouin. Ebers 2023,
-    section 4.2.3: at n = 11, W = 10 gives the printed p < 0.042.
+    Wilcoxon 1945; Hodges and Lehmann 1963; matched rank-biserial correlation: Kerby 2014, computed by pingouin. Ebers
+    2023, section 4.2.3: at n = 11, W = 10 gives the printed p < 0.042.
 
     Examples
     --------
