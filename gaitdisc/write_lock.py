@@ -56,7 +56,7 @@ def write_lock(folder: Path, name: str = ".lock", run: bool = False) -> Iterator
         except OSError as error:
             raise WriteError(
                 "the output folder must be writable and support file locks",
-                f"{folder}: the operating system reports: {error.strerror or error}",
+                f"for {folder}, the operating system reports: {error.strerror or error}",
                 "Free some space, correct the permissions, or choose another folder with --out.",
             ) from error
         held.callback(says.unlink, missing_ok=True)
@@ -107,5 +107,5 @@ def _refuse(path: Path, holder: str) -> NoReturn:
     raise WriteError(
         "",
         f"{holder} is writing to {what}",
-        f"Wait for it or choose another --out. If that process ended, delete {path.name}.",
+        f"Wait for it or choose another --out. If that process has ended, delete {path.name}.",
     )

@@ -147,7 +147,7 @@ def load_reference(place: Path) -> ClinicalReference:
     data = read_sealed(path)
     if data.get("format") != FORMAT:
         raise SchemaError(
-            f"a reference must have format {FORMAT}", f"{path} has {data.get('format')!r}", "Compute it again."
+            f"a reference must have format {FORMAT}", f"{path} has {data.get('format')!r}", "Save the reference again."
         )
     try:
         legs = {word: tuple(map(_leg, records)) for word, records in data["legs"].items()}

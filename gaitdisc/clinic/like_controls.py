@@ -91,7 +91,7 @@ def like_published(
     known = [group for group in groups if np.isfinite(group.speeds).all()] if speed is not None else []
     if speed is None or not known:
         group = max(groups, key=lambda group: group.people)
-        return group, f"Compared with the group “{group.name}” ({group.people} people); no group is selected by speed."
+        return group, f"Compared with the largest group, “{group.name}” ({group.people} people): the speed is unknown."
     group = min(known, key=lambda group: max(group.speeds[0] - speed, speed - group.speeds[1], 0.0))
     low, high = group.speeds
     whose = f"{group.people} people, dimensionless speed {low:.2f} to {high:.2f}; this person's is {speed:.2f}"

@@ -294,7 +294,7 @@ def _spans(first: LegCurves, second: LegCurves) -> tuple[list[DifferingSpan], in
     ]
     if not names:
         raise ComparisonError(
-            "both sets must have an angle in all cycles", "found none", "Record the same angles in both sets."
+            "an angle must be known in every cycle of both walks", "found none", "Record the same angles in both walks."
         )
     before, after = (np.stack([leg.cycles[name] for name in names], axis=2) for leg in (first, second))
     tested = two_sample_test(before, after, PLAN)

@@ -68,7 +68,7 @@ def common_curves(walks: Sequence[WalkSummary], wanted: Sequence[str] = ()) -> C
         fewest, most = min(map(len, strides)), max(map(len, strides))
         if fewest < most:
             what = (
-                f"{fewest} of {most} strides are used: the others lack at least one of the {len(shared)} compared "
+                f"strides used: {fewest} of {most}; each of the others lacks one or more of the {len(shared)} compared "
                 "channels"
             )
             findings.append(Finding("note", "strides", walk_name(walk), what, "the number of strides only"))

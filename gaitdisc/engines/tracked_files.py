@@ -157,7 +157,7 @@ def _coordinates(path: Path, coordinates: tuple[Coordinate, ...], word: str) -> 
                 if degrees is None:
                     raise UnitError(
                         f"{path.name} must state whether its angles are in degrees",
-                        "its header does not state it",
+                        "its header has no line inDegrees",
                         "Write inDegrees=yes or inDegrees=no in the header, before endheader.",
                     )
                 unit = "deg" if degrees else "rad"
@@ -214,7 +214,7 @@ def actuator_forces(tracked: Tracked, known: tuple[str, ...]) -> tuple[tuple[str
     if not np.isfinite(values).all():
         row, column = (int(indices[0]) for indices in np.nonzero(~np.isfinite(values)))
         raise ReadError(
-            "forces must have no gap", f"{path.name}: row {row + 1} of {names[kept[column]]!r} is empty", "Fill it."
+            "forces must not have gaps", f"{path.name}: row {row + 1} of {names[kept[column]]!r} is empty", "Fill it."
         )
     return tuple(names[k] for k in kept[1:]), values
 

@@ -73,8 +73,8 @@ def read_tracked(path: Path | str) -> Tracked | None:
         raise SchemaError(
             "a tracked walk must have recorded ground forces",
             f"[tracked] of {file.name} names no external_loads",
-            'Write external_loads = "grf.xml", the file of OpenSim\'s inverse dynamics; without ground forces '
-            "no joint moment can be computed.",
+            'Write external_loads = "grf.xml", the external-loads file of the inverse dynamics. Without ground '
+            "forces, no joint moment can be computed.",
         )
     for name in NUMBERS:
         value = given.get(name, 1.0)
@@ -103,7 +103,7 @@ def find_loads(loads: Path) -> tuple[Path, Path]:
         raise ReadError(
             "external_loads must be the .xml file (ExternalLoads) that assigns each force to a body",
             f"{loads.name} holds the forces themselves",
-            f"Give the .xml of OpenSim's inverse dynamics, which names {loads.name} in <datafile>.",
+            f"Give the external-loads file (.xml) that names {loads.name} in <datafile>.",
         )
     named = (read_xml(loads).findtext(".//datafile") or "").strip()
     path = loads.parent / named

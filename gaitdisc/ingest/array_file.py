@@ -94,7 +94,7 @@ class ArrayFile:
         if not isinstance(node, Cells):
             raise self._refuse(path, f"element {number} follows {_what(node)}", _REMEDY)
         if not 1 <= number <= len(node.held):
-            fault = f"it has no element {number} (number of elements: {len(node.held)})"
+            fault = f"there is no element {number} (number of elements: {len(node.held)})"
             raise self._refuse(path, fault, f"Give a number from 1 to {len(node.held)}.")
         return node.held[number - 1]
 
@@ -204,7 +204,7 @@ def _hdf5_node(file: Any, name: str, path: Path) -> Any:
         raise
     except Exception as error:  # its errors have no common ancestor
         reason = " ".join(str(error).split())[:160] or type(error).__name__
-        raise ReadError(f"{path.name} must be a .mat file", f"{name!r} fails: {reason}", "Save it again.") from error
+        raise ReadError(f"{path.name} must be a .mat file", f"at {name!r}: {reason}", "Save it again.") from error
     marks = attributes(file, name, path, ("MATLAB_class", "MATLAB_empty"))
     kind = marks.get("MATLAB_class", b"")
     word = kind.decode("ascii", "replace") if isinstance(kind, bytes) else str(kind)

@@ -62,7 +62,7 @@ def make_unique(labels: Sequence[str], word: str) -> list[str]:
 def find_equal_labels(labels: Iterable[str], file: str) -> list[Finding]:
     """Say which labels several points have, which `make_unique` numbers."""
     doubled = sorted(label for label, count in Counter(labels).items() if label and count > 1)
-    what = f"labels that several points have, now numbered ({len(doubled)} in all): {', '.join(doubled[:3])}"
+    what = f"labels shared by several points were numbered ({len(doubled)} in all): {', '.join(doubled[:3])}"
     finding = Finding("warning", "equal labels", file, what, "these points; give each point its own label")
     return [finding] if doubled else []
 
@@ -158,7 +158,7 @@ def file_events(
         findings.append(Finding("warning", "event clock", file, what, "the events of the file if this is wrong"))
     inside = _within(on_file, end, margin)
     if not np.all(inside):
-        what = f"events outside the {frames} frames of the file, which are ignored: {int(np.sum(~inside))} of {count}"
+        what = f"events outside the {frames} frames of the file are ignored: {int(np.sum(~inside))} of {count}"
         findings.append(Finding("note", "events outside", file, what, ""))
     contexts = (*parameters.texts("EVENT", "CONTEXTS"), *[""] * count)
     people = list_people_names(parameters)

@@ -154,7 +154,7 @@ def _refuse_impossible(layout: C3DLayout, header: C3DHeader) -> None:
     if layout.data_block != header.data_block:
         raise ReadError(
             "the header of a C3D file must say where the data begin",
-            f"{header.file} says block {header.data_block}; POINT:DATA_START and the length of the file say "
+            f"{header.file} says block {header.data_block}; POINT:DATA_START and the length of the file say block "
             f"{layout.data_block}",
             "Export the trial again. This copy is damaged.",
         )

@@ -154,7 +154,7 @@ def _report_undescribed(parameters: C3DParameters, used: int, described: int) ->
     if used < described:
         what = f"FORCE_PLATFORM:USED is {used}, but the group describes {described} plates"
     elif forces and not used:
-        what = f"no force plate is described, but there are forces in N ({len(forces)}, such as {forces[0].strip()!r})"
+        what = f"no force plate is described, but there are channels in N: {len(forces)} ({forces[0].strip()!r}, ...)"
     else:
         return []
     spoils = "the excluded ground forces; correct FORCE_PLATFORM"
@@ -268,7 +268,7 @@ def _zero(
     offset = values[first:last].mean(axis=0)
     load = float(np.abs(plate.wrench(offset[None], units)[0][0, 2]))
     if load > CLEAR_LOAD_N:
-        what = f"force plate {plate.number} carries {load:.0f} N in FORCE_PLATFORM:ZERO (samples {first + 1} to {last})"
+        what = f"force plate {plate.number} carries {load:.0f} N in samples {first + 1} to {last} (FORCE_PLATFORM:ZERO)"
         spoils = "the offset of the plate, which is therefore not removed"
         return values, [Finding("note", "plate zero", parameters.file, what, spoils)]
     return values - offset, []

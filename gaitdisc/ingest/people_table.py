@@ -89,7 +89,7 @@ def read_people(folder: Path, files: Iterable[Path], notes: list[str]) -> dict[s
         for word, measures in read.items():
             before = people.setdefault(word, measures)
             if before != measures:
-                notes.append(f"{file.as_posix()}: another table states other values for {word!r}, which are used")
+                notes.append(f"{file.as_posix()}: not used for {word!r}, because another table states other values")
     return people
 
 
@@ -133,7 +133,7 @@ def _read(lines: Sequence[str], file: str, notes: list[str]) -> dict[str, Measur
             stated = list(dict.fromkeys(getattr(row, name) for row in measures if getattr(row, name) != empty))
             values[name] = stated[0] if len(stated) == 1 else empty
             if len(stated) > 1:
-                notes.append(f"{file}: {name} of {word!r} differs by row ({stated[0]}, {stated[1]}); no value is used")
+                notes.append(f"{file}: rows differ in {name} of {word!r} ({stated[0]}, {stated[1]}); no value is used")
         agreed[word] = Measured(**values)
     return agreed
 

@@ -205,7 +205,7 @@ def _finding(
         )
     most = "the entire channel, whose unit or name is probably wrong"
     spoils = most if beyond.mean() > 0.5 else "these frames"
-    spans, what = spans_s(recording.time, beyond), f"{where}; such samples are treated as missing"
+    spans, what = spans_s(recording.time, beyond), f"{where}; all samples outside this range are treated as missing"
     return Finding("warning", "out of range", file, what, f"{spoils}; correct the file", channel.name, spans=spans)
 
 

@@ -214,7 +214,7 @@ def _list_unused(channels: Mapping[str, str] | None, streams: Mapping[str, Recor
     absent = [label for label, entry in (channels or {}).items() if split_unit(entry)[0] not in there]
     if not absent:
         return []
-    what = f"in [channels], but in no file of this trial: {', '.join(map(repr, absent[:4]))}"
+    what = f"labels of [channels] that are in no file of this trial: {', '.join(map(repr, absent[:4]))}"
     return [Finding("note", "not found", name, what, "")]
 
 

@@ -181,8 +181,8 @@ def parse_header(lines: Sequence[str], file: str) -> StorageHeader:
     names = [split_unit(label)[0] for label in labels]
     if len(labels) < 2 or not all(names):
         blank = f"label {names.index('') + 1} is blank" if "" in names else "time is the only column"
-        needed = f"{file}: time and every other column must have a label"
-        raise ReadError(needed, f"line {at + 1}: {blank}", "Name every column.")
+        needed = f"{file}: there must be a column after time, and every column must have a label"
+        raise ReadError(needed, f"line {at + 1}: {blank}", "Export it with every label.")
     matches = (_OWN_COLUMN.fullmatch(line.strip()) for line in lines[:end])
     return StorageHeader(
         title=next((line.strip() for line in lines[:end] if line.strip()), ""),

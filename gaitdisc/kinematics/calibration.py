@@ -164,7 +164,7 @@ class _Builder:
                 'Provide leg_length_m, or use hip = "harrington".',
             )
         if methods[0] == "davis" and side == "l":
-            what = f"hip centres are those of Harrington, not Davis: {self.file} and the measures lack a leg length"
+            what = f"hip centres follow Harrington, not Davis: {self.file} and the measures lack a leg length"
             self._note("hip", what, "hip centres by 1 to 2 cm compared with Plug-in Gait")
         return harrington_hip(width, depth, side)
 

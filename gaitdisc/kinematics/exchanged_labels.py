@@ -133,7 +133,7 @@ def exchange_findings(
         where = "this trial" if min(order)[0] <= 0 else "this trial or in the static trial"
         before = f"{1000.0 * case.before_m:.0f} mm" if np.isfinite(case.before_m) else "a reversed axis"
         what = f"{', '.join(case.segments)}: exchanging {first} and {second} in {where} corrects {case.frames.sum()} "
-        what += f"of {len(case.frames)} frames: {1000.0 * case.after_m:.0f} mm off the static trial instead of {before}"
+        what += f"of {len(case.frames)} frames: misfit to the static trial {1e3 * case.after_m:.0f} mm, before {before}"
         spans = spans_s(markers.time, case.frames)
         findings.append(Finding("warning", "exchanged markers", file, what, SPOILS, f"{first}, {second}", spans=spans))
     for segment, frames in broken.items():

@@ -165,7 +165,7 @@ def walking_frame(
     headings = _headings(origin, seen, up, rate_hz)
     if headings is None and np.linalg.norm(mean) < TRAVELS_M_PER_S:
         return WalkingFrame(
-            _frames(np.tile(faced, (len(origin), 1)), up), "forward is where the pelvis faces: it stays in place"
+            _frames(np.tile(faced, (len(origin), 1)), up), "forward is where the pelvis faces, as it stays in place"
         )
     paths = np.tile(_level(mean, up), (len(origin), 1)) if headings is None else headings
     backwards = bool(np.median(np.einsum("fi,fi->f", paths[known], facing[known])) < 0)

@@ -243,7 +243,7 @@ def angles_of_poses(
     known = poses["pelvis"].known
     if not known.any():
         raise ShapeError(
-            f"in some frame, the body must lie within {FARTHEST_M * 1000:.0f} mm of the markers",
+            f"in at least one frame, the segments must lie within {FARTHEST_M * 1000:.0f} mm of the markers",
             f"{base.source.file or 'the trial'} has no such frame (root mean square over all markers)",
             'Check the static trial and the direction of walking, or use joints = "free".',
         )

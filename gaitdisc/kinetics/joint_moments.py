@@ -142,7 +142,7 @@ class KineticsSettings:
         for name in ("marker_cutoff_hz", "force_cutoff_hz"):
             if not getattr(self, name) > 0:
                 raise SamplingError(
-                    f"{name} must be positive", f"it is {getattr(self, name):g} Hz", "Use Hz, or inf for no filter."
+                    f"{name} must be positive", f"it is {getattr(self, name):g} Hz", "Use inf for no filter."
                 )
         if self.frame not in FRAMES:
             known = ", ".join(FRAMES)

@@ -172,7 +172,7 @@ def weigh_steps(
         share = weight.share(named[step.platform], alone) if alone.seconds >= ALONE_S else 1.0
         if not abs(share - 1) > MOST_APART:
             return step
-        words = f"its force is {share:.2f} of that with which one leg carries {weight.newton:.0f} N of body weight"
+        words = f"its force is {share:.2f} times that of one leg that carries the body weight of {weight.newton:.0f} N"
         if step.reason and share < 1:  # a sole beyond the edge, another foot: explains what is missing, never too much
             return replace(step, doubt=step.doubt or "note")
         return replace(step, reason=f"{words} from {alone.start:.2f} to {alone.end:.2f} s", doubt="warning")

@@ -152,7 +152,7 @@ def platforms(trial: Trial) -> list[Platform]:
             raise UnitError(
                 f"the force of the ground on the foot must be positive upwards on {platform.name}",
                 f"{forces.source.file or trial.name} has {found_n}",
-                "Its sign is wrong. Export the force of the ground on the foot.",
+                "The sign of the force is wrong. Export the force of the ground on the foot.",
             )
     return all_platforms
 

@@ -49,7 +49,7 @@ class ForceBalance:
         """Return the balance as one line of text."""
         if not self.tested:
             return (
-                "force balance: not tested, because too few frames have known loads of both feet at the same time "
+                "force balance: not tested, because the loads of both feet are known together in too few frames "
                 f"({self.frames})"
             )
         return (

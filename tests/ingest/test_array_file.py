@@ -94,7 +94,7 @@ def test_paths_of_both_versions(mat, path, part, expected):
         ("dato.knee", r"'dato.knee' must name a variable of numbers; it has .*, the nearest is 'data'"),
         ("data.knees", r"the struct has .*knee.*. Correct the path"),
         ("RKNEE", r"it holds 2 elements. Write part = \"1\" \(up to \"2\""),
-        ("RKNEE{3}", r"it has no element 3 \(number of elements: 2\). Give a number from 1 to 2"),
+        ("RKNEE{3}", r"there is no element 3 \(number of elements: 2\). Give a number from 1 to 2"),
         ("data", r"it is a struct of "),
         ("data.name", r"it is text"),
         ("data.knee(:,4)", r"it is 4 x 3. Give a column, counted from 1"),

@@ -84,7 +84,7 @@ def test_heel_and_toe_are_told_apart_on_a_foot_whose_ankle_lies_on_their_line():
 def test_a_whole_walk_with_heel_and_toe_exchanged_loses_that_ankle_alone():
     calibration = calibrate_body(static_of(PLUG_IN_GAIT), marker_set("plug_in_gait"), MEASURES)
     found = motion(exchanged(markers_of(KNOWN, PLUG_IN_GAIT), ("RHEE", "RTOE")), calibration, (1, 0, 0))
-    assert says(said(found)[0].what, "RHEE", "RTOE", "120 of 120 frames: 0 mm", "instead of a reversed axis")
+    assert says(said(found)[0].what, "RHEE", "RTOE", "120 of 120 frames", "0 mm, before a reversed axis")
     assert np.isnan(found.angles["ankle_angle_r"]).all()
     assert np.isnan(found.markers["RHEE.x"]).all()
     for name in ("knee_angle_r", "hip_flexion_r", "ankle_angle_l"):
