@@ -28,7 +28,6 @@ from gaitdisc.discovery.search import Search
 from gaitdisc.discovery.wording import write_sentence
 from gaitdisc.recording import Finding
 from gaitdisc.recording.arrays import Values
-from gaitdisc.simulation.evaluating import Points, evaluate
 from gaitdisc.simulation.simulation import Simulation
 from gaitdisc.simulation.unit_check import places_unit, unit_of_channel
 from gaitdisc.words import with_unit
@@ -228,13 +227,7 @@ def push_along(case: Case, now: ScoredModel, part: Part) -> Values | None:
     term = part.candidate.term({slot: f"{value:.9g}" for slot, value in part.values.items()})
     if part.candidate.verdict != "missing_physics" or "delay(" in term:
         return None
-    segments, drive, fit = now.shooting.segments, case.measured.drive, now.fit
-    # run by run: what stands beside the effect may be late, and a delay needs consecutive samples
-    runs = [
-        Points(*points, fit.values, rate=drive.rate)
-        for points in zip(segments.times(drive), fit.states, segments.of(drive.inputs), strict=True)
-    ]
-    return np.abs([evaluate(now.simulation, term, run) for run in runs])
+    return np.abs(case.search.scorer(now).along([term])[..., 0])
 
 
 def find_phase(case: Case, now: ScoredModel, part: Part) -> tuple[float, ...]:

@@ -150,18 +150,16 @@ def where_table(discovery: Discovery) -> Table:
 
 def corrections_table(discovery: Discovery) -> Table:
     """Numbers of the file that moved within their own bounds."""
-    rows, records = [], []
-    for correction in discovery.corrections:
-        fitted = correction.found
-        rows.append((correction.parameter, with_unit(f"{correction.given:.6g}", fitted.unit), *_amounts(fitted)))
-        records.append((correction.parameter, correction.given, fitted.value, fitted.low, fitted.high, fitted.unit))
+    moved = [(correction.parameter, correction.given, correction.found) for correction in discovery.corrections]
+    rows = tuple((name, with_unit(f"{given:.6g}", found.unit), *_amounts(found)) for name, given, found in moved)
+    records = [(name, given, *asdict(found).values()) for name, given, found in moved]
     caption = (
         "Parameters of the file that changed within their bounds. These are not effects: they were also fitted in the "
         "initial model and in every explanation. Low and high: 95 % confidence interval."
     )
     headings = ("parameter", "in the file", "fitted", "low", "high")
     columns = ("parameter", "from", "to", "low", "high", "unit")
-    return Table("corrections", caption, headings, tuple(rows), _frame(records, columns))
+    return Table("corrections", caption, headings, rows, _frame(records, columns))
 
 
 def explanations_table(discovery: Discovery) -> Table:

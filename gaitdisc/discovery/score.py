@@ -105,7 +105,7 @@ class Scorer:
         """Yield cells and what each of their slots would change, whitened (segment, number, column)."""
         line = linearise(self.model, self.places)
         roles = sorted({candidate.role for candidate in candidates if candidate.constants})
-        along = dict(zip(roles, np.moveaxis(self._along(roles), -1, 0), strict=True))
+        along = dict(zip(roles, np.moveaxis(self.along(roles), -1, 0), strict=True))
         for number, place in enumerate(self.places):
             here = [effect for effect in candidates if (effect.kind, effect.place) == (place.kind, place.name)]
             for candidate in here:
@@ -115,7 +115,7 @@ class Scorer:
             plain = [cell for candidate in here if not candidate.states for cell in self._cells(candidate, along)]
             for first in range(0, len(plain), AT_ONCE):
                 some = plain[first : first + AT_ONCE]
-                push = self._along([piece for cell in some for piece in cell.pieces])
+                push = self.along([piece for cell in some for piece in cell.pieces])
                 yield some, self._white(line.of_push(number, push))
         seen = dict(self.model.simulation.observations)
         for candidate in candidates:
@@ -125,7 +125,7 @@ class Scorer:
 
     def beginnings(self, candidate: Candidate) -> list[dict[str, float]]:
         """Constants of a candidate at which a search begins along the run."""
-        return [cell.constants for cell in self._cells(candidate, {candidate.role: self._along([candidate.role])})]
+        return [cell.constants for cell in self._cells(candidate, {candidate.role: self.along([candidate.role])})]
 
     def _cells(self, candidate: Candidate, along: dict[str, Values]) -> list[_Cell]:
         constants = dict(candidate.constants or {})
@@ -166,7 +166,7 @@ class Scorer:
             states = np.concatenate([states, np.stack([self.model.shooting.segments.of(run) for run in runs])], axis=-1)
         return values, states
 
-    def _along(self, expressions: list[str]) -> Values:
+    def along(self, expressions: list[str]) -> Values:
         """Return expressions along the run (segment, sample, expression)."""
         segments, drive = self.model.shooting.segments, self.model.shooting.measured.drive
         out = np.zeros((len(segments), segments.length, len(expressions)))

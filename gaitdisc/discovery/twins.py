@@ -82,11 +82,16 @@ class TwinSource:
 
     def draw(self, number: int) -> Measured | None:
         """Draw a record, by its number, like the user's: free runs and noise; None where a run leaves the record."""
-        measured = self.case.measured
+        measured, passed = self.case.measured, self.case.record_filter
         _, run = self.run(with_drawn_errors(measured, self.case.search.base, number))
         if run is None:
             return None
-        noise = self._draw_noise(run.observed.shape, np.random.default_rng(number))
+        rng, shape = np.random.default_rng(number), run.observed.shape
+        if passed.margin:  # the record was filtered: white noise that was filtered alike
+            white = rng.normal(size=(shape[0], shape[1] + 2 * passed.margin, shape[2]))
+            noise = passed.filtered(white, 1)[:, passed.margin : -passed.margin] / passed.gains * self.noise.size
+        else:
+            noise = draw_noise(self.noise, shape, rng)
         return replace(measured, observed=run.observed + noise, findings=())
 
     def run(self, like: Measured, larger: float = 1.0) -> tuple[Values, Measured | None]:
@@ -104,14 +109,6 @@ class TwinSource:
         low, high = np.nanmin(record, axis=(0, 1)), np.nanmax(record, axis=(0, 1))
         stays, known = np.maximum(low - seen, seen - high) < FLED * (high - low), np.isfinite(record)
         return states, replace(like, observed=np.where(known, seen, np.nan)) if np.all(stays[known]) else None
-
-    def _draw_noise(self, shape: tuple[int, ...], rng: np.random.Generator) -> Values:
-        """Draw noise (trial, sample, channel); where the record was filtered, white noise that was filtered alike."""
-        passed = self.case.record_filter
-        if not passed.margin:
-            return draw_noise(self.noise, shape, rng)
-        white = rng.normal(size=(shape[0], shape[1] + 2 * passed.margin, shape[2]))
-        return passed.filtered(white, 1)[:, passed.margin : -passed.margin] / passed.gains * self.noise.size
 
 
 def draw_noise(noise: Noise, shape: tuple[int, ...], rng: np.random.Generator) -> Values:
