@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import inspect
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import Any
@@ -180,6 +180,11 @@ class _Taken:
             points.append({TIME: float(rng.uniform(0, 5)), **signals, **numbers, **dict.fromkeys(self.ports, PUSH)})
         return points
 
+    def tabulate(self, *groups: Iterable[str]) -> list[Values]:
+        """Values of groups of names at the points, (point, name) each."""
+        tables = ([[point[name] for name in names] for point in self.points] for names in groups)
+        return [np.array(table).reshape(TRIED, -1) for table in tables]
+
     @cached_property
     def returned(self) -> list[list[float]]:
         """Derivatives at each point; none where it raises."""
@@ -231,14 +236,11 @@ class _Called:
     @property
     def agrees(self) -> bool:
         """Whether many points at once give what each gives by itself."""
-        points, taken = self.taken.points, self.taken
-        x, u, values, pushes = (
-            np.array([[point[name] for name in names] for point in points]).reshape(len(points), -1)
-            for names in (taken.signals[: self.states], taken.signals[self.states :], taken.numbers, taken.ports)
-        )
+        taken, driven = self.taken, (self.taken.signals[: self.states], self.taken.signals[self.states :])
+        t, *columns = taken.tabulate((TIME,), *driven, taken.numbers, taken.ports)
         try:
             with np.errstate(all="ignore"):
-                return taken.gives(self(np.array([point[TIME] for point in points]), x, u, values, pushes))
+                return taken.gives(self(t[:, 0], *columns))
         except Exception:  # whatever a user's function raises of arrays
             return False
 
@@ -271,10 +273,7 @@ def _refuse_other_numbers(simulation: Simulation, taken: _Taken) -> Simulation:
     for name in taken.ports:
         pushed = pushed.with_effect(Term(name, "port", "push", repr(PUSH)))
     machine = compile_simulation(pushed)
-    t, x, u, values = (
-        np.array([[point[name] for name in names] for point in taken.points]).reshape(TRIED, -1)
-        for names in ((TIME,), machine.states, machine.inputs, machine.parameters)
-    )
+    t, x, u, values = taken.tabulate((TIME,), machine.states, machine.inputs, machine.parameters)
     if not taken.gives(machine.rates(t[:, 0], x, u, values)):
         raise NotTraced("the derived equations give numbers that differ from those of the function")
     return simulation
