@@ -78,7 +78,7 @@ def answer(
     discovery = Discovery(
         verdict.word if agrees else "unexplained",
         "",
-        where=whereabouts(case, stated, train) if effects or not agrees else (),
+        where=whereabouts(case, stated, effects, train) if effects or not agrees else (),
         effects=effects,
         rivals=(
             *(report_rival(case, rival) for rival in rivals if rival.scored.labels[-1] not in now.labels),
@@ -204,16 +204,14 @@ def first_run(case: Case, after: ScoredModel, size: GapSize) -> tuple[tuple[floa
     return tuple(time.tolist()), tuple(left.tolist())
 
 
-def whereabouts(case: Case, verdict: Verdict, train: GapSize) -> tuple[Whereabouts, ...]:
+def whereabouts(
+    case: Case, verdict: Verdict, effects: tuple[FoundEffect, ...], train: GapSize
+) -> tuple[Whereabouts, ...]:
     """Say where the gap arises; train: the gap before and after on the training trials."""
-    if verdict.process_noise:
-        return (Whereabouts(verdict.process_noise.place.kind, verdict.process_noise.place.name, float("nan")),)
-    if verdict.starts:
-        return tuple(Whereabouts("state", name, float("nan")) for name in verdict.starts)
     now = verdict.found
-    if not now.parts:
-        firsts = [rival.parts[0].candidate for rival in verdict.rivals[:1] if rival.parts]
-        return tuple(Whereabouts(role.kind, role.place, float("nan")) for role in firsts)
+    if verdict.process_noise or verdict.starts or not now.parts:
+        named = effects or [rival.parts[0].candidate for rival in verdict.rivals[:1] if rival.parts]
+        return tuple(Whereabouts(effect.kind, effect.place, float("nan")) for effect in named)
     share = (train.before**2 - train.after**2) / train.before**2 if train.before > 0 else 0.0
     share /= len(now.parts)
     return tuple(
