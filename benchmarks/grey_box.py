@@ -166,7 +166,8 @@ def beginnings(simulation: Simulation, measured: Measured, guess: Values, rhythm
         tried = []
         for cell in cells(dict(candidate.constants or {}), along, rhythm)[::EVERY]:
             late = {"seconds": float(delays(rhythm)[0])} if candidate.name == "input_lag" else {}
-            model, names = candidate.in_fit(simulation, "added", candidate.idle | cell | late)
+            names = candidate.named("added")
+            model = candidate.in_fit(simulation, names, candidate.idle | cell | late)
             box = box_of(model, measured, guess, names.values())
             still = np.zeros(len(box.fitted))
             slopes, error = box.slopes(still), box.residuals(still)

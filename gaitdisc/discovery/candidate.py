@@ -186,16 +186,13 @@ class Candidate:
             for slot, piece in zip(self.slots, pieces, strict=False)
         )
 
-    def in_fit(
-        self, simulation: Simulation, tag: str, values: Mapping[str, float]
-    ) -> tuple[Simulation, dict[str, str]]:
-        """Return the simulation with this explanation in it and its numbers free."""
-        names = self.named(tag)
+    def in_fit(self, simulation: Simulation, names: Mapping[str, str], values: Mapping[str, float]) -> Simulation:
+        """Return the simulation with this explanation in it and its numbers free; names: parameters, as of `named`."""
         if self.verdict == "wrong_parameter":
-            return simulation, names
+            return simulation
         for slot, name in names.items():
             simulation = simulation.with_parameter(Parameter(name, float(values[slot])))
-        return self.written(simulation, names), names
+        return self.written(simulation, names)
 
     def named(self, tag: str) -> dict[str, str]:
         """Return the parameter that stands for each slot: an added one, by its tag, or the wrong one itself."""

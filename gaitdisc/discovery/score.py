@@ -199,8 +199,8 @@ class Scorer:
             tried = [{slot: float(delay)} for delay in delays(self.rhythm, either_way)]
         whole = limited or candidate.is_late
         over = np.ones(len(tried)) if whole else np.array([tried[0][slot] - none])
-        simulation, names = candidate.in_fit(model.simulation, TRIED, dict.fromkeys(candidate.slots, 1.0))
-        machine = compile_simulation(simulation)
+        names = candidate.named(TRIED)
+        machine = compile_simulation(candidate.in_fit(model.simulation, names, dict.fromkeys(names, 1.0)))
         values, states = self._extend(machine, names, tried)
         seen = shooting.observed(machine, states, values)  # what changes though no state does
         seen -= shooting.observed(model.machine, model.fit.states[None], model.fit.values[None])

@@ -67,7 +67,7 @@ class ScoredModel:
     @property
     def names(self) -> tuple[dict[str, str], ...]:
         """For each explanation, slot -> the parameter that it is in the simulation."""
-        return tuple(part.candidate.named(_tag(number)) for number, part in enumerate(self.parts))
+        return name_parts(self.parts)
 
     @property
     def explanations(self) -> Explanations:
@@ -137,31 +137,27 @@ class ScoredModel:
     def with_estimates(self, values: Values, covariance: Values) -> ScoredModel:
         """Return the model with other numbers, and their covariance; its runs stay as they are."""
         fit = replace(self.fit, values=values, stated=covariance)
-        return replace(self, parts=_read_parts(self.parts, self.names, self.machine, values), fit=fit)
+        return replace(self, parts=_read_parts(self.parts, self.machine, values), fit=fit)
 
 
-def with_parts(base: Simulation, parts: tuple[Part, ...]) -> tuple[Simulation, tuple[dict[str, str], ...]]:
-    """Return a simulation with explanations in it, their numbers as parameters, and for each its slots' parameters."""
-    simulation, names = base, []
-    for number, part in enumerate(parts):
-        simulation, slots = part.candidate.in_fit(simulation, _tag(number), part.values)
-        names.append(slots)
-    return simulation, tuple(names)
+def with_parts(base: Simulation, parts: tuple[Part, ...]) -> Simulation:
+    """Return a simulation with explanations in it, their numbers as parameters."""
+    for part, names in zip(parts, name_parts(parts), strict=True):
+        base = part.candidate.in_fit(base, names, part.values)
+    return base
 
 
-def _tag(number: int) -> str:
-    """Return what the names of an explanation's parameters begin with."""
-    return f"part{number}"
+def name_parts(parts: tuple[Part, ...]) -> tuple[dict[str, str], ...]:
+    """For each explanation, slot -> the parameter that it is in a simulation with all of them."""
+    return tuple(part.candidate.named(f"part{number}") for number, part in enumerate(parts))
 
 
-def _read_parts(
-    parts: tuple[Part, ...], names: tuple[dict[str, str], ...], machine: Compiled, values: Values
-) -> tuple[Part, ...]:
+def _read_parts(parts: tuple[Part, ...], machine: Compiled, values: Values) -> tuple[Part, ...]:
     """Return explanations with their numbers among all parameters (parameter,)."""
     by_name = dict(zip(machine.parameters, values.tolist(), strict=True))
     return tuple(
         Part(part.candidate, {slot: by_name[name] for slot, name in slots.items()})
-        for part, slots in zip(parts, names, strict=True)
+        for part, slots in zip(parts, name_parts(parts), strict=True)
     )
 
 
@@ -180,7 +176,7 @@ def fit_model(
 
     like: whose numbers with bounds the fit begins with; the file's where absent
     """
-    simulation, names = with_parts(base, parts)
+    simulation, names = with_parts(base, parts), name_parts(parts)
     prior = read_prior(base, frozenset(part.candidate.place for part in parts if part.candidate.kind == "parameter"))
     machine = compile_simulation(simulation)
     values = machine.defaults.copy()
@@ -194,7 +190,7 @@ def fit_model(
     if like is None or like.machine.states != machine.states or starts.shape[1] != len(machine.states):
         starts = with_own_states(shooting, machine, values, starts)
     fit = replace(shooting, prior=prior).fitted(machine, free, values, starts, turns, enough)
-    return ScoredModel(base, simulation, machine, _read_parts(parts, names, machine, fit.values), fit, shooting)
+    return ScoredModel(base, simulation, machine, _read_parts(parts, machine, fit.values), fit, shooting)
 
 
 def score(model: ScoredModel) -> ScoredModel:

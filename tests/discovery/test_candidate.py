@@ -8,7 +8,7 @@ from gaitdisc.discovery.candidate import BENT, FLEXIBLE, Candidate, list_candida
 from gaitdisc.discovery.catalogue import Shape, read_shapes
 from gaitdisc.discovery.criteria import CRITERIA
 from gaitdisc.discovery.places import list_places
-from gaitdisc.discovery.scored_model import Part, with_parts
+from gaitdisc.discovery.scored_model import Part, name_parts, with_parts
 from gaitdisc.simulation.running import compile_simulation
 from gaitdisc.simulation.simulation_file import parse_simulation
 
@@ -37,17 +37,17 @@ def test_a_term_is_written_with_its_numbers():
 
 
 def test_numbers_become_parameters_of_the_fit():
-    simulation, names = ONE_SIDED.in_fit(mass(), "part0", {"factor": -30.0, "x0": 0.2})
-    assert names == ONE_SIDED.named("part0") == {"factor": "part0_factor", "x0": "part0_x0"}
+    simulation = ONE_SIDED.in_fit(mass(), ONE_SIDED.named("part0"), {"factor": -30.0, "x0": 0.2})
+    assert ONE_SIDED.named("part0") == {"factor": "part0_factor", "x0": "part0_x0"}
     assert simulation.values()["part0_factor"] == -30.0
     assert simulation.effects[-1].term == "part0_factor*(max(0, x - part0_x0))"
 
 
 def test_a_wrong_number_is_a_parameter_already():
     wrong = Candidate("wrong_parameter", "parameter", "k", "wrong_parameter", value=24.0)
-    assert wrong.in_fit(mass(), "part0", {"value": 30.0}) == (mass(), {"value": "k"})
+    assert wrong.in_fit(mass(), wrong.named("part0"), {"value": 30.0}) == mass()
     assert wrong.written(mass(), {"value": "31.5"}).values()["k"] == 31.5
-    assert wrong.idle == {"value": 24.0}
+    assert (wrong.idle, wrong.named("part0")) == ({"value": 24.0}, {"value": "k"})
 
 
 @pytest.mark.parametrize(
@@ -204,7 +204,7 @@ DRIFT = Candidate("sensor_error", "observation", "x", "sensor_drift")
 
 def test_parts_are_put_in_one_after_the_other_under_names_of_their_own():
     parts = (Part(WRONG, {"value": 25.0}), Part(DRIFT, {"rate": 0.1}))
-    simulation, names = with_parts(mass(), parts)
+    simulation, names = with_parts(mass(), parts), name_parts(parts)
     assert names == ({"value": "k"}, {"rate": "part1_rate"})
     assert dict(simulation.observations)["x"] == "(x) + part1_rate*t"
 
