@@ -116,7 +116,7 @@ def list_effects(case: Case, verdict: Verdict, closed: float, gained: float) -> 
         )
     parts = verdict.found.parts
     effects = [replace(_effect(case, verdict.found, n), held_out=closed, bic=gained) for n in range(len(parts))]
-    if verdict.read:
+    if verdict.reads_as is not None:
         (part,) = parts
         expression = part.candidate.term({slot: f"{value:.{DIGITS}g}" for slot, value in part.values.items()})
         effects = [replace(effects[0], reads_as=expression, reads_as_effect=verdict.reads_as)]

@@ -35,9 +35,8 @@ class Verdict:
     # Held-out runs that bear the model out; where nothing is named, those that do not bear the first rival out
     proof: Proof | None = None
     small: tuple[Part, ...] = ()  # explanations that close too little of the gap to be named
-    # of a shape without a name: whether it was read as an expression of few pieces, which stands in its place
-    read: bool = False
-    reads_as: str = ""  # the catalogue's effect that this expression is; empty where it is none
+    # of a shape read as an expression of few pieces: the catalogue's effect that this is, empty where it is none
+    reads_as: str | None = None
     # of explanations that a person gave, and none was searched: whether held-out data do without each beside the others
     given: tuple[bool, ...] = ()
 

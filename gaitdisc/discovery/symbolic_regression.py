@@ -70,7 +70,7 @@ def read_shape(case: Case, as_read: ScoredModel, verdict: Verdict) -> Verdict:
         proof = prove_held_out(case, as_read, model)
         if proof.bears_out and proof.closed >= CRITERIA.reading * verdict.proof.closed:
             reads_as = find_effect(search, reading.parts[0].candidate)
-            return replace(verdict, found=model, proof=proof, read=True, reads_as=reads_as)
+            return replace(verdict, found=model, proof=proof, reads_as=reads_as)
     return verdict
 
 
@@ -92,7 +92,7 @@ def read_instead(case: Case, as_read: ScoredModel, verdict: Verdict) -> Verdict:
         return verdict
     proof = prove_held_out(case, as_read, shape)
     instead = read_shape(case, as_read, Verdict(shape, (named, *verdict.rivals), proof=proof))
-    less = instead.read and instead.found.size < named.size
+    less = instead.reads_as is not None and instead.found.size < named.size
     return instead if less and prove_held_out(case, named, instead.found, as_read).bears_out else verdict
 
 

@@ -94,8 +94,8 @@ def without_names(verdict: Verdict, named: ScoredModel, model: ScoredModel) -> t
     dropped = ["process noise"] * bool(verdict.process_noise)
     dropped += [f"{spoken(name)} at {place}" for name, _, place in (label.partition("@") for label in lost.elements())]
     same = model.labels == verdict.found.labels
-    rivals, read = verdict.rivals if same else (verdict.found, *verdict.rivals), verdict.read and same
-    verdict = replace(verdict, found=model, rivals=rivals, read=read, process_noise=None)
+    rivals, reads_as = (verdict.rivals, verdict.reads_as) if same else ((verdict.found, *verdict.rivals), None)
+    verdict = replace(verdict, found=model, rivals=rivals, reads_as=reads_as, process_noise=None)
     return verdict, listing(dropped) if dropped else ""
 
 
