@@ -58,14 +58,11 @@ def answer(
 
     refitted: fits the numbers once more; the runs that are shown stay those of the search
     """
-    now, base = verdict.found, case.search.base
-    channels = tuple(name for name, _ in base.observations)
-    floor, proof = case.noise_floor(now.noise.size), verdict.proof
-    before, after = (run_trials(case, model, case.learned, now) for model in (as_read, now))
-    train = gap_size(before, after, floor, channels, compare_runs(case, before, after, now))
+    now, base, proof = verdict.found, case.search.base, verdict.proof
+    train = gap_size(case, prove(case, as_read, now, now, case.learned), now)
     held = proof if proof and now.parts else prove(case, as_read, now, now)
     of = f"trial {', '.join(case.measured.trials[number] for number in case.held_out)}"
-    held_out = replace(gap_size(held.before, held.after, floor, channels, (proof or held).test), of=of)
+    held_out = replace(gap_size(case, replace(held, test=(proof or held).test), now), of=of)
     gained = bic_gain(case.search, now)
     rivals = weigh_rivals(case.search, now, verdict.rivals, gained)
     stated = replace(verdict, found=refitted(now))
@@ -89,8 +86,8 @@ def answer(
         ),
         train=train,
         held_out=held_out,
-        channels=channels,
-        units=tuple(unit_of_channel(base, name) for name in channels),
+        channels=case.measured.channels,
+        units=tuple(unit_of_channel(base, name) for name in case.measured.channels),
         runs=tabulate_runs(case, held.before, held.after),
         findings=(*case.measured.findings, *nearly_off(effects, case.measured.source), *exact_inputs(case, now)),
         corrections=moved,
@@ -185,12 +182,11 @@ def list_explanations(
 ) -> list[Explanation]:
     """List what else was weighed by what it leaves of the held-out data, the least first."""
     ordered: list[tuple[float, Explanation]] = []
-    floor = np.array([floor for _, _, floor in size.channels.values()])
     for rival in rivals:
         after = run_trials(case, rival.scored, case.held_out, verdict.found)
         effects = tuple(report_rival(case, rival, number) for number in range(len(rival.scored.parts)))
         test = compare_runs(case, held.before, after, verdict.found)
-        left = gap_size(held.before, after, floor, tuple(size.channels), test)
+        left = gap_size(case, Proof(held.before, after, test), verdict.found)
         explanation = Explanation(effects, replace(left, of=size.of), *first_run(case, after, size))
         ordered.append((float(np.nan_to_num(left.after, nan=np.inf)), explanation))
     return [explanation for _, explanation in sorted(ordered, key=lambda rival: rival[0])]

@@ -200,9 +200,11 @@ class Proof:
         return float(1 - after / before)
 
 
-def prove(case: Case, before: ScoredModel, after: ScoredModel, like: ScoredModel) -> Proof:
-    """Run two models over the held-out trials and test what they err by."""
-    first, second = (run_trials(case, model, case.held_out, like) for model in (before, after))
+def prove(
+    case: Case, before: ScoredModel, after: ScoredModel, like: ScoredModel, trials: tuple[int, ...] = ()
+) -> Proof:
+    """Run two models over trials, by default those held out, and test what they err by."""
+    first, second = (run_trials(case, model, trials or case.held_out, like) for model in (before, after))
     return Proof(first, second, compare_runs(case, first, second, like))
 
 
@@ -211,13 +213,12 @@ def compare_runs(case: Case, before: ScoredModel, after: ScoredModel, like: Scor
     return replace(compare_errors(before.fit.residual, after.fit.residual, like.noise.size), alpha=case.alpha)
 
 
-def gap_size(
-    before: ScoredModel, after: ScoredModel, floor: Values, channels: tuple[str, ...], test: PairedTest
-) -> GapSize:
-    """Measure the gap before and after, against the noise's standard deviation (channel,)."""
-    spread = np.nanstd(after.shooting.seen, axis=(0, 1))
-    rms = [root_mean_square(model.fit.residual) for model in (before, after)]
-    sizes = {name: (float(rms[0][i]), float(rms[1][i]), float(floor[i])) for i, name in enumerate(channels)}
+def gap_size(case: Case, proof: Proof, like: ScoredModel) -> GapSize:
+    """Measure the gap before and after, against the sensors' noise, by that of a model where it is not known."""
+    spread, floor = np.nanstd(proof.after.shooting.seen, axis=(0, 1)), case.noise_floor(like.noise.size)
+    rms = [root_mean_square(model.fit.residual) for model in (proof.before, proof.after)]
+    names, test = case.measured.channels, proof.test
+    sizes = {name: (float(rms[0][i]), float(rms[1][i]), float(floor[i])) for i, name in enumerate(names)}
     overall = [float(np.sqrt(np.mean((error / spread) ** 2))) for error in (*rms, floor)]
     return GapSize(overall[0], overall[1], overall[2], test.p, sizes, test.pieces, alpha=test.alpha)
 

@@ -158,7 +158,7 @@ def without_small(case: Case, as_read: ScoredModel, verdict: Verdict) -> Verdict
     model, proof = verdict.found, verdict.proof
     if not model.parts or not proof or is_uninformative(case, as_read, model):
         return verdict
-    size = gap_size(proof.before, proof.after, case.noise_floor(model.noise.size), case.measured.channels, proof.test)
+    size = gap_size(case, proof, model)
     small = not case.leaves_noise(model) and 1 - np.sqrt(size.unexplained) < CRITERIA.matters
     if size.after <= size.before and not small:
         return verdict

@@ -36,8 +36,8 @@ def test_on_held_out_trials_nothing_is_found_but_the_starts(case, as_read, runs)
 
 def test_the_truth_leaves_the_noise_and_nothing_else(case, runs):
     before, after = runs
-    floor = np.array([0.02 * case.measured.observed.std()])
-    size = gap_size(before, after, floor, ("x",), PairedTest(0.02, 9, 1.0))
+    size = gap_size(case, Proof(before, after, PairedTest(0.02, 9, 1.0)), after)
+    assert size.channels["x"][2] == pytest.approx(0.02 * case.measured.observed.std(), rel=0.1)
     assert size.after < 1.1 * size.noise_floor < 0.5 * size.before
     assert size.channels["x"][1] == pytest.approx(float(np.sqrt((after.fit.residual**2).mean())))
     assert (size.p, size.pieces) == (0.02, 9)
