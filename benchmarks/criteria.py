@@ -51,7 +51,7 @@ FUNCTIONS = {
     "process_noise": ("rank_process_noise",),
     "estimated_filter": ("find_record_filter",),
     "first_states": ("guess_states",),
-    "influence": ("idle_parts",),
+    "matched": ("idle_parts",),
 }  # none of which reads a criterion
 ABOVE_ONE = ("mere_noise", "autocorrelated", "agrees", "follows", "unlike", "apart")
 BELOW_ONE = ("reading",)
