@@ -189,7 +189,8 @@ def fit_model(
     free = (*(name for slots in names for name in slots.values()), *prior.names)
     if like is None or like.machine.states != machine.states or starts.shape[1] != len(machine.states):
         starts = with_own_states(shooting, machine, values, starts)
-    fit = replace(shooting, prior=prior).fitted(machine, free, values, starts, turns, enough)
+    quicker = compile_simulation(simulation, frozenset(machine.parameters).difference(free))
+    fit = replace(shooting, prior=prior).fitted(quicker, free, values, starts, turns, enough)
     return ScoredModel(base, simulation, machine, _read_parts(parts, machine, fit.values), fit, shooting)
 
 

@@ -189,6 +189,8 @@ def residual_by(
     plain, expressions = replace(model.mapping, model=""), dict(model.mapping.observations)
     seen_as = [expressions[name] for name in measured.channels]
     size, reported = np.nanstd(measured.observed, axis=(0, 1)), time.monotonic()
+    n_hidden = len(lags) + (len(engine.pushes.machine.states) - 2 * n if engine.pushes else 0)
+    reach = np.append(np.nanmax(states, axis=(0, 1)) - np.nanmin(states, axis=(0, 1)), np.full(n_hidden, np.inf))
     residual = np.full((len(at.trial), at.length, len(size)), np.nan)
     for row, (trial, first) in enumerate(zip(at.trial, at.first, strict=True)):
         if time.monotonic() - reported > SILENT_S:
@@ -213,20 +215,22 @@ def residual_by(
             left[:, : at.margin], left[:, samples - at.margin :] = np.nan, np.nan
             return left
 
-        n_pushed = len(engine.pushes.machine.states) - 2 * n if engine.pushes else 0
         known, left = near.get(row) if near else None, residual[row]
-        start = np.append(states[trial, first], np.zeros(len(lags) + n_pushed)) if known is None else known
+        start = np.append(states[trial, first], np.zeros(n_hidden)) if known is None else known
         for share in SHARES if known is None else SHARES[-1:]:
             samples = max(int(share * at.length), min(16, at.length))
-            start, left = _find_start(lambda starts, samples=samples: left_from(starts, samples), start)
+            start, left = _find_start(lambda starts, samples=samples: left_from(starts, samples), start, reach)
         residual[row] = left * size
         if near is not None:
             near[row] = start
     return residual
 
 
-def _find_start(left_from: Callable[[Values], Values], start: Values) -> tuple[Values, Values]:
-    """Start that suits a run best, and what it leaves; slopes are mended by each step (Broyden) while that gains."""
+def _find_start(left_from: Callable[[Values], Values], start: Values, reach: Values) -> tuple[Values, Values]:
+    """Start that suits a run best, and what it leaves; slopes are mended by each step (Broyden) while that gains.
+
+    reach (state,): of the record; a run that begins farther off says nothing, and muscles may take minutes for it
+    """
     left, slopes, computed = left_from(start[None])[0], None, False
     there = np.isfinite(left)
     for _ in range(TURNS):
@@ -235,9 +239,12 @@ def _find_start(left_from: Callable[[Values], Values], start: Values) -> tuple[V
         if not np.isfinite(slopes).all():  # a run that leaves every bound has no slopes
             break
         u, size, turned = np.linalg.svd(slopes.T, full_matrices=False)
+        gain = -1.0
         # share of a step; damping by the greatest slope
         for share, damped in ((1.0, 1e-9), (0.3, 1e-9), (1.0, 1e-3), (1.0, 0.1)):
             step = share * (u.T @ -left[there] * size / (size**2 + (damped * size.max(initial=NUDGE)) ** 2)) @ turned
+            if (np.abs(step) > reach).any():
+                continue
             tried = left_from((start + step)[None])[0]
             gain = (left[there] ** 2).sum() - (tried[there] ** 2).sum()
             if gain > 0:

@@ -52,18 +52,20 @@ def compile_program(
     leaves: Sequence[str],
     fixed: Sequence[str] = (),
     definitions: Mapping[str, Tree] | None = None,
+    values: Mapping[str, float] | None = None,
 ) -> Program:
     """Program of some expressions.
 
     fixed: those of them that do not change during a run
     definitions: further names, in order, each in terms of leaves and of those before
+    values: of leaves that are never another: what is multiplied by nothing then is left out
 
     >>> from gaitdisc.simulation.expression import parse
     >>> program = compile_program([parse("k*x + sin(k*x)")], ["x", "k"])
     >>> len(program.code)  # one product, one sine, one sum, one store
     4
     """
-    graph = _Graph(leaves)
+    graph = _Graph(leaves, values or {})
     for name, tree in (definitions or {}).items():
         graph.scope[name] = graph.node(tree)
     nodes = [graph.node(tree) for tree in outputs]
@@ -73,12 +75,13 @@ def compile_program(
 class _Graph:
     """Every distinct part of the expressions once."""
 
-    def __init__(self, leaves: Sequence[str]) -> None:
-        self.leaves = tuple(leaves)
+    def __init__(self, leaves: Sequence[str], values: Mapping[str, float]) -> None:
+        self.leaves, self.known = tuple(leaves), bool(values)
         self.parts: list[tuple] = []  # ("leaf", name) | ("delay", signal, text) | ("constant", value) | (symbol, a, b)
         self.delays: dict[tuple[str, str], Tree] = {}
         self._numbers: dict[tuple, int] = {}
         self.scope = {name: self._number_node(("leaf", name)) for name in leaves}
+        self.scope |= {name: self.constant(value) for name, value in values.items()}
 
     def node(self, tree: Tree) -> int:
         if isinstance(tree, Number):
@@ -124,6 +127,13 @@ class _Graph:
 
     def _two(self, symbol: str, a: int, b: int | None = None) -> int:
         b = a if b is None else b
+        left, right, nothing = self.parts[a][:2], self.parts[b][:2], ("constant", 0.0)
+        if self.known and symbol == "-" and left[0] == right[0] == "constant":
+            return self.constant(left[1] - right[1])
+        if self.known and symbol == "*" and nothing in (left, right):
+            return self.constant(0.0)
+        if self.known and symbol == "+" and nothing in (left, right):
+            return b if left == nothing else a
         return self._number_node((symbol, *sorted((a, b))) if symbol in _COMMUTES else (symbol, a, b))
 
     def _number_node(self, part: tuple) -> int:

@@ -159,6 +159,18 @@ def test_the_true_model_meets_its_own_record_from_a_wrong_start(pendulum, tmp_pa
     assert says(found.sentence, "MuJoCo", "pivot") and not found.leave_mere_noise
 
 
+def test_no_run_begins_farther_from_the_record_than_that_reaches():
+    """A light foot whose speed muscles damp: what is left says almost nothing of it, and a full step is 40 rad/s."""
+    begun = []
+
+    def left_from(starts):
+        begun.extend(starts)
+        return np.column_stack([starts[:, 0] - 0.3, 1e-3 * (starts[:, 1] - 40.0), np.zeros(len(starts))])
+
+    start, left = own_runs._find_start(left_from, np.zeros(2), np.array([1.0, 5.0]))
+    assert np.abs(begun).max() < 13.0 and start[0] == pytest.approx(0.3, abs=0.01) and abs(left[0]) < 0.01
+
+
 def test_no_sample_is_compared_in_two_runs_and_none_at_the_ends_of_a_filtered_one():
     drive = Drive.of([np.zeros((400, 0)), np.zeros((310, 0))], 100.0)
     at = spread_stretches(Measured(drive, np.zeros((2, 400, 1)), ("1", "2"), ("x",)), 117.0, margin=17)

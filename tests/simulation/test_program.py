@@ -74,6 +74,15 @@ def test_a_program_agrees_with_python(terms):
     assert _value(" + ".join(f"({term})" for term in terms), **values) == pytest.approx(wanted, rel=1e-12, abs=1e-12)
 
 
+@pytest.mark.parametrize("mass", [2.0, 2.5])
+def test_what_a_parameter_that_keeps_its_value_does_not_change_is_left_out(mass):
+    text, leaves = parse("(-9.81*x + u) + (a*x + b*u)*(mass - 2.0)"), ["x", "u", "a", "b", "mass"]
+    whole, quicker = (compile_program([text], leaves, ["mass"], None, still) for still in (None, {"mass": mass}))
+    columns = [*np.random.default_rng(3).normal(size=(4, 20)), np.array(mass)]
+    assert np.array_equal(at_points(whole, columns), at_points(quicker, columns))
+    assert quicker.used().tolist() == [True, True, mass != 2.0, mass != 2.0, False]
+
+
 def test_columns_are_in_the_order_of_a_program():
     columns = leaf_columns(np.zeros(3), np.ones((3, 2)), np.full((3, 1), 2.0), np.array([7.0, 8.0]))
     assert [np.shape(column) for column in columns] == [(3,), (3,), (3,), (3,), (), ()]

@@ -147,11 +147,7 @@ numbers = st.floats(allow_nan=False, min_value=-1e299, max_value=1e299)
 expressions = st.sampled_from(
     ["x", "-k*x + u", "max(0, x - k)**2", "delay(u, 0.1)*t", "force + 1e-3", "sin(v)/(1 + k)"]
 )
-
-
-def is_no_unit(text):
-    """A unit that is known would be compared with the sensor's."""
-    return find_dimension(text) is None
+units = words.filter(lambda text: find_dimension(text) is None)  # a known one would be compared with the sensor's
 
 
 @st.composite
@@ -161,10 +157,10 @@ def simulations(draw):
     )
     return Simulation(
         draw(words),
-        (State("x", draw(words.filter(is_no_unit)), draw(words), draw(st.none() | numbers)), State("v")),
-        (Input("u", draw(words), draw(words)),),
-        (Parameter("k", draw(numbers), draw(words), draw(st.none() | st.just(-1e300)), None, draw(words)),),
-        (Port("force", draw(words), draw(words)),),
+        (State("x", draw(units), draw(words), draw(st.none() | numbers)), State("v")),
+        (Input("u", draw(units), draw(words)),),
+        (Parameter("k", draw(numbers), draw(units), draw(st.none() | st.just(-1e300)), None, draw(words)),),
+        (Port("force", draw(units), draw(words)),),
         tuple((f"d{i}", text) for i, text in enumerate(draw(st.lists(expressions, max_size=3)))),
         (("x", "v + force"), ("v", draw(expressions))),
         tuple({draw(words.filter(bool)): draw(expressions) for _ in range(draw(st.integers(0, 3)))}.items()),
