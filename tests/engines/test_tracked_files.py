@@ -83,7 +83,11 @@ def test_a_mapping_without_the_table_is_none_and_a_part_of_the_time_is_kept(walk
     ("text", "error", "words"),
     [
         ('[tracked]\nforces = "forces.sto"\n', SchemaError, "leg.toml names no external_loads. Write external_loads"),
-        (MAPPING.replace("xml", "mot"), ReadError, "grf.mot holds the forces themselves. Give the .xml of OpenSim's"),
+        (
+            MAPPING.replace("xml", "mot"),
+            ReadError,
+            "grf.mot holds the forces themselves. Give the external-loads file (.xml)",
+        ),
         (MAPPING + 'force = "a.sto"\n', SchemaError, "leg.toml has 'force'. Did you mean 'forces'"),
         (MAPPING.replace("forces.sto", "gone.sto"), ReadError, "there is no file gone.sto"),
         (MAPPING + "lowpass_hz = '6'\n", SchemaError, "lowpass_hz must be from 0 to 1000"),
@@ -145,7 +149,7 @@ def test_a_coordinate_of_a_name_that_nobody_else_uses_is_in_the_unit_of_the_head
         assert np.ptp(read.q[:, 1]) == pytest.approx(2 * np.radians(10.0), rel=0.02)
     text = (walk / "walk.mot").read_text().replace("inDegrees=no\n", "")
     (walk / "walk.mot").write_text(text)
-    with pytest.raises(UnitError, match=r"walk.mot.*angles are in degrees.*not"):
+    with pytest.raises(UnitError, match=r"walk.mot.*angles are in degrees.*no line"):
         read_tracked_motion(tracked, walk / "walk.mot", own, ACTUATORS)
 
 

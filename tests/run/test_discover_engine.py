@@ -95,10 +95,10 @@ def test_what_the_engine_itself_does_not_bear_out_is_taken_back():
 
 
 def test_what_mujoco_warns_of_is_a_finding_said_once():
-    from gaitdisc.discovery.discover_engine import _list_warnings
+    from gaitdisc.engines.conventions import list_warnings
 
     model = type("Model", (), {"called": "MuJoCo", "warnings": ("Nan in QACC.",)})()
-    (finding,) = _list_warnings(model, model)
+    (finding,) = list_warnings(model, model)
     assert (finding.severity, finding.what) == ("warning", "MuJoCo warns: Nan in QACC.")
 
 
