@@ -177,11 +177,11 @@ def _shapes(content: dict[str, Any], file: str) -> tuple[Shape, ...]:
 
 def _shape(entry: Any, where: str) -> Shape:
     if not isinstance(entry, dict):
-        raise SchemaError("a shape must be a table", f"{where} is none", 'Begin each shape with a line "[[shape]]".')
+        raise SchemaError("a shape must be a table", f"{where} is not", 'Begin each shape with a line "[[shape]]".')
     for key in entry:
         if key not in _ENTRIES:
             near = get_close_matches(key, _ENTRIES, 1)
-            hint = f"Did you mean {near[0]}?" if near else "Remove it."
+            hint = f"Did you mean {near[0]}?" if near else "Remove the key."
             raise SchemaError(f"the keys of a shape must be among {', '.join(_ENTRIES)}", f"{where} has {key!r}", hint)
     name, pieces, constants = entry.get("name"), entry.get("pieces"), entry.get("constants", {})
     states = entry.get("states", {})

@@ -8,7 +8,7 @@ from gaitdisc.discovery.result import DEVICE, ENGINE, TRACKED, Discovery
 
 BOUNDS = (
     "Parameters with two bounds in the file were fitted within these bounds, in the initial model and in every "
-    "explanation. Half of this range is two standard deviations. A wrong parameter must lie outside its bounds."
+    "explanation. Half of this range counts as two standard deviations. A wrong parameter must lie outside its bounds."
 )
 WEIGHED = (
     "Every explanation was tested at every place where it can act: the effects of the catalogue, wrong parameters, "
@@ -32,7 +32,7 @@ SHORT_RUNS = (
     "correlate with the residual (one-sided test; samples are weighted by the size of the change; Newey and West "
     "1987 for autocorrelation). The intervals follow from the curvature of the likelihood.",
     "The noise floor is the sensor noise, estimated from the data without a model: the residual of a cubic fitted "
-    "to seven samples. If a set of up to four explanations leaves a residual at or below this floor, it is the answer. "
+    "to seven samples. If a set of up to four explanations leaves a residual within the floor, that set is the answer. "
     "Otherwise, sets were compared by the share of the gap that they close on held-out runs, minus a penalty for each "
     "explanation. The penalty is 3 % of the gap for a simple one, and up to 10 % for one that can imitate many others "
     "(a delay, a product, a periodic force). Explanations that close less than 5 % of the gap are listed as small.",

@@ -63,7 +63,7 @@ def gap_table(discovery: Discovery) -> Table:
     caption = (
         f"Root-mean-square residual (measured minus simulated) before{moved} and after the identified effect is added, "
         "compared with noise alone. Closed: share of the squared gap above the noise. p: one-sided test that the added "
-        "effect correlates with the residual, all channels together, weighted by the size of the effect, with its "
+        "effect correlates with the residual, over all channels, weighted by the size of the effect and corrected for "
         f"autocorrelation (Newey and West 1987; held out: {held}, fitted: {fitted}). A name requires p below "
         f"{discovery.held_out.alpha:g} on held-out data, the accepted false-positive rate."
     )

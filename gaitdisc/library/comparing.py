@@ -222,7 +222,7 @@ def _curves(data: Any) -> NDArray[np.float64]:
             raise ShapeError(
                 "every column must be a point of the stride",
                 f"column {name!r} is not a number",
-                f"Make it the index: table.set_index({name!r}).",
+                f"Make this column the index: table.set_index({name!r}).",
             )
     values = real_array(data)
     if values.ndim not in (2, 3) or (len(values) == POINTS != values.shape[1]):

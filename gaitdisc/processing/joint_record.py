@@ -107,7 +107,7 @@ def join_trials(records: Sequence[JointRecord]) -> JointRecord:
     if not np.allclose(rates, rates[0], rtol=1e-3):
         raise SamplingError(
             f"trials of {first.condition} that are taken together must have one rate of the angles",
-            f"{first.subject} has {', '.join(f'{rate:.4g} Hz' for rate in (min(rates), max(rates)))}",
+            f"{first.subject} has {' and '.join(f'{rate:.4g} Hz' for rate in (min(rates), max(rates)))}",
             "Export all trials at one rate.",
         )
     muscles = tuple(name for name in first.muscles if all(name in record.muscles for record in others))
@@ -185,7 +185,7 @@ def _envelopes(trial: Trial, study: Study, side: str, time: Values) -> tuple[Val
     if not emg.names:
         raise ChannelError(
             f"for a moment model driven by EMG, EMG of side {side!r} must be usable",
-            f"{trial.name} has {'only dead channels: ' + ', '.join(sorted(lost)) if lost else 'none'}",
+            f"{trial.name} has {'only dead channels: ' + ', '.join(sorted(lost)) if lost else 'no EMG of this side'}",
             "Name the muscles in [channels], or set side in [strides] to the leg with electrodes.",
         )
     smooth = [make_envelope(emg.selected([name]), study.filters) for name in emg.names]

@@ -142,7 +142,7 @@ def load_model(folder: Path) -> SensingModel:
         raise SchemaError(
             f"{folder.name}/{WEIGHTS} must match {folder.name}/{NAME}",
             f"the weights use {len(weights.inputs)} numbers and estimate {', '.join(weights.outputs[:3])}; the model "
-            f"file states {readings * len(what.sensors)} and {', '.join(what.states[:3])}",
+            f"file states {readings * len(what.sensors)} numbers and {', '.join(what.states[:3])}",
             "Both files must come from one model. Copy them together, or run `gaitdisc reconstruct` again.",
         )
     return SensingModel(WindowModel(kind, what, weights, *numbers), tuple(channels), half)

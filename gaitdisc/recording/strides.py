@@ -72,7 +72,7 @@ class Strides:
         if start.ndim != 1 or start.shape != end.shape:
             raise ShapeError(
                 "strides must have as many ends as starts",
-                f"there are {start.shape} starts and {end.shape} ends",
+                f"the starts have shape {start.shape}, the ends {end.shape}",
                 "Give one end for each start.",
             )
         if not np.isfinite([start, end]).all() or np.any(end <= start) or np.any(start[1:] < end[:-1] - 1e-9):

@@ -148,11 +148,11 @@ def length_sentences(run: ResponseRun) -> list[str]:
     apart = (over.lengths["second"] == "exo") & over.lengths["different"].astype(bool)
     exceptions = sorted(set(over.lengths.loc[apart, "length_s"]))
     return [
-        "(i) Augmented against Exo at the same length: they differ significantly at "
+        "(i) Augmented against Exo at the same length: the models differ significantly at "
         f"{', '.join(f'{x:g}' for x in exceptions)} s."
         if exceptions
-        else "(i) Augmented against Exo at the same length: they do not differ significantly at any length.",
-        f"From {same_s:g} s on they do not differ significantly." if same_s is not None and exceptions else "",
+        else "(i) Augmented against Exo at the same length: no significant difference at any length.",
+        f"From {same_s:g} s on the models do not differ significantly." if same_s is not None and exceptions else "",
         f"(ii) Exo against Exo with the entire training part: from {whole_s:g} s on no variable differs significantly."
         if whole_s is not None
         else f"(ii) Exo against Exo with the entire training part: even at {longest:g} s, the longest part tested, at "

@@ -40,7 +40,7 @@ def find_lack(part: Part, data: Path | None) -> SchemaError | None:
     libraries = [name for name in part.needs if find_spec(name) is None]
     if libraries:
         words = " and ".join(libraries)
-        return SchemaError(f"{needs} {words}", "not installed", "Run: pip install 'gaitdisc[chapter3]'.")
+        return SchemaError(f"{needs} {words}", "these are not installed", "Run: pip install 'gaitdisc[chapter3]'.")
     folder = _data_folder(data)
     if part.data and not (folder / part.data).is_dir():
         do = "Name the folder of the data with --data or GAITDISC_DATA."
