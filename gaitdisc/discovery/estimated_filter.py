@@ -82,7 +82,7 @@ def find_record_filter(
 def note_other(passed: RecordFilter, source: str) -> Finding:
     """Finding that no effect is named because of another cut-off."""
     hz = ", ".join(f"{cutoff:.3g}" for cutoff in dict.fromkeys(passed.cutoffs_hz) if cutoff)
-    what = f"at {hz} Hz, which is within the error of this estimate, only noise is left, so no effect is named"
+    what = f"at a cut-off of {hz} Hz, within the error of its estimate, only noise is left, so no effect is named"
     spoils = "a small effect; if you know the cut-off, state lowpass in the simulation file"
     return Finding("note", "low-pass", source, what, spoils)
 
