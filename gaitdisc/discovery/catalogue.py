@@ -105,7 +105,7 @@ class Request:
         if not 0 < alpha < 1:
             raise SchemaError("alpha must lie between 0 and 1", f"found {alpha:g}", "Use 0.05, for example.")
         if twins < 0:
-            raise SchemaError("the number of simulated records must be 0 or more", f"found {twins}", "Use 20.")
+            raise SchemaError("the number of simulated records must be 0 or more", f"found {twins}", "Use 0 or 20.")
         return cls(read_catalogue(catalogue) if catalogue else (), effects, catalogue, alpha, progress, twins=twins)
 
 

@@ -168,8 +168,8 @@ def check_length(trials: Sequence[Trial], shortest_s: float) -> None:
     """Refuse walks too short for the strides of a discovery, before faults whose mend would not help."""
     clocks = [trial.stream("kinematics").time for trial in trials]
     if (lasts_s := float(sum(time[-1] - time[0] for time in clocks))) < FEWEST_STRIDES * shortest_s:
-        needed = f"to name the effect of a device, the trials of a condition must have {FEWEST_STRIDES} strides"
-        raise StrideError(needed, f"{trials[0].name}: {counted(len(trials), 'trial')}, {lasts_s:.1f} s", MEND)
+        needed = f"to name the effect of a device, a condition must have at least {FEWEST_STRIDES} strides"
+        raise StrideError(needed, f"{trials[0].name}: {counted(len(trials), 'trial')}, {lasts_s:.1f} s in all", MEND)
 
 
 def check_kinetics(trial: Trial) -> None:

@@ -99,7 +99,7 @@ def _check_numbers(simulation: Simulation) -> None:
                 raise SimulationError("parameters must be finite numbers", f"found {number}", "Write a number.", place)
         if len(bounds) == 2 and bounds[0] > bounds[1]:
             raise SimulationError(
-                "low must not exceed high", f"low is {bounds[0]:g}, high {bounds[1]:g}", "Exchange them.", place
+                "low must not exceed high", f"low is {bounds[0]:g}, high {bounds[1]:g}", "Swap the two.", place
             )
     for state in simulation.states:
         if state.initial is not None and not math.isfinite(state.initial):
@@ -181,7 +181,7 @@ def _parse_parts(text: str) -> tuple[Tree, tuple[str, ...], tuple[Operation, ...
 def _check_place(term: Term, ports: Iterable[str], states: Iterable[str], place: tuple[str, ...]) -> None:
     if term.kind not in ("port", "equation"):
         raise SimulationError(
-            "an effect must act at a port or in an equation", f"found {term.kind!r}", "Name one of them.", place
+            "an effect must act at a port or in an equation", f"found {term.kind!r}", "Use one of these.", place
         )
     among = tuple(ports if term.kind == "port" else states)
     if term.place not in among:
