@@ -56,7 +56,7 @@ def chapter(
 chapter.__doc__ = f"""Compute the tables, figures and studies of chapter 3, 4 or 5 again.
 
 Finished parts are kept; the same command continues after an interruption. Each part writes its page or tables, and
-saves what it prints as `printed.md`. Times are approximate minutes on one core; in brackets: with --quick.
+saves what it prints as `printed.md`. Times are approximate minutes on one core, in brackets with --quick.
 
 \b
 {costs()}

@@ -42,7 +42,7 @@ def demo(  # noqa: PLR0913, PLR0917 these are the options of a command
 
     claim_folder(folder, "study.toml", "raw", "truth")
     claim_run(folder / "run")
-    typer.echo(f"Simulated data of the embedded cohort (n = {people}), {seconds:g} s in each condition.")
+    typer.echo(f"Data of the embedded cohort (simulated people, n = {people}), {seconds:g} s in each condition.")
     write_demonstration(folder, seconds, people, hide, lambda who, _: LOG.info(f"  {who}"), laboratory)
     study = load_study(folder)
     try:
