@@ -113,7 +113,7 @@ class Mismatch(Saved, file="mismatch.json"):
     Raises
     ------
     ShapeError
-        If a curve is missing or has another shape than (phase, channel).
+        If a curve is missing or its shape is not (phase, channel).
     SchemaError
         If a table lacks a column.
     """

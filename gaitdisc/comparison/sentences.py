@@ -68,7 +68,7 @@ def alignment_sentences(mismatch: Mismatch) -> list[str]:
         return []
     size = f"{number(abs(alignment.percent), 1)} % of the stride {'later' if alignment.percent > 0 else 'earlier'}"
     gaps = f"the gap of {alignment.agreeing} of {counted(alignment.channels, 'channel')}"
-    sentence = f"{mismatch.first} was not shifted, because a shift of {size} would narrow {gaps} only slightly."
+    sentence = f"{mismatch.first} was not shifted: shifting it {size} would narrow {gaps} only slightly."
     if alignment.applied:
         sentence = (
             f"All curves of {mismatch.first} were shifted {size} before the test; with this shift {gaps} narrows. "

@@ -221,7 +221,7 @@ def _of_frame(frame: pd.DataFrame, name: str, channels: Mapping[str, str] | None
     for label, dtype in zip(labels, frame.dtypes, strict=True):
         if not is_numeric_dtype(dtype) or is_bool_dtype(dtype) or dtype.kind == "c":
             remedy = "Give times as numbers of seconds." if _time_unit(label, channels) else "Remove that column."
-            raise ReadError(f"{name}: columns must contain numbers", f"column {label!r} contains {dtype}", remedy)
+            raise ReadError(f"{name}: columns must contain numbers", f"column {label!r} has type {dtype}", remedy)
     if not any(_time_unit(label, channels) for label in labels):
         raise _no_time(name, f"its columns are {', '.join(labels[:6])}")
     _check_labels(labels, name)

@@ -29,8 +29,8 @@ MENTIONED = {  # a method in words -> the keys of data_schema/methods.bib
     "the Nominal, Exo, Discrepancy and Augmented models": ("ebers2023", "ebers2023exoskeletons"),
     "discrepancies of dynamics and of state": ("ebers2023", "ebers2024discrepancy"),
     "reconstruction of states from a few sensors": ("ebers2023", "ebers2024sensors"),
-    "networks, trained with AdamW": ("loshchilov2019",),
-    "networks, trained with Bayesian regularisation": ("mackay1992", "levenberg1944", "marquardt1963"),
+    "networks trained with AdamW": ("loshchilov2019",),
+    "networks trained with Bayesian regularisation": ("mackay1992", "levenberg1944", "marquardt1963"),
     "ridge regression": ("hoerl1970",),
     "random Fourier features": ("rahimi2007",),
     "SHRED": ("williams2024",),
@@ -68,20 +68,20 @@ OF_MODELS = {
     "linear": ("ridge regression",),
     "delay ridge": ("ridge regression",),
     "fourier ridge": ("ridge regression", "random Fourier features"),
-    "shallow decoder": ("shallow decoder", "networks, trained with AdamW"),
-    "shred": ("SHRED", "networks, trained with AdamW"),
-    "masked shred": ("SHRED", "networks, trained with AdamW"),
-    "shred ensemble": ("SHRED", "an ensemble of networks", "networks, trained with AdamW"),
-    "shred-text": ("SHRED", "networks, trained with AdamW"),
+    "shallow decoder": ("shallow decoder", "networks trained with AdamW"),
+    "shred": ("SHRED", "networks trained with AdamW"),
+    "masked shred": ("SHRED", "networks trained with AdamW"),
+    "shred ensemble": ("SHRED", "an ensemble of networks", "networks trained with AdamW"),
+    "shred-text": ("SHRED", "networks trained with AdamW"),
 }
 DISCREPANCIES = (
     "discrepancies of dynamics and of state",
     "SINDy",
     "optimised dynamic mode decomposition",
     "Gaussian processes",
-    "networks, trained with Bayesian regularisation",
+    "networks trained with Bayesian regularisation",
 )
-RESPONSES = ("the Nominal, Exo, Discrepancy and Augmented models", "networks, trained with AdamW", "ridge regression")
+RESPONSES = ("the Nominal, Exo, Discrepancy and Augmented models", "networks trained with AdamW", "ridge regression")
 SENSED = (
     "reconstruction of states from a few sensors",
     *dict.fromkeys(method for methods in OF_MODELS.values() for method in methods),
@@ -172,7 +172,7 @@ def _of_run(run: ResponseRun) -> Iterator[str]:
     kinds = {str(kind) for response in run.responses for kind in response.r2["kind"]}
     yield from RESPONSES[:1] if run.responses else ()
     if "network" in kinds:
-        yield "networks, trained with AdamW"
+        yield "networks trained with AdamW"
     if kinds & {"ridge", "linear"}:
         yield "ridge regression"
     if any(response.held_out.bands for response in run.responses):

@@ -208,6 +208,6 @@ def _reason(error: BaseException, jobs: int) -> str:
     with suppress(AttributeError, OSError, ValueError):
         memory = f"{os.sysconf('SC_PAGE_SIZE') * os.sysconf('SC_PHYS_PAGES') / 2**30:.0f} GiB"
     return (
-        f"The process of a participant {what} {TRIES} times, probably because memory is short (this machine has "
-        f"{memory}). Results of the other participants are kept. {fewer} a machine with more memory."
+        f"The process of a participant {what} {TRIES} times, probably because this machine has too little memory "
+        f"({memory}). Results of the other participants are kept. {fewer} a machine with more memory."
     )

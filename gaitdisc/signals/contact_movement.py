@@ -127,10 +127,10 @@ def angle_contacts(kinematics: Recording, sides: tuple[str, ...] = ("r", "l")) -
         knee = f"knee_angle_{side}"
         if knee in kinematics.names:
             times = _terminal_extensions(kinematics, knee, peaks, period)
-            note = "end of knee extension in late swing, about 97 % of the stride as a force plate would detect it"
+            note = "end of knee extension in late swing, at about 97 % of a stride that a force plate would show"
         else:
             times = _hip_peaks(kinematics, name, peaks, period)
-            note = "peak hip flexion, about 86 % of the stride as a force plate would detect it"
+            note = "peak hip flexion, at about 86 % of a stride that a force plate would show"
         contacts[side] = Contacts(np.unique(times), side, "angles", note=note)
     return contacts
 

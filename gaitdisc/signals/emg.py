@@ -307,7 +307,7 @@ def order_of_muscles(envelope: Recording, strides: Mapping[str, Strides]) -> lis
         pairs.append((muscles["calf", "l"], muscles["calf", "r"]))
     findings = []
     for first, second in pairs:
-        what = f"{first.name} and {second.name} seem to be exchanged, or the muscles of both legs"
+        what = f"{first.name} and {second.name} seem to be exchanged, or left and right muscles"
         what += f": {first.words()}, {second.words()}"
         file, both = envelope.source.file, f"{first.name}, {second.name}"
         findings.append(Finding("warning", "exchanged EMG", file, what, "both muscles; correct the labels", both))

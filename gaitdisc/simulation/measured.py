@@ -90,9 +90,9 @@ def check_measured(
     apart = int(np.argmax(np.abs(np.array(rates) - rates[0])))
     if abs(rates[apart] - rates[0]) > 2e-3 * rates[0]:
         raise SamplingError(
-            "all trials must have the same rate",
-            f"{source}, trial {trials[0].name!r} has {rates[0]:.6g} Hz, "
-            f"trial {trials[apart].name!r} has {rates[apart]:.6g} Hz",
+            "all trials must have the same sampling rate",
+            f"{source}: trial {trials[0].name!r} was sampled at {rates[0]:.6g} Hz, "
+            f"trial {trials[apart].name!r} at {rates[apart]:.6g} Hz",
             "Resample them to one rate.",
         )
     longest = max(len(trial.time) for trial in trials)

@@ -68,8 +68,8 @@ def read_simulation(path: Path | str) -> Simulation:
         size = check_regular(path)
         if size > LARGEST:
             raise ReadError(
-                f"a simulation file may have at most {LARGEST // 1024} KiB",
-                f"{path.name} has {size / 1024:.0f} KiB",
+                f"a simulation file must not be larger than {LARGEST // 1024} KiB",
+                f"the size of {path.name} is {size / 1024:.0f} KiB",
                 "Write a model of this size as a PythonSimulation.",
             )
         text = path.read_bytes().decode("utf-8-sig")

@@ -53,7 +53,7 @@ def find_groups(features: NDArray[np.float64], clouds: int = 199, seed: int = 0)
         raise ComparisonError(
             f"to find sub-groups, at least {FEWEST} participants must have complete features",
             f"found features of shape {features.shape}" + (f", {missing} values missing" if missing else ""),
-            "Exclude participants with missing features, and state who.",
+            "Exclude participants with missing features, and report which ones.",
         )
     rng = np.random.default_rng(seed)
     labels, silhouette = best_cut(features)
