@@ -106,7 +106,7 @@ def test_radians_called_degrees_are_refused(tmp_path):
 def test_bad_parquet_is_refused(tmp_path):
     path = tmp_path / "walk.parquet"
     for frame, words in [
-        (pd.DataFrame({"time": [0.0, 1.0], "knee_angle_r": ["a", "b"]}), "column 'knee_angle_r' contains"),
+        (pd.DataFrame({"time": [0.0, 1.0], "knee_angle_r": ["a", "b"]}), "column 'knee_angle_r' has type"),
         (pd.DataFrame({"knee_angle_r": [0.0, 1.0]}), r"'time \[s\]'.*columns are knee_angle_r"),
         (pd.DataFrame({"time": [0.0, 1.0], "knee_angle_r": [1, np.inf]}), "'knee_angle_r' contains infinite values"),
         (pd.DataFrame({"time": [], "knee_angle_r": []}, dtype=float), "no row"),

@@ -66,7 +66,7 @@ def test_a_walk_without_emg_or_forces_says_which(has, lacks, mend):
 
 
 def test_trials_of_a_few_strides_are_refused_for_their_length_and_sent_to_pooled_cycles():
-    with pytest.raises(StrideError, match=r"12 strides.*W01_exo: 1 trial, 4\.7 s\..*--before A --after B"):
+    with pytest.raises(StrideError, match=r"12 strides.*W01_exo: 1 trial, 4\.7 s in all\..*--before A --after B"):
         check_length([trial("kinematics", lasts_s=4.7)], 0.4)
     check_length([trial("kinematics", lasts_s=2.5)] * 2, 0.4)
 

@@ -31,7 +31,7 @@ def test_a_person_is_beside_the_group_of_the_own_speed_with_scores_and_without_l
     assert grown.profile is not None and grown.profile.both.people == 83
     assert says(grown.silent, "limits", "single legs") and grown.numbers == ()
     unknown = read_beside(made_person(), reference)
-    assert says(unknown.beside[1], "“free” (83 people); no")
+    assert says(unknown.beside[1], "“free” (83 people): the speed is unknown")
     slow = read_beside(replace(made_person(), leg_m=2.5), reference)
     np.testing.assert_allclose(slow.bands["hip_flexion"].mean, 0.1 * np.arange(101) - 5.0)
 

@@ -66,7 +66,7 @@ def test_printed_times_are_even_enough():
         ([_trial(time=np.sort(np.random.default_rng(0).uniform(0, 1, 50)))], "interval of a trial must be constant"),
         ([_trial(time=np.repeat(np.arange(25) / 100, 2))], "t = 0 s"),
         ([_trial(time=np.arange(50) % 25 / 100)], r"t = 0.24 s is followed by 0 s \(sample 26"),
-        ([_trial("a"), _trial("b", rate=50.0)], "trial 'a' has 100 Hz, trial 'b' has 50 Hz"),
+        ([_trial("a"), _trial("b", rate=50.0)], "trial 'a' was sampled at 100 Hz, trial 'b' at 50 Hz"),
     ],
 )  # fmt: skip
 def test_clocks_that_do_not_run_are_refused(trials, words):
