@@ -120,10 +120,10 @@ def search(
     mapping, engine, data, passed = fit.mapping, fit.engine, fit.measured, fit.low_pass
     discovery, linear = search_expansion(fit, request, read)
     request.progress(f"running the augmented model with {engine.called}")
-    runs = base.runs
     if fit.low_pass != passed and (fit.low_pass.margin or passed.margin):  # as the search has it
-        runs = base_runs(base.written.engine, fit)
-    runs = runs.among(np.isin(runs.at.trial, [trial_called(data, name) for name in discovery.runs.names]))
+        base = replace(base, runs=base_runs(base.written.engine, fit))
+    numbers = [trial_called(data, name) for name in discovery.runs.names]
+    runs = base.runs.among(np.isin(base.runs.at.trial, numbers))
     augmented, written, _ = fit.written(discovery, fit.parts)
     hidden = [size[2] for size in discovery.held_out.channels.values()]  # noise that the record itself may not show
     pushed = [f"{effect.name} at {effect.place}" for effect in discovery.effects if effect.name == "process_noise"]

@@ -234,8 +234,9 @@ def at_other_cutoffs(
         left, fit = seen - other.filtered(simulated, 1), replace(fit, low_pass=other)
         left[:, : at.margin], left[:, at.length - at.margin :] = np.nan, np.nan
         # noise is in the record alone: at the true cut-off no more is left than at another
-        no_worse = np.mean((root_mean_square(left) / root_mean_square(runs.before)) ** 2) < MERE_NOISE
-        if (tried := with_noise(replace(runs, before=left, after=left), fit)).leave_mere_noise and no_worse:
+        if not np.mean((root_mean_square(left) / root_mean_square(runs.before)) ** 2) < MERE_NOISE:
+            continue
+        if (tried := with_noise(replace(runs, before=left, after=left), fit)).leave_mere_noise:
             return tried, fit, noted if other == again else (*noted, note_other(other, clean.source))
     return None
 

@@ -139,8 +139,7 @@ class _Along:
 
 def _expand(columns: _Columns, simulation: Simulation, along: _Along, values: Mapping[str, float]) -> None:
     """Accelerations to first order in states and controls; forces, and parameters that act as such, exactly."""
-    whole, at, limits = columns.engine, along.at, columns.engine.force_limits(values)
-    engine = whole.without_force_limits()  # what a limit takes away is a force of its own
+    at, (engine, limits) = along.at, columns.engine.without_force_limits(values)  # what they take away is a force
     base = engine.accelerations(at, values)
     few, rest = base[along.points], base.copy()
     slopes = _slopes(engine, along, values)
@@ -160,11 +159,12 @@ def _expand(columns: _Columns, simulation: Simulation, along: _Along, values: Ma
             alike = engine.as_force(name)
             if alike and alike[0] == number:
                 acting.append(f"({alike[1]})*({name} - {values[name]!r})")
-        acting += [taken for limited, taken in limits.values() if limited == number]
+        acting += [taken for limited, taken in limits if limited == number]
         if acting:
             changed = along.spread(engine.accelerations(along.few, values, force) - few)
             columns.add(f"by_{coordinate.port}", changed, acting[0] if len(acting) == 1 else f"({' + '.join(acting)})")
-    here = whole.accelerations(along.few, values) if limits else few  # a mass changes what the limited force does
+    # a mass changes what the limited force does
+    here = columns.engine.accelerations(along.few, values) if limits else few
     _expand_parameters(columns, simulation, along, here, values)
 
 

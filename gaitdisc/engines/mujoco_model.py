@@ -204,23 +204,17 @@ class MujocoModel:
         affine = self._mujoco.mjtBias.mjBIAS_AFFINE
         return {name: motor for name, (k, motor) in self._motors.items() if self._model.actuator_biastype[k] == affine}
 
-    def force_limits(self, values: Mapping[str, float]) -> dict[str, tuple[int, str]]:
-        """Of each motor whose force is limited: its coordinate, and the force on it that the limit takes away."""
-        changed, limits = self.with_values(values), dict[str, tuple[int, str]]()
-        model = changed._model
+    def without_force_limits(self, values: Mapping[str, float]) -> tuple[MujocoModel, list[tuple[int, str]]]:
+        """Model whose motors have no largest force; the coordinate of each, and the force that its limit takes away."""
+        changed, free, taken = self.with_values(values), copy(self), list[tuple[int, str]]()
+        model, free._model = changed._model, copy(self._model)
         for name, (k, (gain, constant, moved)) in changed._motors.items():
             if model.actuator_forcelimited[k]:
                 (low, high), force = model.actuator_forcerange[k].tolist(), f"{gain!r}*{name} + {constant!r} + {moved}"
-                taken = f"{float(model.actuator_gear[k, 0])!r}*(min(max({force}, {low!r}), {high!r}) - ({force}))"
-                limits[name] = int(model.jnt_dofadr[model.actuator_trnid[k, 0]]), taken
-        return limits
-
-    def without_force_limits(self) -> MujocoModel:
-        """Model whose motors have no largest force."""
-        other = copy(self)
-        other._model = copy(self._model)
-        other._model.actuator_forcelimited[:] = False
-        return other
+                more = f"{float(model.actuator_gear[k, 0])!r}*(min(max({force}, {low!r}), {high!r}) - ({force}))"
+                taken.append((int(model.jnt_dofadr[model.actuator_trnid[k, 0]]), more))
+                free._model.actuator_forcelimited[k] = False
+        return (free if taken else self), taken
 
     @property
     def _motors(self) -> dict[str, tuple[int, tuple[float, float, str]]]:

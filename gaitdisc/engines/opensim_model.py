@@ -95,13 +95,9 @@ class OpensimModel:
     def as_force(self, _: str) -> tuple[int, str] | None:
         """None: masses, gravity and optimal forces are more."""
 
-    def force_limits(self, _: Mapping[str, float]) -> dict[str, tuple[int, str]]:
-        """None: it limits no actuator's force."""
-        return {}
-
-    def without_force_limits(self) -> OpensimModel:
-        """Itself."""
-        return self
+    def without_force_limits(self, _: Mapping[str, float]) -> tuple[OpensimModel, list[tuple[int, str]]]:
+        """Itself: it limits no actuator's force."""
+        return self, []
 
     def along(self, q: Values, v: Values, controls: Values, rate: float) -> Motion:
         """Return a prescribed motion with the muscles' states, which OpenSim alone integrates from the excitations."""

@@ -127,13 +127,14 @@ class _Graph:
 
     def _two(self, symbol: str, a: int, b: int | None = None) -> int:
         b = a if b is None else b
-        left, right, nothing = self.parts[a][:2], self.parts[b][:2], ("constant", 0.0)
-        if self.known and symbol == "-" and left[0] == right[0] == "constant":
-            return self.constant(left[1] - right[1])
-        if self.known and symbol == "*" and nothing in (left, right):
-            return self.constant(0.0)
-        if self.known and symbol == "+" and nothing in (left, right):
-            return b if left == nothing else a
+        if self.known:
+            left, right, nothing = self.parts[a][:2], self.parts[b][:2], ("constant", 0.0)
+            if symbol == "-" and left[0] == right[0] == "constant":
+                return self.constant(left[1] - right[1])
+            if symbol == "*" and nothing in (left, right):
+                return self.constant(0.0)
+            if symbol == "+" and nothing in (left, right):
+                return b if left == nothing else a
         return self._number_node((symbol, *sorted((a, b))) if symbol in _COMMUTES else (symbol, a, b))
 
     def _number_node(self, part: tuple) -> int:

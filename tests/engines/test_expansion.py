@@ -84,6 +84,21 @@ def test_a_servo_at_the_limit_of_its_force_is_expanded_exactly(pendulum, late):
     assert np.ptp(wanted) > 1.0 and np.allclose(rates[:, 1:], wanted, rtol=1e-9, atol=1e-9)
 
 
+def test_a_motor_of_a_tendon_keeps_the_limit_of_its_force(pendulum):
+    """It has no form in the expansion: that takes it from the record, as it is at its limit there."""
+    cord = '<tendon><fixed name="cord"><joint joint="pivot" coef="1"/></fixed></tendon></mujoco>'
+    motor = '<position kp="30" forcerange="-0.4 0.4" name="drive" tendon="cord"'
+    text = PENDULUM.replace('<motor name="drive" joint="pivot"', motor).replace("</mujoco>", cord)
+    pendulum.write_text(text)
+    model = read_model(pendulum)
+    controls, measured, whole = recorded(model)
+    linear, driven = expand(draft(model), model, measured, whole)
+    rates = compile_simulation(linear).rates(np.arange(SAMPLES) / RATE, whole[0], driven.drive.inputs[0])
+    wanted = model.accelerations(Motion(whole[0, :, :1], whole[0, :, 1:], controls), {})
+    assert np.allclose(rates[:, 1:], wanted, rtol=1e-9, atol=1e-9)
+    assert model.without_force_limits({}) == (model, [])
+
+
 def test_a_run_beside_the_record_is_that_of_the_muscles_whose_fibres_follow(elbow):
     """Started 2 degrees and 0.3 rad/s off, it comes back as OpenSim's does: stiffness and damping of the fibres."""
     model, t = read_model(elbow), np.arange(70) / RATE
