@@ -151,11 +151,10 @@ class _Taken:
         tries = [(len(rates), point) for rates, point in zip(self.returned, self.points, strict=True) if rates]
         if not tries:
             raised = self.raised[0]
+            what = f"{self.title} raised {type(raised).__name__}: {raised!s:.200}"
             raise SimulationError(
                 "a simulation's function must accept a number for each argument and return a derivative for each state",
-                str(raised)
-                if isinstance(raised, _NoNumbersError)
-                else f"{self.title} raised {type(raised).__name__}: {str(raised)[:200]}",
+                str(raised) if isinstance(raised, _NoNumbersError) else what,
                 self.remedy,
             ) from raised
         again = self._try(tries[-1][1])
@@ -206,11 +205,12 @@ class _Taken:
         """Derivatives at one point."""
         plain, named = self.arguments(point.__getitem__)
         value = self.function(*plain, **named)
-        if isinstance(value, tuple | list) and all(type(number) is float for number in value):
+        if isinstance(value, tuple | list) and value and all(type(number) is float for number in value):
             return [*value]
-        if value is None or isinstance(value, str | Mapping):
-            raise _NoNumbersError(f"{self.title} returns {str(value)[:60] if value is None else type(value).__name__}")
-        return [float(number) for number in flat(value)]
+        numbers = [] if value is None or isinstance(value, str | Mapping) else [float(each) for each in flat(value)]
+        if not numbers:
+            raise _NoNumbersError(f"{self.title} returns {value!r:.60}")
+        return numbers
 
     def gives(self, rates: Values) -> bool:
         """Whether derivatives (point, state) are what it returns, wherever that is a number."""
