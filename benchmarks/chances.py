@@ -1,10 +1,11 @@
-"""How often a name that `gaitdisc discover` gives is right, and what in the answer says so.
+"""How often a name that `gaitdisc discover` gives is right, and the function behind `Discovery.probability`.
 
     python benchmarks/chances.py OUT BENCH [--cases 900] [--seed 35] [--twins 0]
 
 Cases are of guards.py and of BENCH/make_cases.py (../shared/bench/hidden_effects), of mixed size, noise, length,
 number of trials, filter and gaps. OUT/answers.jsonl gets a line for each, and what stands there is not run again.
-Right is a name where all that is named is hidden, or stands in the benchmark's list of what equals it.
+Right is a name where all that is named is hidden, or stands in the benchmark's list of what equals it; an answer that
+is tied with others shares the probability with them, and is right with them where one of them is right.
 """
 
 from __future__ import annotations
@@ -24,9 +25,7 @@ GIVEN = command_line(
     argument("--seed", "of the cases", 35),
     argument("--twins", "of each named record, with the effect", 0),
     argument("--fit", "print how often a logistic function of the answers is right", False),
-    argument(
-        "--rigs", "answers to rigs: case (set/name), name (full where right) and found, a line of JSON each", type=Path
-    ),
+    argument("--rigs", "answers to rigs: case (set/name), right, shared and found, a line of JSON each", type=Path),
 )  # before the slow imports
 
 import importlib.util
@@ -45,32 +44,25 @@ import guard_cases
 import guards
 import numpy as np
 from kept_answers import keep_answers
+from numpy.typing import NDArray
 from sklearn.linear_model import LogisticRegression
-from sklearn.pipeline import make_pipeline
-from sklearn.preprocessing import StandardScaler
 
 from gaitdisc.discovery.answer import answer
 from gaitdisc.discovery.catalogue import ALL
 from gaitdisc.discovery.discover import explain
+from gaitdisc.discovery.result import NAMED, Discovery, Explanation
 from gaitdisc.discovery.twins import TwinSource, _name, search_records
 from gaitdisc.simulation.measured_table import read_measured
 from gaitdisc.simulation.simulation_file import read_simulation
 
-NAMED = ("missing_physics", "wrong_parameter", "input_error", "sensor_error")
 PLACES = ("port", "equation", "observation", "input", "parameter")
 KINDS = ("term", "term", "term", "term", "pushed_term", "outside", "outside", "off", "one_trial", "inputs")
 SIZES = ((0.005, 0.02), (0.02, 0.06), (0.06, 0.2))  # of a rate, which a hidden term is
 NOISE = (0.01, 0.03, 0.1, 0.2)  # of each channel's standard deviation
 LENGTHS = (0.25, 0.5, 1.0)  # of the benchmark's own records
 LIMIT_S = 60
-MOST = 1e4  # of a margin, where there is no rival
 SAID = (0.85, 0.95)  # probabilities between which answers are counted
-OPEN = ("open", "second", "third", "real")  # sets of rigs that are fitted to
-FITTED = {
-    "margin over the best rival": ("margin",),
-    "margin, gain, error left over the noise": ("margin", "gain", "left"),
-    "whether anything is tied": ("tied",),
-}
+FITTED = (("closed",), ("margin",), ("closed", "margin"), ("closed", "tied"), ("closed", "margin", "left"))
 
 
 @cache
@@ -135,10 +127,12 @@ def ask(number: int, bench: Path, seed: int, out: Path, twins: int) -> dict[str,
     said = found.to_json()
     for one in said["explanations"]:
         del one["left"]
-    named = {(one.name, one.place) for one in found.effects} if found.verdict in NAMED else set()
-    fine = guards.is_right(kind, truth, found) if kind == "outside" else bool(named) and named <= right
-    line |= {"made in": made_in, "seconds": time.process_time() - began, "named": bool(named), "right": fine}
-    line |= {"accepted": [*right]}
+    named = found.verdict in NAMED
+    tied = [one for one in found.explanations if one.tied]
+    tied += [Explanation((rival,)) for rival in found.rivals if rival.tied]
+    rights = [says_truth(kind, truth, right, one, found) for one in (Explanation(found.effects, found.held_out), *tied)]
+    line |= {"made in": made_in, "seconds": time.process_time() - began, "named": named, "accepted": [*right]}
+    line |= {"right": named and rights[0], "shared": named and any(rights)}
     line |= {"found": {key: one for key, one in said.items() if key not in ("findings", "provenance", "where")}}
     if named and twins:
         source = TwinSource(case, verdict.found, verdict.found.noise)
@@ -147,6 +141,19 @@ def ask(number: int, bench: Path, seed: int, out: Path, twins: int) -> dict[str,
             line |= {"twins": [one == _name(found) for one in answers], "with twins": time.process_time() - began}
     shutil.rmtree(folder)
     return line
+
+
+def says_truth(
+    kind: str, truth: dict[str, Any], right: set[tuple[str, str]], one: Explanation, found: Discovery
+) -> bool:
+    """Whether an explanation names what is hidden, and no more."""
+    if kind == "outside":
+        return guards.is_right(
+            kind, truth, replace(found, effects=one.effects, held_out=one.held_out or found.held_out)
+        )
+    if kind == "inputs":  # each errs by a gain and drifts
+        return all(effect.kind == "input" for effect in one.effects)
+    return {(effect.name, effect.place) for effect in one.effects} <= right
 
 
 def ask_in_time(number: int, limit: int = LIMIT_S, **given: Any) -> dict[str, Any]:
@@ -162,38 +169,35 @@ def ask_in_time(number: int, limit: int = LIMIT_S, **given: Any) -> dict[str, An
 
 
 def describe(found: dict[str, Any]) -> dict[str, float]:
-    """What an answer says of itself: logarithms of its margin, gain and error left, and whether it is tied."""
+    """What an answer says of itself."""
     gain, held_out = found["effects"][0]["evidence"]["bic"] or 0.0, found["gap"]["held_out"]
-    rivals = [one for one in found["rivals"] if not one["small"] and one["evidence"]["bic"] is not None]
-    margin = min((gain - one["evidence"]["bic"] for one in rivals), default=MOST)
+    untied = [one["evidence"]["bic"] or 0.0 for one in found["rivals"] if not (one["small"] or one["tied"])]
     return {
-        "margin": math.log1p(min(max(margin, 0.0), MOST)),
-        "gain": math.log1p(max(gain, 0.0)),
-        "left": math.log(max(held_out["after"], 1e-9) / max(held_out["noise_floor"], 1e-9)),
+        "closed": 1 - held_out["unexplained"],
+        "margin": math.log1p(min(max(gain - max(untied, default=0.0), 0.0), gain)),
         "tied": float(any(one["tied"] for one in found["rivals"])),
+        "left": math.log(max(held_out["after"], 1e-9) / max(held_out["noise_floor"], 1e-9)),
     }
 
 
-def print_fits(made: list[dict[str, Any]], rigs: list[dict[str, Any]]) -> None:
-    """Fit to half of the made answers and the open rigs, and print how often the others are right as it says."""
-    odd = np.array([one["number"] % 2 == 1 for one in made])
-    opened = np.array([one["case"].split("/")[0] in OPEN for one in rigs], bool)
-    y, y_rigs = (np.array([one["right"] for one in answers], bool) for answers in (made, rigs))
-    for words, names in FITTED.items():
-        x, x_rigs = (
-            np.array([[describe(one["found"])[name] for name in names] for one in answers]).reshape(-1, len(names))
-            for answers in (made, rigs)
-        )
-        for fitted in (~odd, odd):
-            model = make_pipeline(StandardScaler(), LogisticRegression())
-            model.fit(np.vstack([x[fitted], x_rigs[opened]]), np.concatenate([y[fitted], y_rigs[opened]]))
-            kept = {"made": (x[~fitted], y[~fitted]), "rigs": (x_rigs[~opened], y_rigs[~opened])}
-            for which, (those, right) in kept.items():
-                if len(right):
-                    print(f"{words} | {which}: {say_fit(model.predict_proba(those)[:, 1], right)}")
+def print_fits(answers: list[dict[str, Any]], rigs: NDArray[np.bool_]) -> None:
+    """Fit to every second answer, print how often the others are right as it says, and the numbers fitted to all."""
+    told, shared = [describe(one["found"]) for one in answers], np.array([one["shared"] for one in answers], bool)
+    second = np.zeros(len(answers), bool)
+    for some in (rigs, ~rigs):
+        second[np.flatnonzero(some)[1::2]] = True
+    for names in FITTED:
+        x, said = np.array([[one[name] for name in names] for one in told]), np.empty(len(answers))
+        for kept in (second, ~second):
+            said[kept] = LogisticRegression(C=np.inf).fit(x[~kept], shared[~kept]).predict_proba(x[kept])[:, 1]
+        whole = LogisticRegression(C=np.inf).fit(x, shared)
+        print(f"{', '.join(names)}: {whole.intercept_[0]:.2f}, {', '.join(f'{one:.2f}' for one in whole.coef_[0])}")
+        for which, some in (("made", ~rigs), ("rigs", rigs), ("all", rigs | ~rigs)):
+            if some.any():
+                print(f"  {which}: {say_fit(said[some], shared[some])}")
 
 
-def say_fit(said: np.ndarray, right: np.ndarray) -> str:
+def say_fit(said: NDArray[np.float64], right: NDArray[np.bool_]) -> str:
     """Right of those that a probability is said of, by its size, and the Brier score beside that of the mean alone."""
     sizes = ((low, right[(low <= said) & (said < high)]) for low, high in pairwise((0.0, *SAID, 1.01)))
     parts = [f"from {low:g}: {some.sum()} of {len(some)}" for low, some in sizes if len(some)]
@@ -203,9 +207,8 @@ def say_fit(said: np.ndarray, right: np.ndarray) -> str:
 if __name__ == "__main__":
     cases = ((number,) for number in range(GIVEN.cases))
     answering = partial(ask_in_time, bench=GIVEN.bench, seed=GIVEN.seed, out=GIVEN.out, twins=GIVEN.twins)
-    answers = keep_answers(GIVEN.out, cases, answering, ("number",))
+    made = [one for one in keep_answers(GIVEN.out, cases, answering, ("number",)) if one.get("named")]
     if GIVEN.fit:
-        rigs = [json.loads(line) for line in GIVEN.rigs.read_text(encoding="utf-8").splitlines()] if GIVEN.rigs else []
-        rigs = [one for one in rigs if "found" in one and one["found"]["verdict"] in NAMED and one["found"]["effects"]]
-        made = [one for one in answers if one.get("named")]
-        print_fits(made, [one | {"right": one["name"] == "full"} for one in rigs])
+        lines = GIVEN.rigs.read_text(encoding="utf-8").splitlines() if GIVEN.rigs else []
+        rigs = [one for one in map(json.loads, lines) if one["found"]["verdict"] in NAMED]
+        print_fits([*made, *rigs], np.arange(len(made) + len(rigs)) >= len(made))

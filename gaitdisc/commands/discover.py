@@ -85,7 +85,8 @@ def discover(  # noqa: PLR0913, PLR0917 these are the options of a command
 
             say("drawing the report")
             place = write_discovery_report(result, folder)
-        typer.echo("\n".join([result.public.sentence, *notes] if result.twins is None else [result.twins.sentence]))
+        answer = [result.public.sentence, result.chance, *notes] if result.twins is None else [result.twins.sentence]
+        typer.echo("\n".join(filter(None, answer)))
         for finding in result.public.findings if result.twins is None else ():
             if finding.severity != "note":
                 LOG.info(finding.line())
@@ -138,8 +139,7 @@ def _of_engine(model: Path, measured: Path, request: Request, write: Callable[..
     from gaitdisc.discovery.discover_engine import discover_model_file, write_answer
     from gaitdisc.engines.tracked_mapping import read_tracked
 
-    walk = read_tracked(model)
-    if walk is not None:
+    if (walk := read_tracked(model)) is not None:
         from gaitdisc.discovery.discover_tracked import discover_tracked, write_tracked
 
         answered = discover_tracked(walk, measured, request)

@@ -63,7 +63,7 @@ def answer(
     held = proof if proof and now.parts else prove(case, as_read, now, now)
     of = f"trial {', '.join(case.measured.trials[number] for number in case.held_out)}"
     held_out = replace(gap_size(case, replace(held, test=(proof or held).test), now), of=of)
-    gained = bic_gain(case.search, now)
+    gained = case.search.with_others(now, ()).bic - now.bic if now.parts else 0.0
     rivals = weigh_rivals(case.search, now, verdict.rivals, gained)
     stated = replace(verdict, found=refitted(now))
     parts, moved = stated.found.parts, list_corrections(stated.found, base)
@@ -95,7 +95,8 @@ def answer(
         given=("proven" if held.bears_out and not all(verdict.given) else "refuted") if verdict.given else "",
     )
     starts = {name: float(f"{start.value:.6g}") for name, start in verdict.starts.items()}
-    augmented = augment_with(corrected(base, moved), parts).with_starts(starts)
+    corrected = base.with_values({each.parameter: each.found.value for each in moved})
+    augmented = augment_with(corrected, parts).with_starts(starts)
     return write_sentence(discovery, base, parts), augmented
 
 
@@ -138,11 +139,6 @@ def _effect(case: Case, now: ScoredModel, number: int) -> FoundEffect:
     what, estimates = part.candidate, list_estimates(now, number, base)
     bounds, states = file_bounds(base, what), what.states_at(part.written)
     return FoundEffect(what.kind, what.place, what.name, part.term, estimates, bounds=bounds, states=states)
-
-
-def bic_gain(search: Search, now: ScoredModel) -> float:
-    """By how much the information criterion falls from the simulation as read to an answer, on the answer's runs."""
-    return search.with_others(now, ()).bic - now.bic if now.parts else 0.0
 
 
 def weigh_rivals(search: Search, now: ScoredModel, tried: tuple[ScoredModel, ...], gained: float) -> tuple[Rival, ...]:
@@ -306,8 +302,3 @@ def file_bounds(base: Simulation, candidate: Candidate) -> tuple[float, ...]:
                 np.inf if parameter.high is None else parameter.high,
             )
     return ()
-
-
-def corrected(base: Simulation, corrections: tuple[Correction, ...]) -> Simulation:
-    """Return a simulation with corrected numbers."""
-    return base.with_values({correction.parameter: correction.found.value for correction in corrections})

@@ -70,17 +70,15 @@ class Power:
     def sentence(self) -> str:
         """From which size on the effect is found."""
         effect, _, place = self.effect.partition("@")
-        number, size = self.number.replace("_", " "), self.least
-        what = f"{spoken(effect)} at {place}".capitalize()
-        if math.isnan(size):
-            least = with_unit(amount(self.sizes[0], self.sizes[0] / 10), self.unit)
-            return f"{what} is found in 19 of 20 records like these even with a {number} of {least}."
-        if math.isinf(size):
-            most = with_unit(amount(self.sizes[-1], self.sizes[-1] / 10), self.unit)
-            instead = f"; in most records with {most} the answer is {self.instead}" if self.instead else ""
-            return f"{what} is found in fewer than 19 of 20 records like these, up to a {number} of {most}{instead}."
-        smallest = with_unit(amount(size, size / 10), self.unit)
-        return f"{what} is found in 19 of 20 records like these if the {number} is at least {smallest}."
+        number, least = self.number.replace("_", " "), self.least
+        size = least if math.isfinite(least) else self.sizes[0 if math.isnan(least) else -1]
+        what, said = f"{spoken(effect)} at {place}".capitalize(), with_unit(amount(size, size / 10), self.unit)
+        if math.isnan(least):
+            return f"{what} is found in 19 of 20 records like these even with a {number} of {said}."
+        if math.isinf(least):
+            instead = f"; in most records with {said} the answer is {self.instead}" if self.instead else ""
+            return f"{what} is found in fewer than 19 of 20 records like these, up to a {number} of {said}{instead}."
+        return f"{what} is found in 19 of 20 records like these if the {number} is at least {said}."
 
 
 def find_power(model: Simulation, data: Measured, request: Request) -> list[Power]:

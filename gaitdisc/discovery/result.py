@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Mapping
 from dataclasses import asdict, dataclass, field
 from typing import TYPE_CHECKING, Any
@@ -31,6 +32,9 @@ VERDICTS = {
     "unexplained": "unexplained: the residual exceeds the noise, and no known effect or fitted shape explains it",
 }
 
+# log odds that a name is right: where it removes nothing of the gap, and what removing all adds (benchmarks/chances.py)
+CHANCE = (0.17, 2.01)
+NAMED = ("missing_physics", "wrong_parameter", "input_error", "sensor_error")
 SIZES = ("before", "after", "noise_floor")  # of a gap, as its file calls them
 ODD_TRIAL = "odd trial"  # kind of the finding about a trial that was left out
 # What an answer follows, as its provenance has it
@@ -291,6 +295,20 @@ class Discovery(Saved, file="discovery.json"):
             raise ValueError(f"verdict must be one of {(*VERDICTS,)}, not {self.verdict!r}")
 
     @property
+    def probability(self) -> float:
+        """Probability that what is named, or is tied with it, is right (logistic regression); NaN without a name."""
+        searched = self.provenance and self.provenance.section == SIMULATION and not self.given
+        odds = CHANCE[0] + CHANCE[1] * (1 - self.held_out.unexplained)
+        return 1 / (1 + math.exp(-odds)) if searched and self.verdict in NAMED else math.nan
+
+    @property
+    def chance(self) -> str:
+        """The probability in a sentence; empty where there is none."""
+        tied = ", or one that these data cannot distinguish from it," * any(rival.tied for rival in self.rivals)
+        said = f"Estimated probability that this answer{tied} is correct: {100 * self.probability:.0f} %"
+        return f"{said} (from tests with known effects)." if self.probability > 0 else ""
+
+    @property
     def public(self) -> Discovery:
         """Return the discovery as it is saved, without names of persons."""
         return self.hide(self) if self.hide else self
@@ -338,6 +356,7 @@ class Discovery(Saved, file="discovery.json"):
             ],
             **({"given": self.given} if self.given else {}),
             **({"twins": asdict(self.twins)} if self.twins else {}),
+            "probability": self.probability,
             "sentence": self.sentence,
             "channels": dict(zip(self.channels, self.units, strict=True)),
             **({"beside": self.beside} if self.beside else {}),

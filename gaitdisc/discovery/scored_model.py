@@ -140,13 +140,6 @@ class ScoredModel:
         return replace(self, parts=_read_parts(self.parts, self.machine, values), fit=fit)
 
 
-def with_parts(base: Simulation, parts: tuple[Part, ...]) -> Simulation:
-    """Return a simulation with explanations in it, their numbers as parameters."""
-    for part, names in zip(parts, name_parts(parts), strict=True):
-        base = part.candidate.in_fit(base, names, part.values)
-    return base
-
-
 def name_parts(parts: tuple[Part, ...]) -> tuple[dict[str, str], ...]:
     """For each explanation, slot -> the parameter that it is in a simulation with all of them."""
     return tuple(part.candidate.named(f"part{number}") for number, part in enumerate(parts))
@@ -176,7 +169,9 @@ def fit_model(
 
     like: whose numbers with bounds the fit begins with; the file's where absent
     """
-    simulation, names = with_parts(base, parts), name_parts(parts)
+    simulation, names = base, name_parts(parts)
+    for part, slots in zip(parts, names, strict=True):
+        simulation = part.candidate.in_fit(simulation, slots, part.values)
     prior = read_prior(base, frozenset(part.candidate.place for part in parts if part.candidate.kind == "parameter"))
     machine = compile_simulation(simulation)
     values = machine.defaults.copy()

@@ -52,9 +52,8 @@ def without_spikes(measured: Measured) -> Measured:
 def mark_spikes(record: Values) -> NDArray[np.bool_]:
     """Mark the samples of a channel that leap away from what lies before and after them, and back.
 
-    Far is eight robust standard deviations of a sample from the middle of its neighbours, four median steps around it,
-    and 5 % of the channel's range; and what lies before and after lies together. An impact turns a position with
-    samples on its way, steps a rate once, and gives a force a pulse with shoulders; none of them is marked.
+    An impact turns a position with samples on its way, steps a rate once, and gives a force a pulse with shoulders;
+    none of them is marked.
 
     record (sample,): one channel of a trial; NaN where a cell is empty
     Source: Hampel 1974, J. Am. Stat. Assoc. 69, 383. Differs: the deviation is from the line between the neighbours,
@@ -108,16 +107,14 @@ def _finding(measured: Measured, marks: NDArray[np.bool_], channel: int) -> Find
     """Which trials of a channel have spikes, how many, and the first."""
     trials, spans = [], []
     for trial in np.flatnonzero(marks[:, :, channel].any(axis=1)).tolist():
-        mine, time = marks[trial, :, channel], measured.time(trial)
+        mine, time, seen = marks[trial, :, channel], measured.time(trial), measured.observed[trial, :, channel]
         first = int(np.argmax(mine))
-        count = int(mine.sum())
-        value = measured.observed[trial, first, channel]
-        record = np.where(marks[trial, :, channel], np.nan, measured.observed[trial, :, channel])
+        record = np.where(mine, np.nan, seen)
         known = np.flatnonzero(np.isfinite(record))
         nearest = [known[known < first][-1:], known[known > first][:1]]
         beside = " and ".join(f"{record[sample[0]]:.4g}" for sample in nearest if sample.size)
         trials.append(
-            f"trial {measured.trials[trial]!r}: {count} of {len(time)} samples (first: {value:.4g} at "
+            f"trial {measured.trials[trial]!r}: {mine.sum()} of {len(time)} samples (first: {seen[first]:.4g} at "
             f"{time[first]:.4g} s, next to {beside})"
         )
         spans += [(float(time[begin]), float(time[end - 1])) for begin, end in runs(mine)]

@@ -64,8 +64,7 @@ def read_shape(case: Case, as_read: ScoredModel, verdict: Verdict) -> Verdict:
         return verdict
     begun = replace(plain, shooting=shape.shooting)
     readings = [cross_validated(scale, begun, (part,)) for part in _readings(search, shape)]
-    readings = [reading for reading in readings if search.sensible(reading)]
-    for reading in sorted(readings, key=lambda reading: find_cost(reading, plain)):
+    for reading in sorted(filter(search.sensible, readings), key=lambda reading: find_cost(reading, plain)):
         model = score(replace(reading, shooting=shape.shooting))
         proof = prove_held_out(case, as_read, model)
         if proof.bears_out and proof.closed >= CRITERIA.reading * verdict.proof.closed:

@@ -10,8 +10,6 @@ from texts import says
 from gaitdisc.discovery.answer import (
     answer,
     augment_with,
-    bic_gain,
-    corrected,
     file_bounds,
     find_phase,
     find_region,
@@ -23,7 +21,6 @@ from gaitdisc.discovery.criteria import CRITERIA
 from gaitdisc.discovery.decision import Verdict
 from gaitdisc.discovery.discover import discover
 from gaitdisc.discovery.process_noise import rank_process_noise
-from gaitdisc.discovery.result import Correction, Estimate
 from gaitdisc.discovery.scored_model import Part, compared, fit_model, score
 from gaitdisc.simulation.measured_table import read_measured
 from gaitdisc.simulation.parts import Input, Parameter
@@ -135,12 +132,13 @@ def shape(case, as_read, cubic):
 
 def test_the_evidence_of_an_answer_is_its_own_and_one_of_nothing_has_none(case, as_read, shape):
     before = fit_model(shape.shooting, case.search.base, (), shape.fit.starts, 15)
-    assert bic_gain(case.search, shape) == pytest.approx(before.bic - shape.bic)
-    assert bic_gain(case.search, as_read) == 0.0
+    (effect,) = answer(case, as_read, Verdict(shape, ()))[0].effects
+    assert effect.bic == pytest.approx(before.bic - shape.bic)
+    assert answer(case, as_read, Verdict(as_read, (shape,)))[0].rivals[0].bic == shape.gained
 
 
 def test_rivals_are_compared_with_the_answer_and_one_that_explains_as_much_is_tied(case, shape, named):
-    gained = bic_gain(case.search, shape)
+    gained = case.search.with_others(shape, ()).bic - shape.bic
     found = tuple(one for one in named[1] if one.labels != ("cubic_stiffness@load",))
     assert found
     rivals = weigh_rivals(case.search, shape, found, gained)
@@ -155,7 +153,7 @@ def test_rivals_are_compared_with_the_answer_and_one_that_explains_as_much_is_ti
 
 def test_one_that_is_in_the_answer_is_no_rival(case, named):
     now, found = named
-    rivals = weigh_rivals(case.search, now, tuple(found), bic_gain(case.search, now))
+    rivals = weigh_rivals(case.search, now, tuple(found), now.gained)
     assert "cubic_stiffness@load" not in [one.scored.labels[-1] for one in rivals]
 
 
@@ -229,12 +227,6 @@ def test_few_samples_do_not_carry_a_number_out_of_its_bounds():
     found, augmented = discover(within(23.9, 24.1), record(mass(), 5, how))
     assert found.verdict == "no_gap"
     assert 23.9 <= augmented.values()["k"] <= 24.1
-
-
-def test_numbers_are_written_into_the_file():
-    moved = Correction("k", 24.0, Estimate(25.0, 24.0, 26.0, "N/m"))
-    assert corrected(mass(), (moved,)).values()["k"] == 25.0
-    assert corrected(mass(), ()) == mass()
 
 
 def test_a_parameter_with_one_bound_has_none_on_the_other_side():

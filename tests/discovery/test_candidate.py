@@ -8,7 +8,7 @@ from gaitdisc.discovery.candidate import BENT, FLEXIBLE, Candidate, list_candida
 from gaitdisc.discovery.catalogue import Shape, read_shapes
 from gaitdisc.discovery.criteria import CRITERIA
 from gaitdisc.discovery.places import list_places
-from gaitdisc.discovery.scored_model import Part, name_parts, with_parts
+from gaitdisc.discovery.scored_model import Part, name_parts
 from gaitdisc.simulation.running import compile_simulation
 from gaitdisc.simulation.simulation_file import parse_simulation
 
@@ -202,11 +202,11 @@ WRONG = Candidate("wrong_parameter", "parameter", "k", "wrong_parameter", value=
 DRIFT = Candidate("sensor_error", "observation", "x", "sensor_drift")
 
 
-def test_parts_are_put_in_one_after_the_other_under_names_of_their_own():
+def test_parts_are_put_in_one_after_the_other_under_names_of_their_own(as_read):
     parts = (Part(WRONG, {"value": 25.0}), Part(DRIFT, {"rate": 0.1}))
-    simulation, names = with_parts(mass(), parts), name_parts(parts)
-    assert names == ({"value": "k"}, {"rate": "part1_rate"})
-    assert dict(simulation.observations)["x"] == "(x) + part1_rate*t"
+    assert name_parts(parts) == ({"value": "k"}, {"rate": "part1_rate"})
+    model = as_read.refitted(as_read.shooting, parts)
+    assert dict(model.simulation.observations)["x"] == "(x) + part1_rate*t"
 
 
 def test_the_true_explanation_is_fitted_to_its_true_number(case, as_read, cubic):

@@ -7,6 +7,7 @@ import numpy as np
 import pandas as pd
 import pytest
 from manufactured_discovery import CUBIC, SPRING, manufactured
+from scipy.special import logit
 from texts import says
 
 from gaitdisc.discovery.method import methods_used
@@ -22,6 +23,7 @@ from gaitdisc.discovery.page import (
     write_discovery_report,
 )
 from gaitdisc.discovery.result import (
+    CHANCE,
     DEVICE,
     ENGINE,
     SIMULATION,
@@ -66,6 +68,32 @@ def test_closed_is_of_the_squared_gap_above_the_noise(sizes, closed):
 
 def test_where_nothing_stands_above_the_noise_nothing_is_closed():
     assert math.isnan(share_closed(1.0, 1.0, 1.0))
+
+
+SEARCHED = replace(manufactured().provenance, section=SIMULATION)
+
+
+def test_a_name_is_the_likelier_to_be_right_the_more_of_the_gap_goes(tmp_path):
+    found = manufactured(provenance=SEARCHED)
+    sizes = [GapSize(1.0, after, 0.0) for after in (1.0, math.sqrt(0.5), 0.0)]
+    chances = np.array([replace(found, held_out=size).probability for size in sizes])
+    np.testing.assert_allclose(logit(chances), [CHANCE[0], CHANCE[0] + CHANCE[1] / 2, sum(CHANCE)])
+    assert f"this answer is correct: {100 * found.probability:.0f} % (from tests" in found.chance
+    tied = replace(found, rivals=(replace(CUBIC, tied=True),))
+    assert (
+        says(tied.chance, "or one that these data cannot distinguish from it") and tied.to_json()["probability"] > 0.5
+    )
+    assert tied.chance in unescape(write_discovery_report(tied, tmp_path).read_text(encoding="utf-8"))
+
+
+ENGINES = replace(SEARCHED, section=ENGINE)
+OTHERS = ({"provenance": ENGINES}, {"provenance": None}, {"given": "proven"}, {"verdict": "unnamed"})
+
+
+@pytest.mark.parametrize("other", OTHERS, ids=str)
+def test_what_was_not_searched_in_tests_with_known_effects_has_no_probability(other):
+    found = replace(manufactured(provenance=SEARCHED), **other)
+    assert math.isnan(found.probability) and found.chance == "" and found.to_json()["probability"] is None
 
 
 def test_where_has_share_stride_and_region():
