@@ -37,6 +37,7 @@ from gaitdisc.engines.own_runs import OwnRuns, trial_called
 from gaitdisc.engines.written import WrittenModel, write_model
 from gaitdisc.errors import SimulationError
 from gaitdisc.recording import Finding
+from gaitdisc.recording.recording import join_recordings
 from gaitdisc.simulation.measured import Measured
 from gaitdisc.simulation.measured_table import gather_recordings, read_measured
 from gaitdisc.simulation.simulation import Simulation
@@ -274,14 +275,7 @@ def read_trials(file: Path, mapping: Simulation) -> Measured:
         return read_measured(file, mapping)
     from gaitdisc.ingest.storage import read_storage
 
-    streams = list(read_storage(file).streams.values())
-    whole = replace(
-        streams[0],
-        values=np.hstack([stream.values for stream in streams]),
-        channels=tuple(channel for stream in streams for channel in stream.channels),
-        suspect=np.hstack([np.asarray(stream.suspect) for stream in streams]),
-    )
-    return gather_recordings([whole], mapping)
+    return gather_recordings([join_recordings(*read_storage(file).streams.values())], mapping)
 
 
 def write_answer(answer: EngineAnswer, out: Path) -> list[str]:

@@ -19,6 +19,7 @@ from gaitdisc.ingest.table import read_frame, read_table, write_table
 from gaitdisc.ingest.trc import read_trc
 from gaitdisc.own_files import guard
 from gaitdisc.recording import Finding, Recording, Source, Trial
+from gaitdisc.recording.recording import join_recordings
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -185,13 +186,7 @@ def _join(recording: Recording, other: Recording, key: str) -> Recording:
     first, second = recording.source, other.source
     names, readers = f"{first.file} + {second.file}", f"{first.reader} + {second.reader}"
     source = Source(names, f"{first.sha256}+{second.sha256}", readers)
-    return Recording(
-        recording.time,
-        np.hstack([recording.values, other.values]),
-        recording.channels + other.channels,
-        source=source,
-        suspect=np.hstack([recording.suspect, other.suspect]),
-    )
+    return replace(join_recordings(recording, other), source=source)
 
 
 def _refuse_events_outside(files: Sequence[object], trials: Sequence[Trial], streams: Mapping[str, Recording]) -> None:

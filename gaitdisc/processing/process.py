@@ -19,7 +19,9 @@ from gaitdisc.processing.standing import Read, Standing, find_standing
 from gaitdisc.processing.two_sources import KIND as CONTRADICTED
 from gaitdisc.recording import PERCENT, Finding, Recording, Strides, Trajectory, Trial
 from gaitdisc.recording.arrays import Span, Values
+from gaitdisc.recording.recording import join_recordings
 from gaitdisc.recording.strides import interpolate
+from gaitdisc.recording.trial import resample
 from gaitdisc.signals.butterworth import low_pass, short_run_findings
 from gaitdisc.signals.channel_quality import channel_findings, drift_findings, plateau_findings, plateau_marked
 from gaitdisc.signals.contacts import order_findings
@@ -196,25 +198,17 @@ def _state(trial: Trial, raw: Recording, study: Study) -> Recording:
             f"{emg.source.file or trial.name}: " + "; ".join(f"{f.channel} is {f.kind}: {f.what}" for f in dead),
             "Remove the muscle from [models], or remove the trial.",
         )
-    envelope = make_envelope(emg, filters)
-    values = interpolate(envelope.time, envelope.values, angles.time)
-    marks = interpolate(envelope.time, np.asarray(envelope.suspect, float), angles.time) > 0
-    if not np.isfinite(values).any():
+    envelope = resample(make_envelope(emg, filters), angles.time)
+    known = np.isfinite(envelope.values)
+    if not known.any():
         raise SamplingError(
             f"trial {trial.name}: EMG and kinematics must overlap in time",
             f"kinematics last from {angles.time[0]:.2f} to {angles.time[-1]:.2f} s, "
             f"EMG from {emg.time[0]:.2f} to {emg.time[-1]:.2f} s",
             "Check that the files belong to the same trial and clock.",
         )
-    return Recording(
-        angles.time,
-        values=np.hstack([angles.values, values]),
-        channels=(*angles.channels, *envelope.channels),
-        subject=trial.subject,
-        condition=trial.condition,
-        source=angles.source,
-        suspect=np.hstack([np.asarray(angles.suspect), marks | ~np.isfinite(values)]),
-    )
+    state = join_recordings(angles, envelope.with_values(envelope.values, ~known))
+    return replace(state, subject=trial.subject, condition=trial.condition)
 
 
 def make_envelope(emg: Recording, filters: Filters, raw: bool | None = None) -> Recording:

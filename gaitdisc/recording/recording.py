@@ -182,10 +182,7 @@ class Recording:
     @property
     def rate_hz(self) -> float:
         """Sampling rate [Hz]; NaN for fewer than two samples."""
-        if len(self.time) < 2:
-            return float("nan")
-        rate = mean_rate(self.time)
-        return float(round(rate, 6))
+        return float(round(mean_rate(self.time), 6)) if len(self.time) > 1 else float("nan")
 
     @property
     def duration_s(self) -> float:
@@ -327,6 +324,17 @@ class Recording:
             dims=("time", "channel"),
             attrs={"subject": self.subject, "condition": self.condition},
         )
+
+
+def join_recordings(first: Recording, *others: Recording) -> Recording:
+    """Channels of recordings that share one time base; subject, condition and source are the first one's."""
+    recordings = (first, *others)
+    return replace(
+        first,
+        values=np.hstack([recording.values for recording in recordings]),
+        channels=tuple(channel for recording in recordings for channel in recording.channels),
+        suspect=np.hstack([recording.suspect for recording in recordings]),
+    )
 
 
 def several(names: str | Sequence[str]) -> tuple[str, ...]:

@@ -111,12 +111,9 @@ class Strides:
         time : ndarray (time,) [s]
             Times on the trial's clock.
         """
-        if not len(self):
-            return np.full(len(time), np.nan)
-        which = self.number(time)
-        inside = which >= 0
-        phi = 100.0 * (time - self.start[which]) / self.duration_s[which]
-        return np.where(inside, np.minimum(phi, np.nextafter(100.0, 0.0)), np.nan)
+        which = self.number(time)  # -1 is the NaN that is put behind
+        start, duration_s = (np.append(values, np.nan)[which] for values in (self.start, self.duration_s))
+        return np.minimum(100.0 * (time - start) / duration_s, np.nextafter(100.0, 0.0))
 
     def number(self, time: Values) -> NDArray[np.intp]:
         """Number of the stride at each time, from 0, (time,); -1 outside the strides.
@@ -126,10 +123,8 @@ class Strides:
         time : ndarray (time,) [s]
             Times on the trial's clock.
         """
-        if not len(self):
-            return np.full(len(time), -1)
         which = np.searchsorted(self.start, time, side="right") - 1
-        return np.where((which >= 0) & (time < self.end[which]), which, -1)
+        return np.where(time < np.append(self.end, -np.inf)[which], which, -1)
 
     def normalised(self, recording: Recording | pd.DataFrame) -> Values:
         """Every stride of a recording on 0 to 100 % in 101 points, (stride, phase, channel) [channel's unit].

@@ -10,7 +10,7 @@ import numpy as np
 
 from gaitdisc.errors import ChannelError, SamplingError, ShapeError, UnitError
 from gaitdisc.recording.arrays import Values, freeze, frozen
-from gaitdisc.recording.recording import Finding, Recording
+from gaitdisc.recording.recording import Finding, Recording, join_recordings
 from gaitdisc.recording.strides import interpolate
 from gaitdisc.recording.wrapping import unwrap, wrap_recording
 from gaitdisc.words import as_html
@@ -276,17 +276,12 @@ class Trial:
                 "Check that the files belong to the same trial and clock.",
             )
         time = start + np.arange(count) / rate_hz
-        values = []
-        for r in streams:  # a heading that comes round between two samples is read on the short way
-            between = interpolate(r.time, unwrap(r).values, time)
-            values.append(wrap_recording(replace(r, time=time, values=between, suspect=None), r).values)
-        marks = [interpolate(r.time, np.asarray(r.suspect, float), time) > 0 for r in streams]
-        return Recording(
-            time,
-            values=np.hstack(values),
-            channels=tuple(channel for recording in streams for channel in recording.channels),
-            subject=self.subject,
-            condition=self.condition,
-            source=streams[0].source,
-            suspect=np.hstack(marks),
-        )
+        joined = join_recordings(*(resample(recording, time) for recording in streams))
+        return replace(joined, subject=self.subject, condition=self.condition)
+
+
+def resample(recording: Recording, time: Values) -> Recording:
+    """Recording interpolated at other times; what rests on a suspect sample is suspect."""
+    values = interpolate(recording.time, unwrap(recording).values, time)  # a heading comes round on the short way
+    marks = interpolate(recording.time, np.asarray(recording.suspect, float), time) > 0
+    return wrap_recording(replace(recording, time=time, values=values, suspect=marks), recording)
