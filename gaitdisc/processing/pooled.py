@@ -30,13 +30,11 @@ from gaitdisc.processing.trial_cycles import (
     PlateLoadings,
     cut_cycles,
     cycle_channels,
-    feet_in,
+    find_places,
     heel_paths,
+    is_kinetic,
     plate_loadings,
     with_gaps,
-    with_plate_steps,
-    with_plates,
-    without_doubted,
     without_stated,
 )
 from gaitdisc.recording import PERCENT, Cycle, Finding, Recording, Strides, Trial
@@ -271,11 +269,10 @@ def _cut(standing: Standing, seen: _Seen, later: Later) -> _CutTrial:
     contact_s = _offset_s(later, "contacts", seen.steps.detector) or 0.0
     off_s = _offset_s(later, "foot_offs", seen.steps.off_detector) or 0.0
     cycles = cut_cycles(seen.steps.corrected("contacts", contact_s), seen.steps.corrected("foot_offs", off_s))
-    alone = seen.plate_steps
-    cycles = with_plates(cycles, seen.plates) if alone is None else with_plate_steps(cycles, alone)
     doubted = [span for finding in seen.findings if finding.kind in DOUBTED for span in finding.spans]
-    cycles = with_gaps(without_doubted(cycles, doubted), seen.legs)
-    places = feet_in(cycles, seen.feet, 0.0 if seen.over_ground else belt)
+    cycles = [replace(c, kinetic=is_kinetic(c, seen.plates, seen.plate_steps, doubted)) for c in cycles]
+    places = [find_places(cycle, seen.feet, 0.0 if seen.over_ground else belt) for cycle in cycles]
+    cycles = with_gaps(cycles, seen.legs)
     cycles, unknown = without_stated(cycles, seen.planned.leave_out_cycles, participant.trial_name(seen.planned))
     return _CutTrial(seen, cycles, places, unknown)
 

@@ -19,6 +19,7 @@ from gaitdisc.processing.step_events import Timed, trial_markers
 from gaitdisc.processing.walk_pair import FORCE_HZ
 from gaitdisc.recording import Cycle, Finding, Recording, Trial
 from gaitdisc.recording.arrays import Span, Values, finite_values, runs
+from gaitdisc.recording.recording import join_recordings
 from gaitdisc.recording.strides import NAN, interpolate
 from gaitdisc.recording.wrapping import unwrap
 from gaitdisc.signals.butterworth import low_pass
@@ -118,43 +119,30 @@ def plate_loadings(trial: Trial, rise_n: float = RISE_N) -> PlateLoadings:
     return PlateLoadings({side: tuple(spans) for side, spans in loadings.items()}, plates)
 
 
-def with_plates(cycles: list[Cycle], plates: PlateLoadings) -> list[Cycle]:
-    """Same cycles, kinetic where the foot alone loaded one plate for the whole stance, or has a force of its own.
+def is_kinetic(
+    cycle: Cycle, plates: PlateLoadings, steps: Sequence[PlateStep] | None = None, doubted: Sequence[Span] = ()
+) -> bool:
+    """Whether the foot alone loaded one plate for the whole stance, or has a force of its own.
 
-    One plate is loaded from this contact to this foot off, for no longer than a stance, and no other begins then. A
-    force of its own is there for more than half of the stance: over ground a foot also steps beside its plates.
+    Where moments were computed from markers, the stance is a clean step of the foot, whole in the recording. Elsewhere
+    one plate is loaded from this contact to this foot off, for no longer than a stance, and no other begins then; or a
+    force of its own is there for more than half of the stance, since over ground a foot also steps beside its plates.
+
+    steps: on all plates; None without moments from markers
+    doubted: spans of which no kinetics are shown where they fill more than half of the stance
     """
-    new_cycles = []
-    for cycle in cycles:
-        begun = [span for span in plates.spans if abs(span.start - cycle.start) <= EDGE_S]
-        alone = len(begun) == 1 and abs(begun[0].end - cycle.foot_off) <= EDGE_S
-        stance = alone and begun[0].seconds <= LONGEST_STANCE * cycle.duration_s
-        off = cycle.foot_off if np.isfinite(cycle.foot_off) else cycle.start + 0.5 * cycle.duration_s
-        steps = [span.shared(Span(cycle.start, off)).seconds for span in plates.belts.get(cycle.side, ())]
-        carried = sum(max(0.0, seconds) for seconds in steps) > 0.5 * (off - cycle.start)
-        new_cycles.append(replace(cycle, kinetic=bool(carried or stance)))
-    return new_cycles
-
-
-def with_plate_steps(cycles: list[Cycle], steps: Sequence[PlateStep]) -> list[Cycle]:
-    """Same cycles, kinetic where a clean step of the foot, whole in the recording, is this cycle's stance."""
-    clean = [(step.side, step.start, step.end) for step in steps if step.clean and step.whole]
-
-    def stance(cycle: Cycle) -> bool:
-        ends = [(start - cycle.start, end - cycle.foot_off) for side, start, end in clean if side == cycle.side]
-        return any(max(abs(first), abs(last)) <= EDGE_S for first, last in ends)
-
-    return [replace(cycle, kinetic=stance(cycle)) for cycle in cycles]
-
-
-def without_doubted(cycles: list[Cycle], spans: Sequence[Span]) -> list[Cycle]:
-    """Same cycles, not kinetic where more than half of the stance lies in a step whose force is doubted."""
-    new_cycles = []
-    for cycle in cycles:
-        stance = Span(cycle.start, cycle.foot_off)
-        inside = max([0.0, *(span.shared(stance).seconds for span in spans)])
-        new_cycles.append(replace(cycle, kinetic=cycle.kinetic and not inside > 0.5 * stance.seconds))
-    return new_cycles
+    stance = Span(cycle.start, cycle.foot_off)
+    if max([0.0, *(span.shared(stance).seconds for span in doubted)]) > 0.5 * stance.seconds:
+        return False
+    if steps is not None:
+        clean = (step for step in steps if step.clean and step.whole and step.side == cycle.side)
+        return any(max(abs(s.start - stance.start), abs(s.end - stance.end)) <= EDGE_S for s in clean)
+    begun = [span for span in plates.spans if abs(span.start - stance.start) <= EDGE_S]
+    if len(begun) == 1 and abs(begun[0].end - stance.end) <= EDGE_S:
+        return bool(begun[0].seconds <= LONGEST_STANCE * cycle.duration_s)
+    off = stance.end if np.isfinite(stance.end) else cycle.start + 0.5 * cycle.duration_s
+    carried = [span.shared(Span(cycle.start, off)).seconds for span in plates.belts.get(cycle.side, ())]
+    return bool(sum(max(0.0, seconds) for seconds in carried) > 0.5 * (off - cycle.start))
 
 
 def without_stated(cycles: list[Cycle], entries: Sequence[str], file: str) -> tuple[list[Cycle], list[Finding]]:
@@ -198,34 +186,27 @@ def heel_paths(trial: Trial, direction: str = "") -> HeelPaths | None:
     return HeelPaths(markers.time, {side: marker_position(markers, name) for side, name in heels.items()}, way)
 
 
-def feet_in(cycles: list[Cycle], feet: HeelPaths | None, belt_m_per_s: float = 0.0) -> list[Places]:
-    """Where the feet were in each cycle, a belt's way at its speed [m/s] added; without paths the step's time alone."""
+def find_places(cycle: Cycle, feet: HeelPaths | None, belt_m_per_s: float = 0.0) -> Places:
+    """Where the feet were in a cycle, a belt's way at its speed [m/s] added; without paths the step's time alone."""
+    step_s = cycle.end - cycle.opposite_contact
     if feet is None:
-        ran = belt_m_per_s or NAN
-        return [Places(cycle.end - cycle.opposite_contact, ran * cycle.duration_s) for cycle in cycles]
-    paths, way = feet.heels, feet.way
-    places = []
-    for cycle in cycles:
-        other = other_side(cycle.side)
-        first, beside, last = (
-            interpolate(feet.time, paths[side], np.array([at]))[0]
-            for side, at in ((cycle.side, cycle.start), (other, cycle.opposite_contact), (cycle.side, cycle.end))
-        )
-        stride = _level(last - first, way.up)
-        length = float(np.linalg.norm(stride))
-        over_ground = way.headings is not None and length >= SHORTEST_STRIDE_M
-        forward = stride / length if over_ground else _level(way.forward, way.up)
-        across = np.cross(forward, way.up) * (1.0 if cycle.side == "r" else -1.0)
-        step_s = cycle.end - cycle.opposite_contact
-        places.append(
-            Places(
-                step_s,
-                float(np.dot(stride, forward)) + belt_m_per_s * cycle.duration_s,
-                float(np.dot(last - beside, forward)) + belt_m_per_s * step_s,
-                float(np.dot(first - beside, across)),
-            )
-        )
-    return places
+        return Places(step_s, (belt_m_per_s or NAN) * cycle.duration_s)
+    way, other = feet.way, other_side(cycle.side)
+    first, beside, last = (
+        interpolate(feet.time, feet.heels[side], np.array([at]))[0]
+        for side, at in ((cycle.side, cycle.start), (other, cycle.opposite_contact), (cycle.side, cycle.end))
+    )
+    stride = _level(last - first, way.up)
+    length = float(np.linalg.norm(stride))
+    over_ground = way.headings is not None and length >= SHORTEST_STRIDE_M
+    forward = stride / length if over_ground else _level(way.forward, way.up)
+    across = np.cross(forward, way.up) * (1.0 if cycle.side == "r" else -1.0)
+    return Places(
+        step_s,
+        float(np.dot(stride, forward)) + belt_m_per_s * cycle.duration_s,
+        float(np.dot(last - beside, forward)) + belt_m_per_s * step_s,
+        float(np.dot(first - beside, across)),
+    )
 
 
 def with_gaps(cycles: list[Cycle], legs: Recording | None) -> list[Cycle]:
@@ -362,15 +343,9 @@ def with_pelvis_and_foot(angles: Recording) -> Recording:
     if not taken:
         return angles
     columns, signs = list(taken), np.array([sign for _, sign in taken.values()])
-    marks = angles.suspect
-    channels = [channel for channel, _ in taken.values()]
-    new = replace(angles, values=angles.values[:, columns] * signs, channels=tuple(channels), suspect=None)
-    return replace(
-        angles,
-        values=np.column_stack([angles.values, _from_own_heading(new).values]),
-        channels=(*angles.channels, *channels),
-        suspect=None if marks is None else np.column_stack([marks, marks[:, columns]]),
-    )
+    channels, marks = tuple(channel for channel, _ in taken.values()), angles.suspect[:, columns]
+    new = replace(angles, values=angles.values[:, columns] * signs, channels=channels, suspect=marks)
+    return join_recordings(angles, _from_own_heading(new))
 
 
 def _from_own_heading(angles: Recording) -> Recording:

@@ -16,16 +16,16 @@ from gaitdisc.kinetics.plate_steps import PlateStep
 from gaitdisc.processing.step_events import StepEvents
 from gaitdisc.processing.trial_cycles import (
     PLUG_IN_GAIT,
+    PlateLoadings,
     cut_cycles,
     cycle_channels,
-    feet_in,
+    find_places,
     heel_paths,
+    is_kinetic,
     plate_loadings,
     scale_forces,
     with_gaps,
     with_pelvis_and_foot,
-    with_plate_steps,
-    with_plates,
 )
 from gaitdisc.recording import Recording, Trial
 
@@ -74,8 +74,8 @@ def _plates(*spans):
     ],
 )
 def test_a_kinetic_cycle_has_one_foot_on_one_plate_for_the_whole_stance(spans, kinetic):
-    right = [one for one in with_plates(cut_cycles(CONTACTS, OFFS), plate_loadings(_plates(*spans))) if one.side == "r"]
-    assert [one.kinetic for one in right] == kinetic
+    plates = plate_loadings(_plates(*spans))
+    assert [is_kinetic(one, plates) for one in cut_cycles(CONTACTS, OFFS) if one.side == "r"] == kinetic
 
 
 @pytest.mark.parametrize(("standing", "right"), [(1.0, [True, True]), (700.0, [True, True]), (0.0, [True, False])])
@@ -84,11 +84,9 @@ def test_a_foot_s_own_force_makes_kinetic_the_cycles_that_it_carries(standing, r
     time = np.arange(400) / 100
     own = tuple(Channel(f"ground_force_{side}_vy", "vertical_force", "N", side) for side in "rl")
     forces = np.column_stack([np.where(time < 1.8, max(standing, 1.0), standing), np.ones(400)])
-    cycles = with_plates(
-        cut_cycles(CONTACTS, OFFS), plate_loadings(Trial("own", {"forces": Recording(time, forces, own)}))
-    )
-    assert [one.kinetic for one in cycles if one.side == "r"] == right
-    assert all(one.kinetic for one in cycles if one.side == "l")
+    plates, cycles = plate_loadings(Trial("own", {"forces": Recording(time, forces, own)})), cut_cycles(CONTACTS, OFFS)
+    assert [is_kinetic(one, plates) for one in cycles if one.side == "r"] == right
+    assert all(is_kinetic(one, plates) for one in cycles if one.side == "l")
 
 
 def _feet(speed, turned=False):
@@ -109,8 +107,8 @@ def _feet(speed, turned=False):
 @pytest.mark.parametrize("turned", [False, True])
 def test_lengths_are_those_that_the_heels_walked(turned):
     contacts = {"r": ((1.0, "events"), (2.0, "events"), (3.0, "events")), "l": ((1.5, "events"), (2.5, "events"))}
-    places = feet_in(cut_cycles(contacts, OFFS), heel_paths(_feet(1.3, turned)))
-    for place in places:
+    feet = heel_paths(_feet(1.3, turned))
+    for place in (find_places(cycle, feet) for cycle in cut_cycles(contacts, OFFS)):
         assert place.stride_m == pytest.approx(1.3, abs=0.01)
         assert place.step_m == pytest.approx(0.65, abs=0.01)
         assert place.width_m == pytest.approx(0.2, abs=0.01)  # feet do not cross: positive for both
@@ -118,7 +116,7 @@ def test_lengths_are_those_that_the_heels_walked(turned):
 
 
 def test_without_markers_only_the_step_s_time_is_known():
-    place = feet_in(cut_cycles(CONTACTS, OFFS), heel_paths(Trial("none", {})))[0]
+    place = find_places(cut_cycles(CONTACTS, OFFS)[0], heel_paths(Trial("none", {})))
     assert place.step_s == 0.5 and np.isnan(place.stride_m)
 
 
@@ -153,8 +151,8 @@ def test_an_offset_moves_markers_and_not_the_ground():
     ],
 )
 def test_a_cycle_whose_stance_is_a_clean_whole_step_is_kinetic(step, kinetic):
-    found = with_plate_steps(cut_cycles(CONTACTS, OFFS), [step])
-    assert [one.kinetic for one in found] == [False, kinetic, False]
+    found = [is_kinetic(cycle, PlateLoadings(), [step]) for cycle in cut_cycles(CONTACTS, OFFS)]
+    assert found == [False, kinetic, False]
 
 
 def _emg(seconds=4.0, rate_hz=1000.0):
