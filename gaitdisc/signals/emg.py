@@ -82,13 +82,13 @@ class AmplifierRange:
     """Largest voltage that an amplifier can give."""
 
     volts: float
-    how: str  # `given`, or what it was inferred from
+    how: str  # what it was inferred from
     shown: bool = True  # by the recording itself, in whatever unit it is
     dead_share: float = DEAD_SHARE  # of the range: a smaller standard deviation is no muscle's, bursts or not
 
 
-def amplifier_range(emg: Recording, given_v: float | None = None) -> AmplifierRange:
-    """Range of the amplifier: given, or inferred from the recording.
+def amplifier_range(emg: Recording) -> AmplifierRange:
+    """Range of the amplifier, inferred from the recording.
 
     In this order: the voltage at which channels stop (the largest value of the recording, met three times or more by
     one channel, exactly); 32768 times the quantisation step, which quiet channels show; the smallest usual range
@@ -99,8 +99,6 @@ def amplifier_range(emg: Recording, given_v: float | None = None) -> AmplifierRa
     >>> amplifier_range(Recording(np.arange(999) / 1000, clipped, (Channel("emg_sol_r", "emg", "V", "r"),))).how
     'the largest value, reached 199 times'
     """
-    if given_v is not None:
-        return AmplifierRange(given_v, "given")
     known = emg.values[:, np.isfinite(emg.values).any(axis=0)]
     values = np.abs(finite_rows(known))
     if not values.size or values.max() == 0:
@@ -117,7 +115,7 @@ def amplifier_range(emg: Recording, given_v: float | None = None) -> AmplifierRa
     return AmplifierRange(usual, f"the smallest usual range that contains the largest value, {top:.3g} V", False)
 
 
-def emg_findings(emg: Recording, range_v: float | None = None) -> list[Finding]:
+def emg_findings(emg: Recording) -> list[Finding]:
     """Say which channels of raw EMG [V] are dead, unplugged or clipped.
 
     - dead: the standard deviation is below 0.1 % of the range, or below 0.4 % in a channel whose envelope has no bursts
@@ -132,10 +130,9 @@ def emg_findings(emg: Recording, range_v: float | None = None) -> list[Finding]:
     The limits were set on the 14 files of young_straight_and_turn, whose manifest lists the live channels; dead ones
     have bursts of at most 3.3, live ones of that size at least 3.5.
 
-    range_v: range of the amplifier [V]; inferred (`amplifier_range`) and said where it is not given
     returns: `refused` for dead and unplugged channels: leave them out. `warning` for clipped ones
     """
-    limit = amplifier_range(emg, range_v)
+    limit = amplifier_range(emg)
     findings = []
     for column, channel in enumerate(emg.channels):
         x = emg.values[:, column]
