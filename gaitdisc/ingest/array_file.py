@@ -36,19 +36,14 @@ _COMPLEX = "an array of complex numbers, which a recording cannot contain"
 
 
 @dataclass(frozen=True, eq=False)
-class Cells:
-    """Elements of a cell array or of an array of structs, in MATLAB's order."""
-
-    held: tuple[Any, ...]  # nodes: mappings, `Cells`, arrays of numbers, or words that say what else there is
-
-
-@dataclass(frozen=True, eq=False)
 class ArrayFile:
     """A file of named variables; only those that are used are read."""
 
     raw: RawFile
     names: tuple[str, ...]
-    opened: Callable[[str], Any]  # gives the node of one of them
+    # gives the node of one of them: a struct is a mapping; a cell array or an array of structs a tuple, in MATLAB's
+    # order; numbers are an array; words say what else there is
+    opened: Callable[[str], Any]
 
     def numbers(self, path: str, part: str = "") -> Values:
         """Numbers at a path.
@@ -91,23 +86,23 @@ class ArrayFile:
     def _element(self, node: Any, number: int, path: str) -> Any:
         if isinstance(node, Mapping) and number == 1:
             return node
-        if not isinstance(node, Cells):
+        if not isinstance(node, tuple):
             raise self._refuse(path, f"element {number} follows {_what(node)}", _REMEDY)
-        if not 1 <= number <= len(node.held):
-            fault = f"there is no element {number} (number of elements: {len(node.held)})"
-            raise self._refuse(path, fault, f"Give a number from 1 to {len(node.held)}.")
-        return node.held[number - 1]
+        if not 1 <= number <= len(node):
+            fault = f"there is no element {number} (number of elements: {len(node)})"
+            raise self._refuse(path, fault, f"Give a number from 1 to {len(node)}.")
+        return node[number - 1]
 
     def _chosen(self, node: Any, path: str, part: str) -> Any:
         """The only element, or the one that `part` says."""
-        if not isinstance(node, Cells):
+        if not isinstance(node, tuple):
             return node
         if part.isdecimal():
             return self._element(node, int(part), path)
-        if len(node.held) == 1:
-            return node.held[0]
-        remedy = f'Write part = "1" (up to "{len(node.held)}") in the trial, or name an element: path{{1}}.'
-        raise self._refuse(path, f"it holds {len(node.held)} elements", remedy)
+        if len(node) == 1:
+            return node[0]
+        remedy = f'Write part = "1" (up to "{len(node)}") in the trial, or name an element: path{{1}}.'
+        raise self._refuse(path, f"it holds {len(node)} elements", remedy)
 
     def _column(self, node: Any, columns: re.Match[str] | None, path: str) -> Values:
         if not isinstance(node, np.ndarray):
@@ -178,7 +173,7 @@ def _node(tree: Any, arrays: Arrays) -> Any:
     if not isinstance(tree, dict):
         return tree
     if "cells" in tree:
-        return Cells(tuple(_node(cell, arrays) for cell in tree["cells"]))
+        return tuple(_node(cell, arrays) for cell in tree["cells"])
     return {name: _node(member, arrays) for name, member in tree["fields"].items()}
 
 
@@ -186,7 +181,7 @@ def _of_hdf5(path: Path, name: str, number: int | None = None) -> Any:
     """Node of a v7.3 file, or an element of it: structs are groups, cells references, arrays stand transposed."""
     with hdf5_file(path) as file:
         node = _hdf5_node(file, name, path)
-    return node.held[number] if number is not None and isinstance(node, Cells) else node
+    return node[number] if number is not None and isinstance(node, tuple) else node
 
 
 def _hdf5_node(file: Any, name: str, path: Path) -> Any:
@@ -199,7 +194,7 @@ def _hdf5_node(file: Any, name: str, path: Path) -> Any:
         if h5py.check_ref_dtype(held.dtype) is not None:
             if held.size > 10**6:
                 return f"a cell array of {held.size} elements"
-            return Cells(tuple(_hdf5_node(file, file[reference].name, path) for reference in held[()].ravel()))
+            return tuple(_hdf5_node(file, file[reference].name, path) for reference in held[()].ravel())
     except GaitdiscError:
         raise
     except Exception as error:  # its errors have no common ancestor
@@ -229,14 +224,14 @@ def _structs(file: Any, name: str, path: Path) -> Any:
         {field: partial(_of_hdf5, path, f"{name}/{field}", number) for field in names}
         for number in ((None,) if count is None else range(min(count, 10**6)))
     )
-    return next(structs) if count is None else Cells(tuple(structs))
+    return next(structs) if count is None else tuple(structs)
 
 
 def _what(node: Any) -> str:
     if isinstance(node, Mapping):
         return f"a struct of {list_names(tuple(node), _SHOWN)}"
-    if isinstance(node, Cells):
-        return f"{len(node.held)} elements"
+    if isinstance(node, tuple):
+        return f"{len(node)} elements"
     if isinstance(node, np.ndarray):
         return f"an array of {_shape(node)}"
     return str(node)

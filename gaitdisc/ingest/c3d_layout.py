@@ -64,35 +64,25 @@ def find_layout(header: C3DHeader, parameters: C3DParameters) -> tuple[C3DLayout
     layout = (filling or layouts)[0]
     _refuse_impossible(layout, header)
     rotations = parameters.count("ROTATION", "USED")  # their block follows the frames
-    how = "fills the file to its last block" if layout.fills(header.size) else "fits the file"
     contradicted = (
         ("frames", frames, layout.frames),
         ("points", points, layout.points),
         ("analog channels and samples per frame", analog, (layout.channels, layout.samples_per_frame)),
         ("first block of the data", blocks, layout.data_block),
     )
-    findings = [
-        Finding(
-            "warning",
-            "contradictory header",
-            header.file,
-            f"header and parameters differ ({what}: {' and '.join(map(str, values))}); {taken} is used, which {how}",
-            "the entire trial if this is wrong; compare its length with your notes",
-        )
-        for what, values, taken in contradicted
-        if len(values) > 1
-    ]
+    findings = []
+    for what, values, taken in contradicted:
+        if len(values) > 1:
+            both = " and ".join(map(str, values))
+            differ = f"header and parameters differ ({what}: {both}); {taken} is used, which "
+            differ += "fills the file to its last block" if layout.fills(header.size) else "fits the file"
+            trial = "the entire trial if this is wrong; compare its length with your notes"
+            findings.append(Finding("warning", "contradictory header", header.file, differ, trial))
     rest = header.size - layout.end
     if rest >= layout.frame_bytes + BLOCK and not rotations:
-        findings.append(
-            Finding(
-                "warning",
-                "bytes left over",
-                header.file,
-                f"{rest} bytes follow the last of {layout.frames} frames, enough for {rest // layout.frame_bytes} more",
-                "nothing unless they are frames; compare the trial's length with your notes",
-            )
-        )
+        left = f"{rest} bytes follow the last of {layout.frames} frames, enough for {rest // layout.frame_bytes} more"
+        spoils = "nothing unless they are frames; compare the trial's length with your notes"
+        findings.append(Finding("warning", "bytes left over", header.file, left, spoils))
     return layout, findings
 
 

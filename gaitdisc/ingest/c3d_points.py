@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import re
 from collections.abc import Mapping
-from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
@@ -25,26 +24,14 @@ Streams = dict[str, Part]
 AXES = "xyz"
 NUMBERS = 17  # 4 x 4, first index fastest, and how sure it is; negative where the pose is not known
 CELLS = tuple(f"r{row}{column}" for row in "123" for column in "123")
-
-
-@dataclass(frozen=True)
-class ModelOutput:
-    """A kind of point that is not a place."""
-
-    group: str  # list of the group POINT that names them
-    quantity: str  # what they measure
-    stream: str  # where they go
-    units: str  # parameter of the group POINT with their unit
-    usual: str  # unit where the file states none
-
-
-MODEL_OUTPUTS = (
-    ModelOutput("ANGLES", "angle", "kinematics", "ANGLE_UNITS", "deg"),
-    ModelOutput("FORCES", "force", "moments", "FORCE_UNITS", "N"),
-    ModelOutput("MOMENTS", "moment", "moments", "MOMENT_UNITS", "N mm"),
-    ModelOutput("POWERS", "power", "moments", "POWER_UNITS", "W"),
-    ModelOutput("SCALARS", "signal", "kinematics", "SCALAR_UNITS", "mm"),
-)
+# list of POINT that names model outputs -> what they measure, their stream, the parameter of their unit, its usual text
+MODEL_OUTPUTS = {
+    "ANGLES": ("angle", "kinematics", "ANGLE_UNITS", "deg"),
+    "FORCES": ("force", "moments", "FORCE_UNITS", "N"),
+    "MOMENTS": ("moment", "moments", "MOMENT_UNITS", "N mm"),
+    "POWERS": ("power", "moments", "POWER_UNITS", "W"),
+    "SCALARS": ("signal", "kinematics", "SCALAR_UNITS", "mm"),
+}
 
 
 def point_names(parameters: C3DParameters, count: int) -> list[str]:
@@ -99,12 +86,12 @@ def point_streams(rows: Values, parameters: C3DParameters, labels: LabelMap) -> 
         renamed = [(labels.name(names[point]) or names[point]) for point in places]
         channels = tuple(Channel(f"{name}.{axis}", "marker", "m") for name in renamed for axis in AXES)
         streams["markers"] = (np.asarray(convert(markers, unit, "m"), float), channels)
-    for kind in MODEL_OUTPUTS:
-        points = [point for point, name in enumerate(names) if kinds.get(name) is kind]
+    for group, (_, stream, *_) in MODEL_OUTPUTS.items():
+        points = [point for point, name in enumerate(names) if kinds.get(name) == group]
         if points:
             named = {names[at]: plain[at] for at in points}
-            part, more = _model_part(rows[:, _columns(points)], named, kind, parameters, labels)
-            add_part(streams, kind.stream, part)
+            part, more = _model_part(rows[:, _columns(points)], named, group, parameters, labels)
+            add_part(streams, stream, part)
             findings += more
     return streams, unit, findings + doubts
 
@@ -118,12 +105,13 @@ def add_part(streams: Streams, key: str, part: Part) -> None:
     streams[key] = (values, channels)
 
 
-def _kinds(names: list[str], parameters: C3DParameters) -> dict[str, ModelOutput]:
-    kinds: dict[str, ModelOutput] = {}
-    for kind in MODEL_OUTPUTS:
-        for label in parameters.texts("POINT", kind.group):
-            kinds.setdefault(without_prefix(label), kind)
-    by_quantity = {kind.quantity: kind for kind in MODEL_OUTPUTS}
+def _kinds(names: list[str], parameters: C3DParameters) -> dict[str, str]:
+    """List of the group POINT that each output of a model is on."""
+    kinds: dict[str, str] = {}
+    for group in MODEL_OUTPUTS:
+        for label in parameters.texts("POINT", group):
+            kinds.setdefault(without_prefix(label), group)
+    by_quantity = {quantity: group for group, (quantity, *_) in MODEL_OUTPUTS.items()}
     for name in names:
         # Files that lost their lists still call a knee angle by its name; as a marker it would be scaled to metres.
         known = vocabulary().named(f"{name}.x")
@@ -132,7 +120,7 @@ def _kinds(names: list[str], parameters: C3DParameters) -> dict[str, ModelOutput
     return kinds
 
 
-def _without_suffix(names: list[str], kinds: Mapping[str, ModelOutput], file: str) -> tuple[list[str], list[Finding]]:
+def _without_suffix(names: list[str], kinds: Mapping[str, str], file: str) -> tuple[list[str], list[Finding]]:
     """Names of outputs without the word of a laboratory's one model (`LKneeAngles_M`), unless names would be alike."""
     bases = {name: name.rpartition("_")[0] for name in names if name in kinds and "_" in name}
     bases = {name: base for name, base in bases.items() if base and base not in names}
@@ -147,19 +135,20 @@ def _without_suffix(names: list[str], kinds: Mapping[str, ModelOutput], file: st
 
 
 def _model_part(
-    rows: Values, named: Mapping[str, str], kind: ModelOutput, parameters: C3DParameters, labels: LabelMap
+    rows: Values, named: Mapping[str, str], group: str, parameters: C3DParameters, labels: LabelMap
 ) -> tuple[Part, list[Finding]]:
-    text, file = parameters.text("POINT", kind.units), parameters.file
-    unit = parse_unit(text) if text else kind.usual
+    quantity, _, stated, usual = MODEL_OUTPUTS[group]
+    text, file = parameters.text("POINT", stated), parameters.file
+    unit = parse_unit(text) if text else usual
     findings = []
     inner = inner_unit(unit) if unit else "1"
-    if unit is None or (kind.quantity != "signal" and inner.removesuffix("/kg") != inner_unit(kind.usual)):
-        what = f"POINT:{kind.units} is {text!r}, which is not a unit of {kind.group.lower()}; "
+    if unit is None or (quantity != "signal" and inner.removesuffix("/kg") != inner_unit(usual)):
+        what = f"POINT:{stated} is {text!r}, which is not a unit of {group.lower()}; "
         what += "the numbers are kept without a unit"
-        findings.append(Finding("warning", "unit", file, what, f"the {kind.group.lower()}; correct the parameter"))
+        findings.append(Finding("warning", "unit", file, what, f"the {group.lower()}; correct the parameter"))
         unit, inner = "1", "1"
     values = np.asarray(convert(rows, unit, inner), float)
-    quantity = kind.quantity if inner != "1" else "signal"
+    quantity = quantity if inner != "1" else "signal"
     channels = []
     for name_in_file, plain in named.items():
         for axis in AXES:
@@ -171,7 +160,7 @@ def _model_part(
             side = known.side if known is not None else sided[1].lower() if sided else ""
             channels.append(Channel(name, quantity, inner, side))
     most = float(np.max(np.abs(values), initial=0.0, where=np.isfinite(values)))
-    if kind.group == "ANGLES" and unit == "deg" and 0 < most < 3.2:
+    if group == "ANGLES" and unit == "deg" and 0 < most < 3.2:
         what = f"no angle exceeds {most:.3g} deg, so the angles may be in radians"
         findings.append(Finding("warning", "unit", file, what, "all angles if this is true; correct POINT:ANGLE_UNITS"))
     return (values, tuple(channels)), findings
