@@ -3,8 +3,6 @@
 The study says which variable is which channel, its unit and its rate.
 """
 
-from __future__ import annotations
-
 import re
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace

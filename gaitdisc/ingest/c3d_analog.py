@@ -1,7 +1,5 @@
 """Analog channels of a C3D file: EMG recognised and named, everything else kept as signals."""
 
-from __future__ import annotations
-
 import re
 from dataclasses import dataclass, replace
 from functools import cached_property

@@ -1,7 +1,5 @@
 """Forces, moments and powers of a model in a C3D file: per kg or not, of the muscles or of the load."""
 
-from __future__ import annotations
-
 import re
 from dataclasses import dataclass, replace
 

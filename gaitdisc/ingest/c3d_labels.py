@@ -1,7 +1,5 @@
 """Labels of a C3D file, of channels and of events: without people's names, each one unlike the others."""
 
-from __future__ import annotations
-
 import re
 from collections import Counter
 from collections.abc import Iterable, Mapping, Sequence

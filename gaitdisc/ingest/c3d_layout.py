@@ -1,7 +1,5 @@
 """Where the data of a C3D file lie, by its own counts and its length; their scales; and reading them without ezc3d."""
 
-from __future__ import annotations
-
 import itertools
 from dataclasses import dataclass
 from pathlib import Path

@@ -1,7 +1,5 @@
 """Header and parameter section of a C3D file in pure Python: is it one, what does it hold, and of whose body."""
 
-from __future__ import annotations
-
 import math
 import re
 from collections.abc import Iterator, Mapping, Sequence

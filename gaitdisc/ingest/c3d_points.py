@@ -1,7 +1,5 @@
 """Points of a C3D file: markers in metres, what a model put among them, and poses of segments."""
 
-from __future__ import annotations
-
 import re
 from collections.abc import Mapping
 from pathlib import Path

@@ -1,7 +1,5 @@
 """A C3D file of markers, force plates, EMG and other analog channels, as a motion capture system exports them."""
 
-from __future__ import annotations
-
 import tempfile
 from collections.abc import Sequence
 from pathlib import Path

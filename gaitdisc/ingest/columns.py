@@ -1,7 +1,5 @@
 """What a column of a text file measures, its unit, and the stream it belongs to; a missing force is refused."""
 
-from __future__ import annotations
-
 import re
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace

@@ -1,7 +1,5 @@
 """Force plates of a C3D file: forces, moments and centres of pressure in the laboratory's axes."""
 
-from __future__ import annotations
-
 import itertools
 import re
 from collections.abc import Sequence

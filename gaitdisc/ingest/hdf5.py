@@ -1,7 +1,5 @@
 """HDF5 files, netCDF-4 among them: the library is an extra, needed where such a file is read."""
 
-from __future__ import annotations
-
 from collections.abc import Collection, Iterator
 from contextlib import closing, contextmanager
 from dataclasses import replace

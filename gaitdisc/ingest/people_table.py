@@ -1,7 +1,5 @@
 """Who was measured: a table with mass, sex, stature, age; and what names of files say: person, session, condition."""
 
-from __future__ import annotations
-
 import csv
 import itertools
 import math

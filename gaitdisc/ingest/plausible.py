@@ -3,8 +3,6 @@
 Knees bend one way: flexion is positive inside, and a knee that a file counts the other way is turned.
 """
 
-from __future__ import annotations
-
 import csv
 import re
 from collections.abc import Mapping, Sequence

@@ -1,7 +1,5 @@
 """A file as it lies on the disk: its name and its bytes."""
 
-from __future__ import annotations
-
 import hashlib
 from dataclasses import dataclass
 from pathlib import Path

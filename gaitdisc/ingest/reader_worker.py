@@ -7,8 +7,6 @@ A request is one line of JSON on standard input, an answer one line of JSON on s
 as float64: of a C3D file the points (frame, 3 * point) and the analog values (sample, channel), time first.
 """
 
-from __future__ import annotations
-
 import contextlib
 import faulthandler
 import json

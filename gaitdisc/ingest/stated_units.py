@@ -1,7 +1,5 @@
 """Units that a file states, held against its numbers: degrees or radians, m or mm, newtons or newtons per kg."""
 
-from __future__ import annotations
-
 import math
 import re
 from collections.abc import Mapping, Sequence

@@ -3,8 +3,6 @@
 Headers are modern or of the old SIMM style, or both at once.
 """
 
-from __future__ import annotations
-
 import re
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace

@@ -1,7 +1,5 @@
 """The study file, read and written; what is wrong in one, said with its file, line, key and what to do."""
 
-from __future__ import annotations
-
 import json
 import os
 import re

@@ -1,7 +1,5 @@
 """Marker files of OpenSim (`.trc`): positions in m, blank cells and exact zeros are gaps."""
 
-from __future__ import annotations
-
 import re
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass

@@ -1,7 +1,5 @@
 """Which trials of a participant are taken together, and who can be compared by models: one rule for check and run."""
 
-from __future__ import annotations
-
 import itertools
 from contextlib import suppress
 from dataclasses import dataclass

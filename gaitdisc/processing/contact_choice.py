@@ -1,7 +1,5 @@
 """Which detector's initial contacts are used, and what the others say of the same walk."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import partial

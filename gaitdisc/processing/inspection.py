@@ -1,7 +1,5 @@
 """Look at recordings without changing or writing anything: the traffic light of `gaitdisc check`."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from pathlib import Path

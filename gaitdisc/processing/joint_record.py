@@ -1,7 +1,5 @@
 """One joint of a walk as an inverse-dynamics problem: its angle, its net moment, and the EMG of the leg's muscles."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from typing import Any

@@ -1,7 +1,5 @@
 """Parts of a report that stand for as long as the cycles that they show, the code and their own files do."""
 
-from __future__ import annotations
-
 import hashlib
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import fields

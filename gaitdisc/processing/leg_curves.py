@@ -1,7 +1,5 @@
 """Cycles of one leg as a clinic reads them; the clinical variables: words, units, signs, when muscles are active."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 from dataclasses import dataclass
 

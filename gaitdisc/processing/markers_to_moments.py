@@ -1,7 +1,5 @@
 """From markers, segments and forces of a trial to its joint angles, moments and powers, in the streams others read."""
 
-from __future__ import annotations
-
 import re
 from dataclasses import dataclass, replace
 

@@ -1,7 +1,5 @@
 """What the page shows of pooled cycles: for everybody together, then person by person, both feet over each other."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from dataclasses import asdict, replace
 from pathlib import Path

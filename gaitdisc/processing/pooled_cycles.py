@@ -1,7 +1,5 @@
 """What is kept after processing: of a person's cycles pooled over trials, and of one walk."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import cached_property

@@ -1,7 +1,5 @@
 """Process a trial to a walk: check, filter, cut into strides, differentiate; the walks of a participant."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from operator import itemgetter

@@ -1,7 +1,5 @@
 """From a trajectory to the samples of Eq. 4.2: state, rate and percent stride in, accelerations out."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 
 import numpy as np

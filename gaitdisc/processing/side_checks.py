@@ -1,7 +1,5 @@
 """Whether what is called right is right: markers, angles, plates and muscles, held against how a walk goes."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 from dataclasses import replace
 

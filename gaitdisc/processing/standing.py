@@ -1,7 +1,5 @@
 """Which trials of a study get angles and moments from their markers, calibrated by the person's static trial."""
 
-from __future__ import annotations
-
 import itertools
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field, replace

@@ -1,7 +1,5 @@
 """Contacts and foot offs of one trial: those that the ground or the file saw, and those of markers or angles."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
 

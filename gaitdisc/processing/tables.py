@@ -1,7 +1,5 @@
 """Tables of pooled cycles: how many, spatiotemporal values, and those left out with their reasons."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from typing import Any
 

@@ -1,7 +1,5 @@
 """Cycles of one trial: each with its events, what a plate saw of it, where the feet were, and why it is left out."""
 
-from __future__ import annotations
-
 import itertools
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace

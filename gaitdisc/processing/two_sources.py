@@ -4,8 +4,6 @@ An unusual value alone leaves nothing out: a stiff knee is as stiff in its marke
 times its rate.
 """
 
-from __future__ import annotations
-
 import itertools
 import re
 from collections.abc import Iterator, Sequence

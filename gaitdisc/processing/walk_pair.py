@@ -3,8 +3,6 @@
 A periodic simulation gives one stride that closes in itself: it is walked on until contacts can be found in it.
 """
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 from dataclasses import replace
 

@@ -1,7 +1,5 @@
 """A trial: everything recorded of one person during one walk, each stream on its own time base."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 from typing import NamedTuple

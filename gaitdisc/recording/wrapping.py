@@ -4,8 +4,6 @@ Whatever mixes neighbouring samples (a filter, a spline, a derivative, a mean ov
 on. A joint angle never comes round: where one leaps by 300 deg, it is bad data and stays as it is.
 """
 
-from __future__ import annotations
-
 import re
 from dataclasses import replace
 

@@ -7,8 +7,6 @@ neither (section 4.2.1: "low-pass filtered at 6Hz using a fourth-order Butterwor
 passes of a second-order filter "fourth order" set `order=2`.
 """
 
-from __future__ import annotations
-
 import math
 
 import numpy as np

@@ -3,8 +3,6 @@
 At a limit of the model a joint angle is flat where a joint would turn, so that accelerations are false.
 """
 
-from __future__ import annotations
-
 import itertools
 from dataclasses import dataclass
 

@@ -7,8 +7,6 @@ stride and at nearly the same percent of it. Measured on 19 contacts of six youn
 measured. Nothing is corrected here; `processing.contact_choice` takes it off where a plate sees one step.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable, Mapping, Sequence
 
 import numpy as np

@@ -4,8 +4,6 @@ The operator is the smallest part of the error, the cut-off decides what is lost
 is the narrowest that is accurate to fourth order, five points wide, and the cut-off is a setting of the filter.
 """
 
-from __future__ import annotations
-
 from dataclasses import replace
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Direction of walking, given or inferred from markers; it may turn on the way."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 

@@ -6,8 +6,6 @@ tibialis anterior. A muscle that rests or an electrode that comes off changes si
 does, so that four of five have to agree on one.
 """
 
-from __future__ import annotations
-
 import re
 from collections.abc import Mapping
 from dataclasses import dataclass

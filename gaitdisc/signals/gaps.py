@@ -1,7 +1,5 @@
 """Gaps: found, bridged where short; and spikes, samples that no limb can have reached, made gaps."""
 
-from __future__ import annotations
-
 import numpy as np
 from numpy.lib.stride_tricks import sliding_window_view
 from numpy.typing import NDArray

@@ -6,8 +6,6 @@ The power spectrum (Welch 1967, Blackman-Harris window: side lobes 92 dB down) i
 (1953): signal and noise behind a filter and above a floor of rounding, against the same without the filter.
 """
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from dataclasses import dataclass
 

@@ -1,7 +1,5 @@
 """Left and right: by where markers are, by the foot that stands, and by the knee that belongs to the contacts."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 
 import numpy as np

@@ -5,8 +5,6 @@ The dissertation left one of twelve people out "due to changes in gait [...] lat
 that are as dependent as this person's own, but stationary.
 """
 
-from __future__ import annotations
-
 from dataclasses import dataclass, replace
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Strides cut at initial contacts, each unused one with its reason; whether a trial is walking at all."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 
 import numpy as np
