@@ -18,7 +18,8 @@ from gaitdisc.cohort.person import Person, draw_one
 from gaitdisc.cohort.walk import QUICK_HZ, SLOW_HZ, TrueWalk, walked
 from gaitdisc.ingest.study import Conditions, Participant, PlannedTrial, Study
 from gaitdisc.ingest.study_file import write_study
-from gaitdisc.recording import Trial
+from gaitdisc.recording import Recording, Trial
+from gaitdisc.recording.recording import join_recordings
 from gaitdisc.whole_file import write_whole
 
 WALK_S = 16.0
@@ -105,12 +106,7 @@ def with_pelvis(walk: TrueWalk, trial: Trial) -> Trial:
     sway = gaussian_filter1d(noise.normal(size=added.shape), SWAY_STEPS, axis=0)
     added = added + SWAY_DEG * sway / sway.std(axis=0)
     channels = tuple(Channel(name, "angle", "deg", name[-1] if name[-2] == "_" else "") for name in columns)
-    both = replace(
-        kinematics,
-        values=np.hstack([kinematics.values, added]),
-        channels=(*kinematics.channels, *channels),
-        suspect=None,
-    )
+    both = replace(join_recordings(kinematics, Recording(kinematics.time, added, channels)), suspect=None)
     return replace(trial, streams={**trial.streams, "kinematics": both})
 
 

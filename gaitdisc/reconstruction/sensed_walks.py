@@ -20,6 +20,7 @@ from gaitdisc.processing.processed_walks import public_trial
 from gaitdisc.processing.walk_pair import FORCE_HZ
 from gaitdisc.recording import Finding, Recording, Strides, Trial
 from gaitdisc.recording.arrays import Values, finite_values
+from gaitdisc.recording.recording import join_recordings
 from gaitdisc.recording.strides import interpolate
 from gaitdisc.saved.provenance import Refusal
 from gaitdisc.signals.butterworth import low_pass
@@ -188,15 +189,8 @@ def target_walk(
             f"{targets} from {target.time[0]:.2f} to {target.time[-1]:.2f} s",
             "Check that the files belong to the same trial and clock.",
         )
-    both = replace(
-        read,
-        values=np.hstack([read.values, values]),
-        channels=(*read.channels, *target.channels),
-        suspect=None,
-        subject=trial.subject,
-        condition=trial.condition,
-    )
-    return both, strides, findings
+    both = join_recordings(read, replace(target, time=read.time, values=values, suspect=None))
+    return replace(both, suspect=None, subject=trial.subject, condition=trial.condition), strides, findings
 
 
 def refuse_unknown_targets(targets: str) -> None:
