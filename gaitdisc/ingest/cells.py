@@ -1,7 +1,5 @@
 """Numbers and times out of the cells of a text table; whatever is no number is named with its line and column."""
 
-from __future__ import annotations
-
 import re
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
@@ -20,20 +18,6 @@ ALREADY_EVEN = 1e-6  # of a step
 
 
 @dataclass(frozen=True)
-class Cells:
-    """Numbers of a table and the lines they stand in."""
-
-    values: Values  # (row, column), numbers; NaN for blank cells
-    lines: NDArray[np.intp]  # (row,), line of the file that each row stands in, counted from 1
-    rows: list[str]  # as printed
-    form: Form
-
-    def printed_digit(self, column: int) -> float:
-        """Size of the last digit that a column uses."""
-        return printed_digit(self.form.split(row, column + 1)[column] for row in self.rows)
-
-
-@dataclass(frozen=True)
 class Form:
     """How the cells of a table are written."""
 
@@ -45,6 +29,20 @@ class Form:
     def split(self, line: str, most: int = -1) -> list[str]:
         """Split a line into cells, the last of them the rest of the line where `most` splits are made."""
         return line.split(None if self.separator == " " else self.separator, most)
+
+
+@dataclass(frozen=True)
+class Cells:
+    """Numbers of a table and the lines they stand in."""
+
+    values: Values  # (row, column), numbers; NaN for blank cells
+    lines: NDArray[np.intp]  # (row,), line of the file that each row stands in, counted from 1
+    rows: list[str]  # as printed
+    form: Form
+
+    def printed_digit(self, column: int) -> float:
+        """Size of the last digit that a column uses."""
+        return printed_digit(self.form.split(row, column + 1)[column] for row in self.rows)
 
 
 def parse_cells(lines: Sequence[str], labels: Sequence[str], first_line: int, form: Form) -> Cells:

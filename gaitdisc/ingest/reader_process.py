@@ -1,7 +1,5 @@
 """A process of its own in which files are read, so that a crash, a hang or a swollen reader harms nobody else."""
 
-from __future__ import annotations
-
 import contextlib
 import json
 import os
@@ -13,7 +11,7 @@ import weakref
 from collections.abc import Callable
 from dataclasses import asdict, dataclass
 from pathlib import Path
-from typing import IO, Any
+from typing import IO, Any, Self
 
 import numpy as np
 
@@ -42,7 +40,7 @@ class ReadRequest:
         return CLOCK * self.limit_s
 
     @classmethod
-    def of_size(cls, path: str, reader: str, wanted: tuple[int | str, ...], size: int) -> ReadRequest:
+    def of_size(cls, path: str, reader: str, wanted: tuple[int | str, ...], size: int) -> Self:
         """Request with the limits for a file of that size [bytes]: 10 s + 0.2 s/MB, 512 MB + 12 times the file."""
         limit_s = SECONDS_AT_LEAST + 0.2 * size / MEBIBYTE
         return cls(path, reader, wanted, limit_s=limit_s, cap_bytes=512 * MEBIBYTE + 12 * size)

@@ -1,11 +1,9 @@
 """The study: who walked, in which sessions, under which conditions, in which files, and every setting."""
 
-from __future__ import annotations
-
 import re
 from collections import Counter
 from pathlib import Path
-from typing import Annotated, Any, Literal
+from typing import Annotated, Any, Literal, Self
 
 from pydantic import ConfigDict, Field, PrivateAttr, model_validator
 
@@ -94,7 +92,7 @@ class PlannedTrial(StudyPart):
     )
 
     @model_validator(mode="after")
-    def _check(self) -> PlannedTrial:
+    def _check(self) -> Self:
         for i, cycle in enumerate(self.leave_out_cycles):
             if not LEFT_OUT_CYCLE.fullmatch(cycle):
                 remedy = 'Write for example "left 2.31 stumbled"; cycles.csv lists start_s of each cycle.'
@@ -175,7 +173,7 @@ class Study(StudyPart):
     _folder: Path = PrivateAttr(default=Path())
 
     @model_validator(mode="after")
-    def _check(self) -> Study:
+    def _check(self) -> Self:
         check_conditions(self.conditions)
         check_sessions(self)
         check_participants(self)
@@ -188,7 +186,7 @@ class Study(StudyPart):
         """Folder of the study file, to which its paths are relative."""
         return self._folder
 
-    def placed(self, folder: Path | str) -> Study:
+    def placed(self, folder: Path | str) -> Self:
         """Return the same study with its file in another folder; its paths are taken from there."""
         study = self.model_copy()
         study._folder = Path(folder)
@@ -227,7 +225,7 @@ class Study(StudyPart):
             settings["channels"] = {f"label {k}": name for k, name in enumerate(settings["channels"].values(), 1)}
         return settings
 
-    def with_unnamed(self) -> Study:
+    def with_unnamed(self) -> Self:
         """Return the same study in which trials of condition 'unknown' have the one that `unnamed` says."""
         word = self.conditions.unnamed
         if word is None:

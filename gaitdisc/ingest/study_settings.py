@@ -1,10 +1,8 @@
 """What a study sets: filters, strides, models; its channels and variables, whose names and units must fit together."""
 
-from __future__ import annotations
-
 import difflib
 from collections.abc import Mapping, Sequence
-from typing import Annotated, Literal, NoReturn
+from typing import Annotated, Literal, NoReturn, Self
 
 from pydantic import BaseModel, ConfigDict, Field, model_validator
 from pydantic_core import PydanticCustomError
@@ -91,7 +89,7 @@ class StrideRules(StudyPart):
     )
 
     @model_validator(mode="after")
-    def _check(self) -> StrideRules:
+    def _check(self) -> Self:
         if self.min_s >= self.max_s:
             fault = f"min_s is {self.min_s:g}, max_s {self.max_s:g}"
             refuse(("min_s",), "be shorter than max_s", fault, "Exchange the two numbers, or widen the range.")
@@ -118,7 +116,7 @@ class HeldOut(StudyPart):
     seconds: Positive | None = Field(default=None, description="held-out length [s], instead of share")
 
     @model_validator(mode="after")
-    def _check(self) -> HeldOut:
+    def _check(self) -> Self:
         both = self.seconds is not None and self.share is not None and "share" in self.model_fields_set
         if both or (self.seconds is None and self.share is None):
             fault = f"{'both are' if both else 'neither is'} given"

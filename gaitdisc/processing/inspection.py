@@ -53,6 +53,9 @@ class Inspection:
     findings: tuple[Finding, ...] = ()
     refusal: str = ""
 
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "findings", tuple(sorted(self.findings, key=lambda finding: finding.rank)))
+
     def __repr__(self) -> str:
         strides = "".join(f", {count} strides {side}" for side, (count, _) in self.strides.items())
         return f"Inspection({self.name!r}: {self.light}{strides}, {len(self.findings)} findings)"
@@ -163,7 +166,7 @@ def _pool(study: Study, participant: Participant, reader: C3DReader, instead: bo
             kept, lost = (rows[rows["kept"] == wanted]["side"].value_counts() for wanted in (True, False))
             counts = {side: (int(kept.get(side, 0)), int(lost.get(side, 0))) for side in sorted(set(rows["side"]))}
             inspections[places[id(planned)]] = Inspection(
-                _name(planned), participant.id, where, streams.get(name, {}), counts, _sort(findings), refusal=reason
+                _name(planned), participant.id, where, streams.get(name, {}), counts, tuple(findings), refusal=reason
             )
         for reason in reasons.values():
             place = len(participant.trials) + len(inspections)
@@ -234,8 +237,4 @@ def _findings(
     trial: Trial, name: str, strides: Mapping[str, Strides], findings: Sequence[Finding], refusal: str = ""
 ) -> Inspection:
     counts = {side: (len(cut), len(cut.dropped)) for side, cut in strides.items()}
-    return Inspection(name, trial.subject, trial.condition, _streams(trial), counts, _sort(findings), refusal=refusal)
-
-
-def _sort(findings: Sequence[Finding]) -> tuple[Finding, ...]:
-    return tuple(sorted(findings, key=lambda finding: finding.rank))
+    return Inspection(name, trial.subject, trial.condition, _streams(trial), counts, tuple(findings), refusal=refusal)

@@ -1,7 +1,5 @@
 """Cycles of one participant pooled over trials: read, cut, corrected, checked and counted together."""
 
-from __future__ import annotations
-
 import hashlib
 import tempfile
 from collections import Counter
@@ -49,6 +47,33 @@ DOUBTED = ("plate step", "swapped plates")  # findings whose spans no kinetics a
 KINETIC = ("moment", "power", "force", "vertical_force")  # quantities that need a plate under the foot
 # kind of event and detector -> how much later the ground places each that both see [s], of all trials of a session
 Later = Mapping[tuple[str, str], Values]
+
+
+@dataclass(frozen=True, eq=False)
+class Shelved:
+    """A recording that is needed later, on disk or, where that has no room, in memory."""
+
+    kept: Recording  # with its samples, or with one sample where these are on disk
+    file: Path | None = None  # where the samples lie
+
+    def recording(self) -> Recording:
+        """Return the recording with its samples."""
+        if self.file is None:
+            return self.kept
+        with np.load(self.file, allow_pickle=False) as held:
+            return replace(self.kept, **{name: held[name] for name in ("time", "values", "suspect")})
+
+
+def put_away(recording: Recording, folder: Path) -> Shelved:
+    """Put the samples of a recording into a file of a folder."""
+    samples = {name: getattr(recording, name) for name in ("time", "values", "suspect")}
+    try:
+        with tempfile.NamedTemporaryFile(suffix=".npz", dir=folder, delete=False) as file:
+            np.savez(file, **samples)
+    except OSError:  # no room on disk
+        return Shelved(recording)
+    first = {name: values[:1].copy() for name, values in samples.items()}
+    return Shelved(replace(recording, **first), Path(file.name))
 
 
 @dataclass(frozen=True, eq=False)
@@ -356,30 +381,3 @@ def _raw_emg(cut: Sequence[_CutTrial], channels: Sequence[Channel], curves: Valu
             first, last = np.searchsorted(raw.time, (cycle.start, cycle.end))
             typical[side] = raw.selected(names).values[first : last + 1]
     return typical
-
-
-@dataclass(frozen=True, eq=False)
-class Shelved:
-    """A recording that is needed later, on disk or, where that has no room, in memory."""
-
-    kept: Recording  # with its samples, or with one sample where these are on disk
-    file: Path | None = None  # where the samples lie
-
-    def recording(self) -> Recording:
-        """Return the recording with its samples."""
-        if self.file is None:
-            return self.kept
-        with np.load(self.file, allow_pickle=False) as held:
-            return replace(self.kept, **{name: held[name] for name in ("time", "values", "suspect")})
-
-
-def put_away(recording: Recording, folder: Path) -> Shelved:
-    """Put the samples of a recording into a file of a folder."""
-    samples = {name: getattr(recording, name) for name in ("time", "values", "suspect")}
-    try:
-        with tempfile.NamedTemporaryFile(suffix=".npz", dir=folder, delete=False) as file:
-            np.savez(file, **samples)
-    except OSError:  # no room on disk
-        return Shelved(recording)
-    first = {name: values[:1].copy() for name, values in samples.items()}
-    return Shelved(replace(recording, **first), Path(file.name))
