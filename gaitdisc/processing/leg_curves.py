@@ -144,40 +144,31 @@ class ClinicalVariable:
 
 
 # in the order of a sheet, three in a row
-VARIABLES = tuple(
-    ClinicalVariable(*row)
-    for row in (
-        (KINEMATICS, "pelvis_tilt", "pelvic tilt", "pelvis_tilt", "forwards", "backwards"),
-        (KINEMATICS, "pelvis_obliquity", "pelvic obliquity", "pelvis_list", "own side up", "own side down"),
-        (
-            KINEMATICS,
-            "pelvis_rotation",
-            "pelvic rotation",
-            "pelvis_rotation",
-            "own side forwards",
-            "own side backwards",
-        ),
-        (KINEMATICS, "hip_flexion", "hip flexion", "hip_flexion", "flexion", "extension"),
-        (KINEMATICS, "hip_adduction", "hip adduction", "hip_adduction", "adduction", "abduction"),
-        (KINEMATICS, "hip_rotation", "hip rotation", "hip_rotation", "internal", "external"),
-        (KINEMATICS, "knee_flexion", "knee flexion", "knee_angle", "flexion", "extension"),
-        (KINEMATICS, "ankle_dorsiflexion", "ankle dorsiflexion", "ankle_angle", "dorsiflexion", "plantarflexion"),
-        (KINEMATICS, "foot_progression", "foot progression", "foot_progression_angle", "toes in", "toes out"),
-        (KINEMATICS, "knee_adduction", "knee adduction", "knee_adduction", "adduction (varus)", "abduction (valgus)"),
-        (KINEMATICS, "knee_rotation", "knee rotation", "knee_rotation", "internal", "external"),
-        (KINEMATICS, "ankle_inversion", "ankle inversion", "ankle_inversion", "inversion", "eversion"),
-        (KINEMATICS, "ankle_rotation", "ankle rotation", "ankle_rotation", "internal", "external"),
-        (MOMENTS, "hip_moment", "hip moment", "hip_flexion", "flexion", "extension"),
-        (MOMENTS, "knee_moment", "knee moment", "knee_angle", "flexion", "extension"),
-        (MOMENTS, "ankle_moment", "ankle moment", "ankle_angle", "dorsiflexion", "plantarflexion"),
-        (POWERS, "hip_power", "hip power", "hip", "generated", "absorbed"),
-        (POWERS, "knee_power", "knee power", "knee", "generated", "absorbed"),
-        (POWERS, "ankle_power", "ankle power", "ankle", "generated", "absorbed"),
-        (MOMENTS, "hip_frontal_moment", "hip frontal moment", "hip_adduction", "adduction", "abduction"),
-        (MOMENTS, "knee_frontal_moment", "knee frontal moment", "knee_adduction", "adduction", "abduction"),
-        (MOMENTS, "ankle_frontal_moment", "ankle frontal moment", "ankle_inversion", "inversion", "eversion"),
-        (FORCES, "vertical_force", "vertical force / body weight", "vy", "upwards", ""),
-        (FORCES, "fore_aft_force", "fore-aft force / body weight", "vx", "forwards", "backwards"),
-    )
+_ROWS = (
+    (KINEMATICS, "pelvis_tilt", "pelvic tilt", "pelvis_tilt", "forwards", "backwards"),
+    (KINEMATICS, "pelvis_obliquity", "pelvic obliquity", "pelvis_list", "own side up", "own side down"),
+    (KINEMATICS, "pelvis_rotation", "pelvic rotation", "pelvis_rotation", "own side forwards", "own side backwards"),
+    (KINEMATICS, "hip_flexion", "hip flexion", "hip_flexion", "flexion", "extension"),
+    (KINEMATICS, "hip_adduction", "hip adduction", "hip_adduction", "adduction", "abduction"),
+    (KINEMATICS, "hip_rotation", "hip rotation", "hip_rotation", "internal", "external"),
+    (KINEMATICS, "knee_flexion", "knee flexion", "knee_angle", "flexion", "extension"),
+    (KINEMATICS, "ankle_dorsiflexion", "ankle dorsiflexion", "ankle_angle", "dorsiflexion", "plantarflexion"),
+    (KINEMATICS, "foot_progression", "foot progression", "foot_progression_angle", "toes in", "toes out"),
+    (KINEMATICS, "knee_adduction", "knee adduction", "knee_adduction", "adduction (varus)", "abduction (valgus)"),
+    (KINEMATICS, "knee_rotation", "knee rotation", "knee_rotation", "internal", "external"),
+    (KINEMATICS, "ankle_inversion", "ankle inversion", "ankle_inversion", "inversion", "eversion"),
+    (KINEMATICS, "ankle_rotation", "ankle rotation", "ankle_rotation", "internal", "external"),
+    (MOMENTS, "hip_moment", "hip moment", "hip_flexion", "flexion", "extension"),
+    (MOMENTS, "knee_moment", "knee moment", "knee_angle", "flexion", "extension"),
+    (MOMENTS, "ankle_moment", "ankle moment", "ankle_angle", "dorsiflexion", "plantarflexion"),
+    (POWERS, "hip_power", "hip power", "hip", "generated", "absorbed"),
+    (POWERS, "knee_power", "knee power", "knee", "generated", "absorbed"),
+    (POWERS, "ankle_power", "ankle power", "ankle", "generated", "absorbed"),
+    (MOMENTS, "hip_frontal_moment", "hip frontal moment", "hip_adduction", "adduction", "abduction"),
+    (MOMENTS, "knee_frontal_moment", "knee frontal moment", "knee_adduction", "adduction", "abduction"),
+    (MOMENTS, "ankle_frontal_moment", "ankle frontal moment", "ankle_inversion", "inversion", "eversion"),
+    (FORCES, "vertical_force", "vertical force / body weight", "vy", "upwards", ""),
+    (FORCES, "fore_aft_force", "fore-aft force / body weight", "vx", "forwards", "backwards"),
 )
+VARIABLES = tuple(ClinicalVariable(*row) for row in _ROWS)
 BY_NAME = {variable.name: variable for variable in VARIABLES}
