@@ -5,7 +5,7 @@ The study says which variable is which channel, its unit and its rate.
 
 import re
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from functools import cache, partial
 from pathlib import Path
 from typing import Any
@@ -19,7 +19,7 @@ from gaitdisc.ingest.cells import even_time
 from gaitdisc.ingest.columns import Column, column_in_unit, find_clock, find_column, name_channel, split_unit
 from gaitdisc.ingest.hdf5 import SIGNATURE, attributes, data_set, hdf5_file
 from gaitdisc.ingest.raw_file import RawFile, read_raw
-from gaitdisc.ingest.reader_process import MEBIBYTE, Arrays, ReaderProcess, ReadRequest
+from gaitdisc.ingest.reader_process import MEBIBYTE, Arrays, ReaderProcess, find_limits
 from gaitdisc.ingest.table import check_trial
 from gaitdisc.recording import Finding, Recording, Trial
 from gaitdisc.recording.arrays import Values
@@ -131,10 +131,11 @@ def open_arrays(path: Path | str, process: ReaderProcess | None = None) -> Array
         return ArrayFile(raw, names, lambda name: _of_hdf5(path, name))
     process = process or ReaderProcess()
     most = min(_UNPACKED[0] + _UNPACKED[1] * len(raw.content), LARGEST_BYTES)
+    limits = find_limits(len(raw.content))
+    limits["cap_bytes"] += 3 * most  # packed, read, floats
 
     def answered(name: str) -> tuple[dict[str, Any], Arrays]:
-        request = ReadRequest.of_size(str(path), "arrays", (name,), len(raw.content))
-        answer, arrays = process.read(replace(request, cap_bytes=request.cap_bytes + 3 * most))  # packed, read, floats
+        answer, arrays = process.read(path, "arrays", (name,), **limits)
         reason = answer.get("said", "").replace(str(path), path.name)
         if "allow_pickle" in reason:
             raise ReadError(

@@ -26,7 +26,7 @@ from gaitdisc.ingest.c3d_parameters import C3DHeader, C3DParameters, body_mass, 
 from gaitdisc.ingest.c3d_points import Streams, add_part, file_segments, point_names, point_streams
 from gaitdisc.ingest.columns import is_ignored
 from gaitdisc.ingest.force_plates import force_plates, plate_loads, plate_streams
-from gaitdisc.ingest.reader_process import Arrays, ReaderProcess, ReadRequest
+from gaitdisc.ingest.reader_process import Arrays, ReaderProcess, find_limits
 from gaitdisc.recording import Finding, Recording, Source, Surface, Trial
 from gaitdisc.recording.arrays import Values
 from gaitdisc.regular_file import file_sha256
@@ -135,7 +135,7 @@ class C3DReader:
     ) -> tuple[str, Arrays, list[Finding]]:
         """Reader, arrays and findings: by ezc3d, held to the header's counts, or decoded here where it cannot."""
         counts = (layout.frames, layout.points, layout.channels, layout.frames * layout.samples_per_frame)
-        answer, arrays = self.process.read(ReadRequest.of_size(str(path), "ezc3d", counts, header.size))
+        answer, arrays = self.process.read(path, "ezc3d", counts, **find_limits(header.size))
         if "said" not in answer:
             return answer["reader"], arrays, []
         # on one line, without the folder, which may name a person

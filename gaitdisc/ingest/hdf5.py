@@ -2,7 +2,6 @@
 
 from collections.abc import Collection, Iterator
 from contextlib import closing, contextmanager
-from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -10,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from gaitdisc.errors import GaitdiscError, ReadError
-from gaitdisc.ingest.reader_process import ReaderProcess, ReadRequest
+from gaitdisc.ingest.reader_process import ReaderProcess, find_limits
 from gaitdisc.regular_file import LARGEST_BYTES, check_regular
 
 TEXT_LIMIT_S = 10.0  # of processor time; a text takes a thousandth of it
@@ -74,9 +73,9 @@ def attributes(file: Any, name: str, path: Path, keys: Collection[str]) -> dict[
         if held.get_id(key).dtype.kind != "O":
             values[key] = held[key]
             continue
-        request = ReadRequest.of_size(str(path), "hdf5 text", (name, key), check_regular(path))
+        limits = {**find_limits(check_regular(path)), "limit_s": TEXT_LIMIT_S}
         with closing(ReaderProcess()) as process:
-            answer, _ = process.read(replace(request, limit_s=TEXT_LIMIT_S))
+            answer, _ = process.read(path, "hdf5 text", (name, key), **limits)
         if "text" not in answer:
             raise ReadError(
                 f"{path.name} must be an HDF5 file",

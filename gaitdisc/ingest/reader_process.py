@@ -9,9 +9,8 @@ import sys
 import threading
 import weakref
 from collections.abc import Callable
-from dataclasses import asdict, dataclass
 from pathlib import Path
-from typing import IO, Any, Self
+from typing import IO, Any
 
 import numpy as np
 
@@ -22,32 +21,13 @@ FILES_A_PROCESS = 100  # ezc3d leaks: a long loop in one process dies (pyomeca/e
 SECONDS_AT_LEAST = 10.0
 CLOCK = 6.0  # times the processor time: so long is waited by the clock, for others may use the machine as well
 MEBIBYTE = 2**20
-
-
-@dataclass(frozen=True)
-class ReadRequest:
-    """One file for one reader."""
-
-    path: str
-    reader: str  # "ezc3d", "arrays" or "hdf5 text"
-    wanted: tuple[int | str, ...]  # what the reader takes: see the functions of reader_worker.py
-    limit_s: float  # processor time after which the reader is stopped; by the clock it is given `CLOCK` times as long
-    cap_bytes: int  # address space that the reader may take, where the system can cap it
-
-    @property
-    def clock_s(self) -> float:
-        """Seconds by the clock after which the reader is stopped, also one that waits for what never comes."""
-        return CLOCK * self.limit_s
-
-    @classmethod
-    def of_size(cls, path: str, reader: str, wanted: tuple[int | str, ...], size: int) -> Self:
-        """Request with the limits for a file of that size [bytes]: 10 s + 0.2 s/MB, 512 MB + 12 times the file."""
-        limit_s = SECONDS_AT_LEAST + 0.2 * size / MEBIBYTE
-        return cls(path, reader, wanted, limit_s=limit_s, cap_bytes=512 * MEBIBYTE + 12 * size)
-
-
 Arrays = list[Values]
 Answer = tuple[dict[str, Any], Arrays]
+
+
+def find_limits(size: int) -> dict[str, Any]:
+    """Processor time [s] and address space [bytes] for a file of that size: 10 s + 0.2 s/MB, 512 MB + 12 times it."""
+    return {"limit_s": SECONDS_AT_LEAST + 0.2 * size / MEBIBYTE, "cap_bytes": 512 * MEBIBYTE + 12 * size}
 
 
 class ReaderProcess:
@@ -59,8 +39,16 @@ class ReaderProcess:
         self._lock = threading.Lock()  # threads may share a reader; they take turns
         self._files = 0
 
-    def read(self, request: ReadRequest) -> Answer:
-        """Answer to one request, and its arrays; `said` in it is why there are none. No file makes it raise."""
+    def read(self, path: Path, reader: str, wanted: tuple[int | str, ...], limit_s: float, cap_bytes: int) -> Answer:
+        """Answer of a reader, and its arrays; `said` in it is why there are none. No file makes it raise.
+
+        reader, wanted: "ezc3d", "arrays" or "hdf5 text", and what it takes: see the functions of reader_worker.py
+        limit_s: processor time after which the reader is stopped; by the clock it is given `CLOCK` times as long
+        cap_bytes: address space that the reader may take, where the system can cap it
+        """
+        clock_s = CLOCK * limit_s  # ends also what waits for what never comes
+        limits = {"limit_s": limit_s, "cap_bytes": cap_bytes, "clock_s": clock_s}
+        request = {"path": str(path), "reader": reader, "wanted": wanted, **limits}
         with self._lock:
             process = self._running()
             self._files += 1
@@ -69,7 +57,7 @@ class ReaderProcess:
             def converse() -> None:
                 assert process.stdin is not None and process.stdout is not None  # both are pipes
                 with contextlib.suppress(Exception):  # whatever a dying reader babbles, there is no answer then
-                    process.stdin.write(json.dumps({**asdict(request), "clock_s": request.clock_s}).encode() + b"\n")
+                    process.stdin.write(json.dumps(request).encode() + b"\n")
                     process.stdin.flush()
                     head: dict[str, Any] = json.loads(process.stdout.readline())
                     shapes = () if "said" in head else head["shapes"]
@@ -79,7 +67,7 @@ class ReaderProcess:
             thread = threading.Thread(target=converse, daemon=True)
             thread.start()
             try:
-                thread.join(request.clock_s)
+                thread.join(clock_s)
                 if not thread.is_alive() and answers:
                     return answers[0]
                 late = thread.is_alive()
@@ -89,9 +77,9 @@ class ReaderProcess:
             code = self._stop()
             thread.join(5)
             if late:
-                failure = f"it did not finish within {request.clock_s:.3g} s"
+                failure = f"it did not finish within {clock_s:.3g} s"
             elif code == -getattr(signal, "SIGXCPU", np.inf):
-                failure = f"it did not finish within {request.limit_s:.3g} s of processor time"
+                failure = f"it did not finish within {limit_s:.3g} s of processor time"
             else:
                 failure = f"it crashed (exit code {code})"
             return {"said": failure}, []

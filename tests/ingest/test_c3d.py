@@ -148,7 +148,7 @@ def test_a_folder_named_after_a_person_is_not_in_a_refusal(tmp_path, write_c3d, 
 def test_the_second_reader_is_used_and_named(tmp_path, write_c3d, some_points, some_analog, reader, monkeypatch):
     path = write_c3d(tmp_path / "a.c3d", some_points, some_analog)
     crash = "it crashed (exit code -11)"
-    monkeypatch.setattr(reader.process, "read", lambda _: ({"said": crash}, []))
+    monkeypatch.setattr(reader.process, "read", lambda *_, **__: ({"said": crash}, []))
     trial = reader.read(path)
     assert trial.stream("markers").source.reader.startswith("gaitdisc")
     np.testing.assert_allclose(trial.stream("markers").values[:, 0], some_points[0, 0] / 1000, rtol=1e-6)
@@ -157,7 +157,7 @@ def test_the_second_reader_is_used_and_named(tmp_path, write_c3d, some_points, s
 
 
 def test_both_refusals_are_said(tmp_path, write_c3d, some_points, reader, monkeypatch):
-    monkeypatch.setattr(reader.process, "read", lambda request: ({"said": f"no {request.path}"}, []))
+    monkeypatch.setattr(reader.process, "read", lambda path, *_, **__: ({"said": f"no {path}"}, []))
     path = write_c3d(tmp_path / "a.c3d", some_points)
     content = path.read_bytes()  # of three points; of two by the header
     path.write_bytes(content[:2] + b"\2\0" + content[4:])

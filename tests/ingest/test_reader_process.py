@@ -6,7 +6,6 @@ import os
 import signal
 import sys
 from concurrent.futures import ThreadPoolExecutor
-from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -15,7 +14,7 @@ from texts import says
 from gaitdisc.ingest import reader_process
 from gaitdisc.ingest.c3d_layout import find_layout, read_frames
 from gaitdisc.ingest.c3d_parameters import read_c3d_header, read_c3d_parameters
-from gaitdisc.ingest.reader_process import ReaderProcess, ReadRequest
+from gaitdisc.ingest.reader_process import ReaderProcess, find_limits
 from gaitdisc.ingest.reader_worker import answer, points_in_rows, serve
 
 
@@ -27,21 +26,18 @@ def process():
 
 
 def _request(path, limit_s=60.0):
-    return ReadRequest(str(path), "ezc3d", (50, 3, 4, 500), limit_s=limit_s, cap_bytes=2**40)
+    return path, "ezc3d", (50, 3, 4, 500), limit_s, 2**40
 
 
 def test_limits_grow_with_the_file():
-    request = ReadRequest.of_size("a.c3d", "ezc3d", (1, 2, 3, 4), 100 * 2**20)
-    assert request.limit_s == 30.0
-    assert request.cap_bytes == (512 + 1200) * 2**20
-    assert request.wanted == (1, 2, 3, 4)
+    assert find_limits(100 * 2**20) == {"limit_s": 30.0, "cap_bytes": (512 + 1200) * 2**20}
 
 
 def test_numbers_come_back_and_the_process_is_used_again(tmp_path, write_c3d, some_points, some_analog, process):
     path = write_c3d(tmp_path / "a.c3d", some_points, some_analog)
-    first = process.read(_request(path))
+    first = process.read(*_request(path))
     pid = process._process.pid
-    again = process.read(_request(path))
+    again = process.read(*_request(path))
     assert process._process.pid == pid
     np.testing.assert_array_equal(first[1][0], again[1][0])
     np.testing.assert_allclose(again[1][1], some_analog.T, rtol=1e-6)
@@ -49,10 +45,10 @@ def test_numbers_come_back_and_the_process_is_used_again(tmp_path, write_c3d, so
 
 def test_a_dead_process_is_started_anew(tmp_path, write_c3d, some_points, some_analog, process):
     path = write_c3d(tmp_path / "a.c3d", some_points, some_analog)
-    process.read(_request(path))
+    process.read(*_request(path))
     os.kill(process._process.pid, signal.SIGKILL)
     process._process.wait()
-    assert process.read(_request(path))[1][0].shape == (50, 9)
+    assert process.read(*_request(path))[1][0].shape == (50, 9)
 
 
 def test_a_process_is_recycled(tmp_path, write_c3d, some_points, some_analog, process, monkeypatch):
@@ -60,19 +56,19 @@ def test_a_process_is_recycled(tmp_path, write_c3d, some_points, some_analog, pr
     path = write_c3d(tmp_path / "a.c3d", some_points, some_analog)
     pids = []
     for _ in range(4):
-        process.read(_request(path))
+        process.read(*_request(path))
         pids.append(process._process.pid)
     assert pids[0] == pids[1] != pids[2] == pids[3]
 
 
 def test_a_crash_is_said(playing, process):
     playing("os.kill(os.getpid(), signal.SIGSEGV)")
-    assert process.read(_request("a.c3d"))[0]["said"] == "it crashed (exit code -11)"
+    assert process.read(*_request("a.c3d"))[0]["said"] == "it crashed (exit code -11)"
 
 
 def test_what_waits_for_ever_is_ended_by_the_clock(playing, process):
     playing("time.sleep(100)")
-    assert says(process.read(_request("a.c3d", limit_s=0.1))[0]["said"], "within 0.6 s")
+    assert says(process.read(*_request("a.c3d", limit_s=0.1))[0]["said"], "within 0.6 s")
 
 
 @pytest.fixture
@@ -94,42 +90,45 @@ def reading(monkeypatch, tmp_path):
 def test_what_computes_for_ever_is_ended_by_its_processor_time(reading, process, monkeypatch):
     reading("    while True: pass")
     monkeypatch.setattr(reader_process, "CLOCK", 100)  # others may use the machine
-    assert says(process.read(_request("a.c3d", limit_s=1.0))[0]["said"], "1 s", "processor time")
+    assert says(process.read(*_request("a.c3d", limit_s=1.0))[0]["said"], "1 s", "processor time")
 
 
 def test_a_file_is_not_refused_because_others_use_the_machine(reading, process):
     """By the clock it takes longer than the processor time that it may; nearly all of that is waiting."""
     reading("    time.sleep(1.5)")
-    assert process.read(_request("a.c3d", limit_s=1.0))[1][0].shape == (50, 9)
+    assert process.read(*_request("a.c3d", limit_s=1.0))[1][0].shape == (50, 9)
 
 
 @pytest.mark.parametrize("answer", ["print('{\"reader\": \"x\"}'); sys.stdout.write('abc')", "print('hello')"])
 def test_an_answer_that_breaks_off_and_babble_are_a_crash(playing, process, answer):
     playing(answer)
-    assert process.read(_request("a.c3d"))[0]["said"].startswith("it crashed")
+    assert process.read(*_request("a.c3d"))[0]["said"].startswith("it crashed")
 
 
 @pytest.mark.skipif(sys.platform != "linux", reason="address space is capped on Linux")
 def test_the_memory_cap_holds(tmp_path, write_c3d, process):
     path = write_c3d(tmp_path / "a.c3d", np.ones((3, 100, 5000)))
-    request = ReadRequest(str(path), "ezc3d", (5000, 100, 0, 0), limit_s=60, cap_bytes=150 * 2**20)
-    assert process.read(request)[0]["said"]  # out of memory, or dead of it
-    assert process.read(replace(request, cap_bytes=2**34))[1][0].shape == (5000, 300)
+    request = path, "ezc3d", (5000, 100, 0, 0), 60
+    assert process.read(*request, 150 * 2**20)[0]["said"]  # out of memory, or dead of it
+    assert process.read(*request, 2**34)[1][0].shape == (5000, 300)
 
 
 def test_threads_that_share_a_process_take_turns(tmp_path, write_c3d, some_points, process):
     """A reader that knows of no other took 66 of 240 sound files for broken ones."""
     paths = [write_c3d(tmp_path / f"{n}.c3d", some_points + n) for n in range(4)]
-    asked = [ReadRequest.of_size(str(path), "ezc3d", (50, 3, 0, 0), 4096) for path in paths * 15]
+
+    def read(path):
+        return process.read(path, "ezc3d", (50, 3, 0, 0), **find_limits(4096))
+
     with ThreadPoolExecutor(8) as threads:
-        for number, (head, (points, _)) in enumerate(threads.map(process.read, asked)):
+        for number, (head, (points, _)) in enumerate(threads.map(read, paths * 15)):
             assert "said" not in head
             np.testing.assert_allclose(points[0, 0], some_points[0, 0, 0] + number % 4, rtol=1e-6)
 
 
 def test_a_process_ends_with_its_last_user(tmp_path, write_c3d, some_points, some_analog):
     one = ReaderProcess()
-    one.read(_request(write_c3d(tmp_path / "a.c3d", some_points, some_analog)))
+    one.read(*_request(write_c3d(tmp_path / "a.c3d", some_points, some_analog)))
     child = one._process
     assert child is not None
     del one
