@@ -110,8 +110,7 @@ class C3DReader:
         findings += [*doubts, *more]
         labels = LabelMap(channels)
         streams, surfaces, seen = _streams(points, analog, layout, parameters, labels)
-        first = parameters.field("ACTUAL_START_FIELD") or max(header.first_frame, 1)
-        events, more = file_events(parameters, layout.frames, rate_hz, first)
+        events, more = file_events(parameters, layout.frames, rate_hz, header.first_frame)
         analog_channels = analog_labels(parameters, layout.channels)
         all_labels = [text for channel in analog_channels for text in (channel.label, channel.description)]
         all_labels += point_names(parameters, layout.points)
@@ -173,8 +172,7 @@ def glance_at_c3d(path: Path) -> Trial:
     labels = LabelMap()
     streams, _, _ = point_streams(points, parameters, labels)
     analog, _ = analog_streams(np.full((len(points), layout.channels), np.nan), parameters, set(), labels)
-    first = parameters.field("ACTUAL_START_FIELD") or max(header.first_frame, 1)
-    events, _ = file_events(parameters, layout.frames, rate_hz, first)
+    events, _ = file_events(parameters, layout.frames, rate_hz, header.first_frame)
     times = np.arange(len(points)) * step / rate_hz
     recordings = {key: Recording(times, *part, source=Source(header.file)) for key, part in (streams | analog).items()}
     return Trial(path.stem, recordings, events, tuple(findings))

@@ -136,6 +136,7 @@ def file_events(
     the first frame kept is TRIAL:ACTUAL_START_FIELD. Some software writes them on the clock of the cropped file
     instead: where all events lie outside of the file on the first clock and inside on the second, that one is taken.
 
+    first_frame: as the header has it
     returns events: in order of time; those outside of the file are left out with a finding
     """
     times = parameters.numbers("EVENT", "TIMES")
@@ -145,8 +146,8 @@ def file_events(
     if not count:
         return (), []
     seconds = 60 * times[0, :count] + times[1, :count]
-    lost = (first_frame - 1) / rate_hz
-    end = (frames - 1) / rate_hz
+    first_frame = parameters.field("ACTUAL_START_FIELD") or max(first_frame, 1)
+    lost, end = (first_frame - 1) / rate_hz, (frames - 1) / rate_hz
     margin = 0.5 / rate_hz
     findings, file = [], parameters.file
     on_file = seconds - lost

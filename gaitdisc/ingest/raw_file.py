@@ -18,11 +18,6 @@ class RawFile:
     content: bytes
     sha256: str = ""  # of these bytes, where it is known; otherwise it is computed when it is needed
 
-    @property
-    def stem(self) -> str:
-        """Name without its ending."""
-        return Path(self.name).stem
-
     def source(self, reader: str) -> Source:
         """Return where a recording comes from."""
         return Source(self.name, self.sha256 or hashlib.sha256(self.content).hexdigest(), reader)

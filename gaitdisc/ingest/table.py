@@ -64,7 +64,7 @@ def read_table(path: Path | str, channels: Mapping[str, str] | None = None) -> T
         labels, values = _of_frame(frame, raw.name, channels)
         return _trial(raw.source("parquet"), _split_time(labels, values, channels, raw.name), channels)
     if events := read_events(raw.lines(), raw.name):
-        return Trial(raw.stem, {}, events)
+        return Trial(Path(raw.name).stem, {}, events)
     labels, cells = _text(raw, channels)
     return _trial(raw.source("csv"), _split_time(labels, cells.values, channels, raw.name, cells), channels)
 
