@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import csv
 import io
-import math
 import re
 from collections.abc import Mapping, Sequence
 from pathlib import Path
@@ -141,11 +140,10 @@ def write_table(recording: Recording, path: Path | str) -> Path:
         buffer = io.BytesIO()
         pq.write_table(pa.table({label: table[:, i] for i, label in enumerate(labels)}), buffer)
         return write_whole(path, buffer.getvalue())
-    text = io.StringIO()
-    writer = csv.writer(text, lineterminator="\n")
-    writer.writerow(map(quote, labels))
-    writer.writerows([["" if math.isnan(cell) else repr(cell) for cell in row] for row in table.tolist()])
-    return write_whole(path, text.getvalue())
+    import pandas as pd
+
+    text = pd.DataFrame(table, columns=list(map(quote, labels))).to_csv(index=False, lineterminator="\n")
+    return write_whole(path, text)
 
 
 def _time_unit(label: str, channels: Mapping[str, str] | None = None) -> str | None:
