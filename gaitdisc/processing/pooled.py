@@ -24,8 +24,8 @@ from gaitdisc.processing.standing import Read, Standing, find_standing
 from gaitdisc.processing.step_events import StepEvents, over_ground, step_events, walking_part
 from gaitdisc.processing.trial_cycles import (
     HeelPaths,
+    Loadings,
     Places,
-    PlateLoadings,
     cut_cycles,
     cycle_channels,
     find_places,
@@ -84,7 +84,7 @@ class _Seen:
     number: int
     steps: StepEvents
     over_ground: bool
-    plates: PlateLoadings
+    plates: Loadings
     feet: HeelPaths | None
     legs: Recording | None
     states: tuple[Shelved, ...]

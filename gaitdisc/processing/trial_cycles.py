@@ -2,7 +2,7 @@
 
 import itertools
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -28,6 +28,7 @@ from gaitdisc.signals.emg import live_channels
 from gaitdisc.signals.gaps import fill_gaps, without_spikes
 from gaitdisc.signals.strides import gap_reasons
 
+Loadings = Mapping[str, Sequence[Span]]
 LONGEST_STANCE = 0.8  # of a stride: a plate that is loaded for longer carried two feet
 SHORTEST_STRIDE_M = 0.1  # below it the line of a stride has no direction
 SAME_START_S = 0.1  # by which the start that a study gives of a cycle may differ
@@ -86,20 +87,14 @@ def cut_cycles(contacts: Timed, offs: Timed) -> list[Cycle]:
     return cycles
 
 
-@dataclass(frozen=True)
-class PlateLoadings:
-    """When the plates of a trial were loaded."""
+def plate_loadings(trial: Trial, rise_n: float = RISE_N) -> Loadings:
+    """When the plates of a trial were loaded: by the foot that a force belongs to, or, of no foot, under "".
 
-    # side -> when its foot loaded a force of its own: a belt, or the plates that it stepped on
-    belts: Mapping[str, tuple[Span, ...]] = field(default_factory=dict)
-    # from when to when a plate was loaded, whole in the recording [s]; empty where there are belts
-    spans: tuple[Span, ...] = ()
-
-
-def plate_loadings(trial: Trial, rise_n: float = RISE_N) -> PlateLoadings:
-    """When the plates of a trial were loaded by more than `rise_n` [N]."""
+    A foot's own force is that of a belt, or of the plates that it stepped on; where there is one, others do not count.
+    Plates of no foot were loaded by more than `rise_n` [N], and for a time that is whole in the recording.
+    """
     if "forces" not in trial.streams:
-        return PlateLoadings()
+        return {}
     forces = trial.stream("forces").selected_by(lambda channel: channel.quantity == "vertical_force")
     belts = any(channel.side for channel in forces.channels)
     loadings: dict[str, list[Span]] = {}
@@ -113,12 +108,11 @@ def plate_loadings(trial: Trial, rise_n: float = RISE_N) -> PlateLoadings:
         for start, end in loaded(upward, forces.rate_hz, rise):
             if belts or (start > 0 and end < len(force)):
                 spans.append(Span(float(forces.time[start]), float(forces.time[end - 1])))
-    plates = tuple(loadings.pop("", ()))
-    return PlateLoadings({side: tuple(spans) for side, spans in loadings.items()}, plates)
+    return loadings
 
 
 def is_kinetic(
-    cycle: Cycle, plates: PlateLoadings, steps: Sequence[PlateStep] | None = None, doubted: Sequence[Span] = ()
+    cycle: Cycle, plates: Loadings, steps: Sequence[PlateStep] | None = None, doubted: Sequence[Span] = ()
 ) -> bool:
     """Whether the foot alone loaded one plate for the whole stance, or has a force of its own.
 
@@ -135,11 +129,11 @@ def is_kinetic(
     if steps is not None:
         clean = (step for step in steps if step.clean and step.whole and step.side == cycle.side)
         return any(max(abs(s.start - stance.start), abs(s.end - stance.end)) <= EDGE_S for s in clean)
-    begun = [span for span in plates.spans if abs(span.start - stance.start) <= EDGE_S]
+    begun = [span for span in plates.get("", ()) if abs(span.start - stance.start) <= EDGE_S]
     if len(begun) == 1 and abs(begun[0].end - stance.end) <= EDGE_S:
         return bool(begun[0].seconds <= LONGEST_STANCE * cycle.duration_s)
     off = stance.end if np.isfinite(stance.end) else cycle.start + 0.5 * cycle.duration_s
-    carried = [span.shared(Span(cycle.start, off)).seconds for span in plates.belts.get(cycle.side, ())]
+    carried = [span.shared(Span(cycle.start, off)).seconds for span in plates.get(cycle.side, ())]
     return bool(sum(max(0.0, seconds) for seconds in carried) > 0.5 * (off - cycle.start))
 
 

@@ -16,7 +16,6 @@ from gaitdisc.kinetics.plate_steps import PlateStep
 from gaitdisc.processing.step_events import StepEvents
 from gaitdisc.processing.trial_cycles import (
     PLUG_IN_GAIT,
-    PlateLoadings,
     cut_cycles,
     cycle_channels,
     find_places,
@@ -151,7 +150,7 @@ def test_an_offset_moves_markers_and_not_the_ground():
     ],
 )
 def test_a_cycle_whose_stance_is_a_clean_whole_step_is_kinetic(step, kinetic):
-    found = [is_kinetic(cycle, PlateLoadings(), [step]) for cycle in cut_cycles(CONTACTS, OFFS)]
+    found = [is_kinetic(cycle, {}, [step]) for cycle in cut_cycles(CONTACTS, OFFS)]
     assert found == [False, kinetic, False]
 
 
