@@ -77,8 +77,8 @@ def put_away(recording: Recording, folder: Path) -> Shelved:
 
 
 @dataclass(frozen=True, eq=False)
-class _Seen:
-    """What is kept of a trial once its cycles can be cut."""
+class _Pooled:
+    """A trial that is pooled: what is kept of it, and its cycles once they are cut."""
 
     planned: PlannedTrial
     number: int
@@ -92,16 +92,9 @@ class _Seen:
     files: dict[str, str]
     raw_emg: Shelved | None
     plate_steps: tuple[PlateStep, ...] | None = None  # where moments were computed from markers
-
-
-@dataclass(frozen=True, eq=False)
-class _CutTrial:
-    """The cycles of a trial."""
-
-    seen: _Seen
-    cycles: list[Cycle]
-    places: list[Places]  # of the feet, one a cycle
-    unknown: list[Finding]  # cycles that the study leaves out and that are not there
+    cycles: Sequence[Cycle] = ()
+    places: Sequence[Places] = ()  # of the feet, one a cycle
+    unknown: Sequence[Finding] = ()  # cycles that the study leaves out and that are not there
 
     @property
     def kept(self) -> list[Cycle]:
@@ -109,17 +102,17 @@ class _CutTrial:
         return [cycle for cycle in self.cycles if not cycle.reason]
 
     @property
-    def findings(self) -> list[Finding]:
+    def shown_findings(self) -> list[Finding]:
         """Findings of the trial; a person who enters or leaves the measured volume spoils no kept cycle."""
         outside = "nothing: before the first kept cycle of the leg or after its last"
         return [
             replace(finding, severity="note", spoils=outside) if self._spoils_none(finding) else finding
-            for finding in self.seen.findings
+            for finding in self.findings
         ]
 
     def _spoils_none(self, finding: Finding) -> bool:
         known = vocabulary().by_name.get(finding.channel)
-        if not self.seen.over_ground or finding.kind not in SAMPLES or known is None or not finding.spans:
+        if not self.over_ground or finding.kind not in SAMPLES or known is None or not finding.spans:
             return False
         cycles = [cycle for cycle in self.kept if known.side in ("", cycle.side)]
         first = min((cycle.start for cycle in cycles), default=0.0)
@@ -153,7 +146,7 @@ def pool_cycles(study: Study, participant: Participant, read: Read) -> tuple[Poo
 
 def _read_trials(
     standing: Standing, trials: TrialSet, read: Read, folder: Path, prints: dict[str, PlannedTrial]
-) -> tuple[list[_Seen], list[Refusal]]:
+) -> tuple[list[_Pooled], list[Refusal]]:
     """What each trial of a set shows, and why others are lost."""
     participant = standing.participant
     seen, lost = [], []
@@ -177,7 +170,7 @@ def _read_trials(
     return seen, lost
 
 
-def _show_trial(standing: Standing, planned: PlannedTrial, number: int, read: Trial, folder: Path) -> _Seen:
+def _show_trial(standing: Standing, planned: PlannedTrial, number: int, read: Trial, folder: Path) -> _Pooled:
     """What a trial shows; its samples are not kept but for those that cycles are cut of, and these on disk."""
     study = standing.study
     computed = standing.computed(planned, walking_part(read))
@@ -210,7 +203,7 @@ def _show_trial(standing: Standing, planned: PlannedTrial, number: int, read: Tr
     feet = None if exchanged else heel_paths(trial, study.walking_direction)
     shelved = tuple(put_away(state, folder) for state in states)
     raw_emg = put_away(raw, folder) if (raw := find_raw_emg(trial, states)) is not None else None
-    return _Seen(planned, number, steps, outside, plates, feet, legs, shelved, findings, files, raw_emg, plate_steps)
+    return _Pooled(planned, number, steps, outside, plates, feet, legs, shelved, findings, files, raw_emg, plate_steps)
 
 
 def _verify(trial: Trial, strides_of: Mapping[str, Strides], outside: bool) -> None:
@@ -231,7 +224,7 @@ def _offset_s(later: Later, kind: str, detector: str) -> float | None:
 
 
 def _pool(
-    standing: Standing, trials: TrialSet, seen: Sequence[_Seen], lost: Sequence[Refusal], later: Later
+    standing: Standing, trials: TrialSet, seen: Sequence[_Pooled], lost: Sequence[Refusal], later: Later
 ) -> PooledCycles:
     study, participant = standing.study, standing.participant
     cut = [_cut(standing, trial, later) for trial in seen]
@@ -245,7 +238,7 @@ def _pool(
     outside = bool(seen) and all(trial.over_ground for trial in seen)
     too_few = _too_few(standing, trials, cut, outside)
     rows = [
-        _row(trial.seen.number, cycle, place, too_few)
+        _row(trial.number, cycle, place, too_few)
         for trial in cut
         for cycle, place in zip(trial.cycles, trial.places, strict=True)
     ]
@@ -253,7 +246,7 @@ def _pool(
     late = next((trial.steps.detector for trial in seen if trial.steps.detector in SEEN_LATE), "")
     off_late = next((trial.steps.off_detector for trial in seen), "")
     offset_s, steps = _offset_s(later, "contacts", late), len(later.get(("contacts", late), ()))
-    findings = [finding for trial in cut for finding in trial.findings]
+    findings = [finding for trial in cut for finding in trial.shown_findings]
     findings += [finding for trial in cut for finding in trial.unknown]
     if late:
         by = "the difference at one step" if steps == 1 else f"the median difference at {steps} steps"
@@ -288,7 +281,7 @@ def can_pool(pooled: Sequence[PooledCycles]) -> bool:
     return bool(pooled) and all(cycles.over_ground and len(cycles.kept) for cycles in pooled)
 
 
-def _cut(standing: Standing, seen: _Seen, later: Later) -> _CutTrial:
+def _cut(standing: Standing, seen: _Pooled, later: Later) -> _Pooled:
     treadmill, participant = standing.study.treadmill, standing.participant
     belt = seen.planned.speed_m_per_s or (treadmill.speed_m_per_s if treadmill else 0.0)
     contact_s = _offset_s(later, "contacts", seen.steps.detector) or 0.0
@@ -299,10 +292,10 @@ def _cut(standing: Standing, seen: _Seen, later: Later) -> _CutTrial:
     places = [find_places(cycle, seen.feet, 0.0 if seen.over_ground else belt) for cycle in cycles]
     cycles = with_gaps(cycles, seen.legs)
     cycles, unknown = without_stated(cycles, seen.planned.leave_out_cycles, participant.trial_name(seen.planned))
-    return _CutTrial(seen, cycles, places, unknown)
+    return replace(seen, cycles=cycles, places=places, unknown=unknown)
 
 
-def _too_few(standing: Standing, trials: TrialSet, cut: Sequence[_CutTrial], outside: bool) -> str:
+def _too_few(standing: Standing, trials: TrialSet, cut: Sequence[_Pooled], outside: bool) -> str:
     """Why the cycles that are left do not do, and which labels spoiled those that are not; empty where they do."""
     quality = standing.study.quality
     n_kept = Counter(cycle.side for trial in cut for cycle in trial.kept)
@@ -314,7 +307,7 @@ def _too_few(standing: Standing, trials: TrialSet, cut: Sequence[_CutTrial], out
     causes = [
         f"; from {start:.2f} to {end:.2f} s {finding.what}"
         for trial in cut
-        for finding in trial.seen.findings
+        for finding in trial.findings
         if finding.kind in UNFIT
         for start, end in finding.spans
         if any(cycle.reason and start < cycle.end and cycle.start < end for cycle in trial.cycles)
@@ -343,22 +336,22 @@ def _row(number: int, cycle: Cycle, place: Places, too_few: str) -> tuple[object
     )  # fmt: skip
 
 
-def _curves(cut: Sequence[_CutTrial]) -> tuple[tuple[Channel, ...], Values]:
+def _curves(cut: Sequence[_Pooled]) -> tuple[tuple[Channel, ...], Values]:
     """Kept cycles of all trials on 101 points; a channel that a trial lacks is missing in its cycles."""
     by_name: dict[str, Channel] = {}
-    for shelved in (shelved for trial in cut for shelved in trial.seen.states):
+    for shelved in (shelved for trial in cut for shelved in trial.states):
         for channel in shelved.kept.channels:
             by_name.setdefault(channel.name, channel)
     names = list(by_name)
     curves = np.full((sum(len(trial.kept) for trial in cut), len(PERCENT), len(names)), np.nan)
     row = 0
     for trial in cut:
-        for shelved in trial.seen.states:  # the first unit counts
+        for shelved in trial.states:  # the first unit counts
             chosen = shelved.recording().selected_by(lambda channel: channel.unit == by_name[channel.name].unit)
             columns = [names.index(name) for name in chosen.names]
             for place, cycle in enumerate(trial.kept, row):
                 ends = np.array([cycle.start]), np.array([cycle.end])
-                values = Strides(*ends, cycle.side, trial.seen.steps.detector).normalised(chosen)[0]
+                values = Strides(*ends, cycle.side, trial.steps.detector).normalised(chosen)[0]
                 bare = [not cycle.kinetic and channel.quantity in KINETIC for channel in chosen.channels]
                 values[:, bare] = np.nan
                 curves[place][:, columns] = values
@@ -366,9 +359,9 @@ def _curves(cut: Sequence[_CutTrial]) -> tuple[tuple[Channel, ...], Values]:
     return tuple(by_name.values()), curves
 
 
-def _raw_emg(cut: Sequence[_CutTrial], channels: Sequence[Channel], curves: Values) -> dict[str, Values]:
+def _raw_emg(cut: Sequence[_Pooled], channels: Sequence[Channel], curves: Values) -> dict[str, Values]:
     """Raw EMG of each leg's most typical cycle (sample, channel of that leg), from contact to contact."""
-    cycles = [(trial.seen.raw_emg, cycle) for trial in cut for cycle in trial.kept]
+    cycles = [(trial.raw_emg, cycle) for trial in cut for cycle in trial.kept]
     sides, typical = pd.DataFrame({"side": [cycle.side for _, cycle in cycles]}), {}
     for side in "lr":
         row = choose_typical(curves, sides, channels, side)
