@@ -1,11 +1,10 @@
 """C3D files: one becomes one trial, read in a process of its own, its counts, length and scales checked."""
 
-from __future__ import annotations
-
 import itertools
 from collections.abc import Mapping
 from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
+from typing import Self
 
 import numpy as np
 
@@ -51,7 +50,7 @@ class C3DReader:
     def __init__(self) -> None:
         self.process = ReaderProcess()
 
-    def __enter__(self) -> C3DReader:
+    def __enter__(self) -> Self:
         return self
 
     def __exit__(self, *error: object) -> None:

@@ -1,18 +1,16 @@
 """A first draft of a study from a folder of recordings, with everything said that had to be guessed."""
 
-from __future__ import annotations
-
 import os
 from collections import Counter
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import TYPE_CHECKING
 
 import numpy as np
 
 from gaitdisc.channel import vocabulary
 from gaitdisc.errors import GaitdiscError, ReadError
+from gaitdisc.ingest.c3d import C3DReader, glance_at_c3d
 from gaitdisc.ingest.people_table import (
     PLAIN,
     PSEUDONYM,
@@ -35,9 +33,6 @@ from gaitdisc.ingest.study import FUNCTIONAL, STATIC, UNKNOWN, Conditions, Parti
 from gaitdisc.ingest.study_settings import ANGLES, OUTPUTS, Models
 from gaitdisc.own_files import KINDS, LIST
 from gaitdisc.recording import Recording, Trial
-
-if TYPE_CHECKING:
-    from gaitdisc.ingest.c3d import C3DReader
 
 OURS = ("", ".toml", ".toml-held")  # endings of no recording: none, a study file's and its lock's
 CONSTANT_DEG = 1e-6  # range below which an angle does not vary
@@ -197,8 +192,6 @@ def _read_drafts(
     progress: Callable[[int, int], None] = lambda *_: None,
 ) -> list[FoundTrial]:
     """Every walk, read one after the other; what a draft needs of it is kept, its samples are not."""
-    from gaitdisc.ingest.c3d import C3DReader
-
     drafts, groups = [], _walks(files)
     with C3DReader() as reader:
         for number, group in enumerate(groups, 1):
@@ -274,8 +267,6 @@ def _readable(
     folder: Path, group: Sequence[Path], reader: C3DReader, notes: list[str]
 ) -> tuple[list[Path], Trial | None]:
     """The walk and its files, without those that cannot be read or that do not go with the others."""
-    from gaitdisc.ingest.c3d import glance_at_c3d
-
     try:
         if [file.suffix.lower() for file in group] == [".c3d"]:
             return list(group), glance_at_c3d(folder / group[0])
