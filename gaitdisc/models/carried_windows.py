@@ -5,8 +5,8 @@ from __future__ import annotations
 from typing import NamedTuple
 
 import numpy as np
+from scipy.special import expit
 
-from gaitdisc.compiled import compiled
 from gaitdisc.models.networks import Shred
 from gaitdisc.models.trained_network import TrainedNetwork
 from gaitdisc.recording.arrays import Values
@@ -77,7 +77,6 @@ class CarriedWindows:
         return self._y_scale.unscaled(decoded(read[-1], *self._decoder))
 
 
-@compiled(error_model="numpy")
 def gru_step(read: Values, states: Values, of_input: Linear, of_state: Linear) -> Values:
     """States of a layer of gated recurrent units after one more reading, (window, node).
 
@@ -90,21 +89,13 @@ def gru_step(read: Values, states: Values, of_input: Linear, of_state: Linear) -
     >>> gru_step(np.zeros((1, 1)), np.ones((1, 1)), one, none)  # gates half open, candidate 0
     array([[0.5]])
     """
-    nodes = states.shape[1]
-    a = np.dot(read, of_input.weights)
-    b = np.dot(states, of_state.weights)
-    after = np.empty_like(states)
-    for window in range(len(states)):
-        for k in range(nodes):
-            i, j = nodes + k, 2 * nodes + k
-            reset = 1 / (1 + np.exp(-(a[window, k] + of_input.offsets[k] + b[window, k] + of_state.offsets[k])))
-            update = 1 / (1 + np.exp(-(a[window, i] + of_input.offsets[i] + b[window, i] + of_state.offsets[i])))
-            candidate = np.tanh(a[window, j] + of_input.offsets[j] + reset * (b[window, j] + of_state.offsets[j]))
-            after[window, k] = candidate + update * (states[window, k] - candidate)
-    return after
+    a, b = read @ of_input.weights + of_input.offsets, states @ of_state.weights + of_state.offsets
+    a, b = (part.reshape(len(part), 3, -1).swapaxes(0, 1) for part in (a, b))  # gate first
+    reset, update = expit(a[:2] + b[:2])
+    candidate = np.tanh(a[2] + reset * b[2])
+    return candidate + update * (states - candidate)
 
 
-@compiled(error_model="numpy")
 def lstm_step(read: Values, states: Values, cells: Values, of_input: Linear, of_state: Linear) -> tuple[Values, Values]:
     """States and cells of a layer of long short-term memory after one more reading, each (window, node).
 
@@ -115,23 +106,12 @@ def lstm_step(read: Values, states: Values, cells: Values, of_input: Linear, of_
     >>> lstm_step(np.zeros((1, 1)), np.ones((1, 1)), np.ones((1, 1)), one, none)[1]
     array([[0.5]])
     """
-    nodes = states.shape[1]
-    sums = np.dot(read, of_input.weights) + np.dot(states, of_state.weights)
-    after, new_cells = np.empty_like(states), np.empty_like(cells)
-    for window in range(len(states)):
-        for k in range(nodes):
-            gates = sums[window]
-            take = 1 / (1 + np.exp(-(gates[k] + of_input.offsets[k] + of_state.offsets[k])))
-            i, j, o = nodes + k, 2 * nodes + k, 3 * nodes + k
-            keep = 1 / (1 + np.exp(-(gates[i] + of_input.offsets[i] + of_state.offsets[i])))
-            candidate = np.tanh(gates[j] + of_input.offsets[j] + of_state.offsets[j])
-            give = 1 / (1 + np.exp(-(gates[o] + of_input.offsets[o] + of_state.offsets[o])))
-            new_cells[window, k] = keep * cells[window, k] + take * candidate
-            after[window, k] = give * np.tanh(new_cells[window, k])
-    return after, new_cells
+    sums = read @ of_input.weights + states @ of_state.weights + of_input.offsets + of_state.offsets
+    take, keep, candidate, give = sums.reshape(len(sums), 4, -1).swapaxes(0, 1)
+    new_cells = expit(keep) * cells + expit(take) * np.tanh(candidate)
+    return expit(give) * np.tanh(new_cells), new_cells
 
 
-@compiled(error_model="numpy")
 def decoded(features: Values, first: Linear, second: Linear, readout: Linear) -> Values:
     """Scaled outputs of a shallow decoder for one sample, (output,).
 
@@ -141,6 +121,6 @@ def decoded(features: Values, first: Linear, second: Linear, readout: Linear) ->
     >>> decoded(np.array([-3.0]), Linear(one, none), Linear(-one, none + 1), Linear(one, none))
     array([1.])
     """
-    below = np.maximum(np.dot(features, first.weights) + first.offsets, 0.0)
-    above = np.maximum(np.dot(below, second.weights) + second.offsets, 0.0)
-    return np.dot(above, readout.weights) + readout.offsets
+    for layer in (first, second):
+        features = np.maximum(features @ layer.weights + layer.offsets, 0.0)
+    return features @ readout.weights + readout.offsets
