@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import csv
 from collections.abc import Mapping
-from dataclasses import asdict, dataclass, field
+from dataclasses import dataclass, field
 from functools import cache
 from pathlib import Path
 from typing import Any
@@ -12,17 +12,10 @@ from typing import Any
 from gaitdisc.channel import schema_folder
 from gaitdisc.errors import SchemaError
 from gaitdisc.processing.leg_curves import BY_NAME
-from gaitdisc.processing.pooled_cycles import CYCLES
 from gaitdisc.report.figure import data_uri
-from gaitdisc.report.saved_page import find_page
-from gaitdisc.saved.kind import find_kind
-from gaitdisc.saved.study_run import StudyRun
-from gaitdisc.saved.unit_folder import seal_text
 from gaitdisc.toml_text import parse_toml
-from gaitdisc.whole_file import remove_file, write_whole
 
 FILE, TABLE = "clinic.toml", "clinical_axes.csv"
-FOLDER = "laboratory"  # of a run: what its pages were drawn with
 LARGEST_LOGO = 2**19  # [bytes] a page stays one file that can be mailed
 LONGEST = 1000  # letters of a comment
 PICTURES = {b"\x89PNG": "png", b"\xff\xd8\xff": "jpeg"}  # by their first bytes
@@ -106,22 +99,3 @@ def _picture(path: Path) -> str:
 
 def _refusal(mistake: str) -> SchemaError:
     return SchemaError(FORM, f"found {mistake}", f"Correct the line. Words for affected: {', '.join(AFFECTED)}.")
-
-
-def page_of_run(run: StudyRun, run_folder: Path) -> Path:
-    """Page of a run with pages of its people and their index, drawn where they are not those of this very run."""
-    laboratory, place = load_laboratory(run_folder), run_folder / FOLDER / "laboratory.json"
-    if laboratory == Laboratory():
-        remove_file(place)
-    else:  # so that pages of another laboratory do not stand
-        write_whole(place, seal_text(asdict(laboratory)))
-
-    def draw() -> Path:
-        page = find_kind(run_folder).draw(run, run_folder)
-        if run.of(CYCLES):
-            from gaitdisc.clinic.run_pages import write_people  # brings the pages of people
-
-            write_people(run, run_folder)
-        return page
-
-    return find_page(run_folder, draw)

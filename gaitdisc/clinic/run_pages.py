@@ -1,10 +1,10 @@
-"""Pages of everybody in a run, and the index: each person apart, so that one who fails costs nobody else."""
+"""Pages of a run: its own, those of its people, each apart, so that one who fails costs nobody else, and the index."""
 
 from __future__ import annotations
 
 import itertools
 from collections.abc import Callable, Sequence
-from dataclasses import replace
+from dataclasses import asdict, replace
 from importlib.util import find_spec
 from pathlib import Path
 
@@ -16,7 +16,7 @@ from gaitdisc.clinic.clinical_reference import (
     load_reference,
     save_reference,
 )
-from gaitdisc.clinic.laboratory import load_laboratory
+from gaitdisc.clinic.laboratory import Laboratory, load_laboratory
 from gaitdisc.clinic.page_words import ENGLISH, english_words, read_words, write_words
 from gaitdisc.clinic.person_page import index_rows, write_index, write_person_page
 from gaitdisc.clinic.person_pdf import NO_PDF
@@ -26,12 +26,16 @@ from gaitdisc.own_files import file_sha256
 from gaitdisc.processing.kept_parts import hash_content, keep_part, read_part
 from gaitdisc.processing.pooled_cycles import CYCLES, PooledCycles
 from gaitdisc.report.figure import file_names
+from gaitdisc.report.saved_page import find_page
+from gaitdisc.saved.kind import find_kind
 from gaitdisc.saved.provenance import Refusal
 from gaitdisc.saved.study_run import StudyRun
+from gaitdisc.saved.unit_folder import seal_text
 from gaitdisc.whole_file import remove_file, write_whole
 
 REFERENCE = "reference"  # folder of a run, beside its cycles
 WORDS = "words.csv"  # of another language, beside them
+LABORATORY = "laboratory/laboratory.json"  # of a run: what its pages were drawn with
 
 
 def keep_reference(place: Path | None, run_folder: Path) -> None:
@@ -66,6 +70,22 @@ def keep_words(language: str, run_folder: Path) -> list[str]:
     words = read_words(Path(language))
     write_words(run_folder / WORDS, words)
     return [word for word in english_words() if not words.other.get(word)]
+
+
+def page_of_run(run: StudyRun, run_folder: Path) -> Path:
+    """Page of a run with pages of its people and their index, drawn where they are not those of this very run."""
+    laboratory = load_laboratory(run_folder)
+    if laboratory == Laboratory():
+        remove_file(run_folder / LABORATORY)
+    else:  # so that pages of another laboratory do not stand
+        write_whole(run_folder / LABORATORY, seal_text(asdict(laboratory)))
+
+    def draw() -> Path:
+        page = find_kind(run_folder).draw(run, run_folder)
+        write_people(run, run_folder)
+        return page
+
+    return find_page(run_folder, draw)
 
 
 def write_people(
@@ -198,4 +218,4 @@ class _Pages:
 
     def write(self, person: PersonSession, name: str) -> list[Path]:
         """Write the page of a person and session as HTML and where wanted as PDF."""
-        return write_person_page(person, name, self.reference, self._provenance, self.report, self.say, self.pdf)
+        return write_person_page(person, name, self.reference, self._provenance, self.report, self.say, pdf=self.pdf)

@@ -58,8 +58,7 @@ def _people(
     run_folder: Path, named: bool, person: str, before: str, after: str, reference: Path | None, pdf: bool
 ) -> None:
     """Draw pages of a run's people again: all, those of one person, or two sessions or conditions of one."""
-    from gaitdisc.clinic.laboratory import page_of_run
-    from gaitdisc.clinic.run_pages import keep_reference, write_people, write_person
+    from gaitdisc.clinic.run_pages import keep_reference, page_of_run, write_people, write_person
     from gaitdisc.report.saved_page import draw_beside
     from gaitdisc.response.participant_response import RUN, load_run
 

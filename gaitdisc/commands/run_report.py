@@ -38,7 +38,7 @@ def claim_run(place: Path, out: Path | None) -> tuple[Study, Path]:
 
 def report_on(work: Callable[[StudyProgress], ResponseRun], study: Study, folder: Path, quiet: bool) -> None:
     """Do the work with its progress shown, draw the report, and say who was refused."""
-    from gaitdisc.clinic.laboratory import page_of_run
+    from gaitdisc.clinic.run_pages import page_of_run
 
     started = time.perf_counter()
     done = work_with_bar(work, [person.id for person in study.participants], quiet)

@@ -72,11 +72,10 @@ class ReconstructionSettings:
 def reconstruct_study(
     study: Study,
     sensors: Sequence[str],
-    settings: ReconstructionSettings | None = None,
+    settings: ReconstructionSettings,
     progress: Callable[[str, float], None] = lambda *_: None,
 ) -> tuple[Reconstruction, list[PersonReconstruction]]:
     """Fit and test every kind of model for every participant."""
-    settings = settings or ReconstructionSettings()
     settings = replace(settings, device=fitting_device(settings.kinds, settings.device))
     walks = read_walks(study, sensors, settings.condition_read, settings.targets)
     names = tuple(c.name for c in walks.channels if settings.targets == STATES or c.name not in sensors)
@@ -164,9 +163,8 @@ def _result(
     )
 
 
-def search_study(study: Study, most: int, settings: ReconstructionSettings | None = None) -> pd.DataFrame:
+def search_study(study: Study, most: int, settings: ReconstructionSettings) -> pd.DataFrame:
     """Find the best sets of sensors among the states of a study, for all participants; as of `search_sensors`."""
-    settings = settings or ReconstructionSettings()
     if settings.targets != STATES or settings.ahead_s:
         raise SchemaError(
             "a sensor search is possible only for the present states",

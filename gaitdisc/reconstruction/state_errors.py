@@ -17,7 +17,6 @@ from gaitdisc.statistics.r2 import r2
 
 DRAWS = 1000
 LEVEL, INTERVAL_LEVEL = 0.95, 0.9  # of an error over trials; of the interval of a state
-COLUMNS = ("state", "unit", "rmse", "low", "high", "relative_l2", "r2")
 
 
 @dataclass(frozen=True, eq=False)
@@ -59,7 +58,7 @@ def stride_numbers(trials: Sequence[Samples]) -> NDArray[np.int_]:
 def state_errors(tested: Reconstructed, channels: Sequence[Channel], seed: int = 0) -> pd.DataFrame:
     """Error of every state: RMSE in its unit, relative L2, and R2.
 
-    returns: `COLUMNS`: state, unit, rmse [unit], low and high (95 % interval of the RMSE, strides drawn with
+    returns: state, unit, rmse [unit], low and high (95 % interval of the RMSE, strides drawn with
         replacement; NaN with fewer than three strides), relative_l2 [1] (norm of the error by norm of the measured
         values about zero, Eq. 2.21, which the dissertation calls MSE), r2 [1] about the mean of the test part
     """

@@ -223,15 +223,6 @@ def part(samples: Samples, number: int) -> tuple[Samples, Samples]:
     return samples.rows(apart), block
 
 
-def coverage(measured: NDArray[np.float64], band: NDArray[np.float64]) -> NDArray[np.float64]:
-    """Share of samples inside the band, (output,).
-
-    >>> coverage(np.array([[1.0], [3.0]]), np.array([[[0.0], [0.0]], [[2.0], [2.0]]]))
-    array([0.5])
-    """
-    return np.mean((band[0] <= measured) & (measured <= band[1]), axis=0)
-
-
 def _part(phi: NDArray[np.float64]) -> NDArray[np.int_]:
     return np.clip((phi * PARTS / 100).astype(int), 0, PARTS - 1)
 

@@ -35,7 +35,6 @@ PROCESSING = (
 QUESTIONS = ("modalities", "sensitivity")  # answered in folders beside a run
 MODELS = ("nominal", "augmented", "exo")
 BASELINES = ("ridge", "linear", "null")
-KINDS = ("network", *BASELINES)
 R2_COLUMNS = ("variable", "model", "kind", "walk", "r2", "n")
 FIT_COLUMNS = ("model", "kind", "decay", "epochs", "n_training", "n_inner")
 QUANTITY_COLUMNS = ("length_s", "n_training", *R2_COLUMNS)
@@ -64,7 +63,7 @@ class ParticipantResponse:
     inputs: tuple[str, ...]  # names of what goes in
     outputs: tuple[str, ...]  # names of what is predicted
     units: tuple[str, ...]  # unit of each output, a second derivative
-    # variable, model (of `MODELS`), kind (of `KINDS`: `network`; `ridge`, with harmonics of percent stride; `linear`,
+    # variable, model (of `MODELS`), kind (`network`; `ridge`, with harmonics of percent stride; `linear`,
     # ridge on the network's own inputs; `null`), walk (`nominal` or `exo`: the held-out walking that is predicted), r2,
     # n (samples)
     r2: pd.DataFrame

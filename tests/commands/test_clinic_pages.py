@@ -37,10 +37,10 @@ def test_a_person_whose_page_fails_costs_nobody_else(tmp_path):
 
     real = run_pages.write_person_page
 
-    def failing(person, *others):
+    def failing(person, *others, **pdf):
         if person.title == "P02":
             raise ValueError(f"P02: {tmp_path}/cycles/P02")
-        return real(person, *others)
+        return real(person, *others, **pdf)
 
     run = made_run(made_person("P01"), made_person("P02"), refusals=(Refusal("P03", "", "unread"),))
     with patch.object(run_pages, "write_person_page", failing):
