@@ -29,8 +29,6 @@ class Ridge:
     weights: Values  # (column, output) [each output's unit], for scaled columns
     offset: Values  # (output,) [each output's unit], mean of each output in the training part
     penalty: float  # per sample, as chosen on the inner block
-    n_training: int  # samples of the whole training part
-    n_inner: int  # samples of its inner block
 
     def __call__(self, x: Values) -> Values:
         """Outputs (sample, output) for inputs (sample, input)."""
@@ -63,7 +61,7 @@ def fit_ridge(samples: Samples, harmonics: int = 8) -> Ridge:
         losses.append(float(np.mean(((inner.y - predicted) / spread) ** 2)))
     penalty = PENALTIES[int(np.argmin(losses))]
     scale, weights, offset = _solved(samples, harmonics, penalty)
-    return Ridge(samples.inputs, samples.outputs, harmonics, scale, weights, offset, penalty, len(samples), len(inner))
+    return Ridge(samples.inputs, samples.outputs, harmonics, scale, weights, offset, penalty=penalty)
 
 
 def _solved(samples: Samples, harmonics: int, penalty: float) -> tuple[Scale, Values, Values]:

@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 
 from gaitdisc.errors import LOG, ChannelError, TrainingError
 from gaitdisc.model import Augmented, Model, augment
-from gaitdisc.models.ridge import SEAM_S, fit_ridge
+from gaitdisc.models.ridge import INNER_SHARE, SEAM_S, fit_ridge
 from gaitdisc.models.training_settings import TrainingSettings
 from gaitdisc.processing.samples import gait_samples
 from gaitdisc.recording import Samples, Trajectory
@@ -329,5 +329,5 @@ def refit_network(model: Model, samples: Samples) -> Model:
 
 def fit_linear(samples: Samples, harmonics: int = 8) -> Fit:
     """Fit the ridge regression that stands beside the network."""
-    ridge = fit_ridge(samples, harmonics)
-    return Fit(ridge, ridge.penalty, 0, ridge.n_training, ridge.n_inner)
+    ridge, (_, inner) = fit_ridge(samples, harmonics), samples.last_block(INNER_SHARE, SEAM_S)
+    return Fit(ridge, ridge.penalty, 0, len(samples), len(inner))
