@@ -104,9 +104,7 @@ def read_words(path: Path) -> PageWords:
     if not rows or len(text) > LARGEST_BYTES or [cell.strip() for cell in rows[0][:2]] != list(HEADER):
         first = ", ".join(rows[0][:4]) if rows else "nothing"
         raise SchemaError(
-            form,
-            f"{path.name} begins with {first}",
-            "Write a new table: gaitdisc report CLINIC --language NEW.csv.",
+            form, f"{path.name} begins with {first}", "Write a new table: gaitdisc report CLINIC --language NEW.csv."
         )
     known, other = set(english_words()), {}
     for line, row in enumerate(rows[1:], 2):

@@ -25,14 +25,7 @@ from gaitdisc.clinic.sentences import (
     score_sentences,
     write_noted,
 )
-from gaitdisc.clinic.values import (
-    MARKS,
-    change_table,
-    numbers_table,
-    profile_svg,
-    profile_table,
-    values_table,
-)
+from gaitdisc.clinic.values import MARKS, change_table, numbers_table, profile_svg, profile_table, values_table
 from gaitdisc.processing.leg_curves import FORCES, KINEMATICS, MOMENTS, POWERS
 from gaitdisc.report.curve_panels import MOST_SINGLE, TEMPLATES, Panel, svg
 from gaitdisc.report.figure import file_names

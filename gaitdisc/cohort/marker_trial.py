@@ -161,12 +161,7 @@ def _hip(person: Person, sign: float) -> Values:
 
 
 def _markers(
-    person: Person,
-    leg: Leg,
-    segments: Segments,
-    bent_deg: Values,
-    rng: np.random.Generator,
-    condition: str = "",
+    person: Person, leg: Leg, segments: Segments, bent_deg: Values, rng: np.random.Generator, condition: str = ""
 ) -> Recording:
     skin = np.random.default_rng([round(person.mass_kg * 1e6), 37])  # the same in every trial of the person
     columns, channels = [], []

@@ -20,8 +20,7 @@ def compare(  # noqa: PLR0913, PLR0917 these are the options of a command
         Path | None, typer.Option(help="Folder of the report; by default ./compare, or STUDY/compare.")
     ] = None,
     participant: Annotated[
-        str,
-        typer.Option(help="In a study: compare the strides of this participant; default: a paired test of all."),
+        str, typer.Option(help="In a study: compare the strides of this participant; default: a paired test of all.")
     ] = "",
     channel: Annotated[list[str] | None, typer.Option(help="Compare only this channel; may be repeated.")] = None,
     cutoff: Annotated[float, typer.Option(min=1.0, help="For two files: low-pass of angles and moments [Hz].")] = 6.0,

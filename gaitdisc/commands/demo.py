@@ -23,8 +23,7 @@ def demo(  # noqa: PLR0913, PLR0917 these are the options of a command
         bool, typer.Option("--clinic", help="Simulate a week of a clinic instead, with a page for each person.")
     ] = False,
     laboratory: Annotated[
-        str,
-        typer.Option(help="Data of each walk: `angles`, `markers` (two belts), `overground` (short; two plates)."),
+        str, typer.Option(help="Data of each walk: `angles`, `markers` (two belts), `overground` (short; two plates).")
     ] = "angles",
     jobs: Jobs = 2,
     quiet: Quiet = False,

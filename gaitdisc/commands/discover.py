@@ -40,8 +40,7 @@ def discover(  # noqa: PLR0913, PLR0917 these are the options of a command
     ] = None,
     out: Annotated[Path, typer.Option(help="Folder for the results.")] = Path("found"),
     participant: Annotated[
-        str,
-        typer.Option(help="In a study: participant (W01 or W01:knee_angle) whose device walk is searched, or all."),
+        str, typer.Option(help="In a study: participant (W01 or W01:knee_angle) whose device walk is searched, or all.")
     ] = "",
     catalogue: Annotated[Path | None, typer.Option(help="Your own effects (TOML), added to the included ones.")] = None,
     effects: Annotated[

@@ -20,8 +20,7 @@ def new(
     ],
     degrees: Annotated[bool, typer.Option("--degrees", help="For a model: recorded angles are in degrees.")] = False,
     external_loads: Annotated[
-        Path | None,
-        typer.Option(help="For an .osim model: recorded ground forces (.xml, ExternalLoads)."),
+        Path | None, typer.Option(help="For an .osim model: recorded ground forces (.xml, ExternalLoads).")
     ] = None,
     forces: Annotated[Path | None, typer.Option(help="For an .osim model: muscle forces, net moments (.sto).")] = None,
     actuators: Annotated[

@@ -133,10 +133,7 @@ def _usable(channel: Channel, strides: list[Values], walks: Sequence[WalkSummary
 
 
 def _moving(
-    shared: list[Channel],
-    by_channel: dict[str, list[Values]],
-    walks: Sequence[WalkSummary],
-    findings: list[Finding],
+    shared: list[Channel], by_channel: dict[str, list[Values]], walks: Sequence[WalkSummary], findings: list[Finding]
 ) -> list[Channel]:
     still, twins, moving = [], [], []
     for channel in shared:

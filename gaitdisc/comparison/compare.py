@@ -67,10 +67,7 @@ class _Compared:
 
 
 def compare_walks(
-    first: WalkSummary,
-    second: WalkSummary,
-    wanted: Sequence[str] = (),
-    smallest: Smallest = CLINICAL,
+    first: WalkSummary, second: WalkSummary, wanted: Sequence[str] = (), smallest: Smallest = CLINICAL
 ) -> Mismatch:
     """Mismatch of two walks, second minus first; strides, or blocks of them, are the units of exchange.
 

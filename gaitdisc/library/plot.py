@@ -48,10 +48,6 @@ def recording(
     ax : matplotlib.axes.Axes, optional
         To draw in.
 
-    Returns
-    -------
-    matplotlib.axes.Axes
-
     Raises
     ------
     ChannelError
@@ -86,10 +82,6 @@ def cycles(recording: Recording | pd.DataFrame, strides: Strides, channel: str, 
         Name of the channel.
     ax : matplotlib.axes.Axes, optional
         To draw in; several trials may be drawn over each other.
-
-    Returns
-    -------
-    matplotlib.axes.Axes
 
     Raises
     ------
@@ -136,10 +128,6 @@ def curves(run: ResponseRun, channel: str, participant: str | None = None, ax: A
     ax : matplotlib.axes.Axes, optional
         To draw in.
 
-    Returns
-    -------
-    matplotlib.axes.Axes
-
     Raises
     ------
     ChannelError
@@ -172,10 +160,6 @@ def r2(run: ResponseRun, ax: Axes | None = None) -> Axes:
     ax : matplotlib.axes.Axes, optional
         To draw in.
 
-    Returns
-    -------
-    matplotlib.axes.Axes
-
     Examples
     --------
     >>> import gaitdisc as gd
@@ -205,10 +189,6 @@ def discovery(found: Discovery, channel: str | None = None, left: bool = False, 
         Draw what is left, measured minus simulated, with two standard deviations of the noise in grey.
     ax : matplotlib.axes.Axes, optional
         To draw in.
-
-    Returns
-    -------
-    matplotlib.axes.Axes
 
     Raises
     ------
@@ -251,10 +231,6 @@ def mismatch(found: Mismatch, channel: str, gap: bool = False, ax: Axes | None =
     ax : matplotlib.axes.Axes, optional
         To draw in.
 
-    Returns
-    -------
-    matplotlib.axes.Axes
-
     Raises
     ------
     ChannelError
@@ -295,10 +271,6 @@ def reconstruction(done: Reconstruction, state: str, participant: str | None = N
     ax : matplotlib.axes.Axes, optional
         To draw in.
 
-    Returns
-    -------
-    matplotlib.axes.Axes
-
     Raises
     ------
     ChannelError
@@ -335,10 +307,6 @@ def latent(model: Reconstructor, x: ArrayLike, percent: ArrayLike, ax: Axes | No
         Percent stride of these times; NaN where there is none.
     ax : matplotlib.axes.Axes, optional
         To draw in.
-
-    Returns
-    -------
-    matplotlib.axes.Axes
 
     Raises
     ------

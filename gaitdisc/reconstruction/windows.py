@@ -51,12 +51,7 @@ class Lags:
 
 
 def cut_windows(
-    recording: Recording,
-    sensors: Sequence[str],
-    states: Sequence[str],
-    lags: Lags,
-    phi: Values,
-    missing: bool = False,
+    recording: Recording, sensors: Sequence[str], states: Sequence[str], lags: Lags, phi: Values, missing: bool = False
 ) -> Samples:
     """Every window of one recording; none reaches beyond its start, nor over a missing value unless that is allowed.
 

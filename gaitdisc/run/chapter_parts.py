@@ -71,9 +71,7 @@ def list_parts(chapter: int, name: str = "") -> tuple[Part, ...]:
     parts = tuple(part for part in PARTS if part.chapter == chapter)
     names = [part.name for part in parts]
     if name and name not in names:
-        from gaitdisc.channel import (  # brings numpy, and the help of every command lists the parts
-            hint_nearest,
-        )
+        from gaitdisc.channel import hint_nearest  # brings numpy, and the help of every command lists the parts
 
         raise SchemaError(
             f"the part of chapter {chapter} must be one of {', '.join(names)}",

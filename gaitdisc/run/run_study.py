@@ -158,10 +158,7 @@ def _walk_folder(folder: Path, participant: Participant, word: str) -> Path:
 
 
 def run_study(
-    study: Study,
-    folder: Path,
-    workers: Workers | None = None,
-    progress: StudyProgress = lambda *_: None,
+    study: Study, folder: Path, workers: Workers | None = None, progress: StudyProgress = lambda *_: None
 ) -> ResponseRun:
     """Process every walk of a study; fit models to two walks of a participant, or pool cycles over many trials.
 

@@ -87,11 +87,7 @@ def ablate_study(
 
 @contextmanager
 def _vary(
-    study: Study,
-    folder: Path,
-    compute: Callable[..., Unit | Refusal],
-    workers: Workers | None,
-    progress: StudyProgress,
+    study: Study, folder: Path, compute: Callable[..., Unit | Refusal], workers: Workers | None, progress: StudyProgress
 ) -> Iterator[tuple[ResponseRun, tuple[Unit, ...]]]:
     """Run of a study with those who are refused now, and what is computed of each participant; the run is locked."""
     workers = workers or Workers()
@@ -124,12 +120,7 @@ def compute_variants(
 
 
 def compute_quantity(
-    study: Study,
-    participant: Participant,
-    folder: Path,
-    lengths_s: Sequence[float],
-    part: str,
-    progress: Progress,
+    study: Study, participant: Participant, folder: Path, lengths_s: Sequence[float], part: str, progress: Progress
 ) -> DataQuantity | Refusal:
     """Compute what less data (lengths [s]) gives a participant, or load what rests on the same files and settings."""
     key = response_key(unit_keys(study, participant))
