@@ -77,8 +77,8 @@ def unit_text(unit: str) -> str:
     return unit.replace("/s2", "/s²")
 
 
-def number(value: float, digits: int = 2) -> str:
-    """Write a number with a proper minus sign, or `not computed`.
+def number(value: float, digits: int = 2, none: str = "not computed") -> str:
+    """Write a number with a proper minus sign, or what stands for none.
 
     A share (R², to two digits or more) that falls short of all is not printed as all; an amount is rounded.
 
@@ -86,7 +86,7 @@ def number(value: float, digits: int = 2) -> str:
     ('0.87', '0.00', '>0.99', '1.0', 'not computed')
     """
     if not math.isfinite(value):
-        return "not computed"
+        return none
     text = f"{value:.{digits}f}"
     if digits > 1 and value < 1 and float(text) == 1:
         return f">{1 - 10**-digits:.{digits}f}"

@@ -13,7 +13,7 @@ from gaitdisc.processing.leg_curves import FEET, KINEMATICS, NORMAL, VARIABLES, 
 from gaitdisc.processing.pooled_cycles import PooledCycles
 from gaitdisc.recording import PERCENT
 from gaitdisc.report.curve_panels import MOST_SINGLE, SHORT, Line, Panel, in_rows
-from gaitdisc.words import label, number, sideless
+from gaitdisc.words import NONE, label, number, sideless
 
 AMPLIFIED_V = 0.005  # surface EMG is below 5 mV on the skin
 
@@ -31,7 +31,7 @@ def sheet(reading: ClinicalReading, *kinds: str) -> list[Panel]:
         note = ", ".join(f"{SHORT[side]} {len(curves)}" for side, curves in cycles.items())
         known = [reading.consistency.get((variable.name, side), float("nan")) for side in cycles]
         if variable.kind == KINEMATICS and np.isfinite(known).any():
-            note += f"; CMC {', '.join(number(cmc, 2) if np.isfinite(cmc) else '–' for cmc in known)}"
+            note += f"; CMC {', '.join(number(cmc, none=NONE) for cmc in known)}"
         panels.append(_panel(reading, variable, tuple(lines), note))
     return in_rows(panels)
 

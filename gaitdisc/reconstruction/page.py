@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
+from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -14,7 +15,7 @@ from gaitdisc.report.figure import Figure, file_names, save_figures
 from gaitdisc.report.page import write_page
 from gaitdisc.report.panels import MEASURED, RECONSTRUCTED, Room, in_style, legend, legend_lines, panels_for, sheets
 from gaitdisc.report.table import Table, provenance_tables, save_tables, tabulate_findings, tabulate_refusals
-from gaitdisc.words import counted, label, listing, number, plain, spoken, unit_text
+from gaitdisc.words import NONE, counted, label, listing, number, plain, spoken, unit_text
 
 if TYPE_CHECKING:
     import rich.table
@@ -30,6 +31,7 @@ NOT_MSE = (
     "5.2) and prints it in degrees, but it has no unit. Compare the “MSE” with the relative L2 here, not with numbers "
     "in degrees."
 )
+_plain = partial(number, none=NONE)
 FINDINGS = "Findings in the recordings, n = {}; windows on plateaus and filled gaps are used unchanged."
 
 
@@ -180,10 +182,6 @@ def _what_is_tested(done: Reconstruction) -> str:
 def _spread(row: Any, measure: str, digits: int) -> str:
     mean, low, high = (float(row[f"{measure}{end}"]) for end in ("", "_low", "_high"))
     return _plain(mean, digits) + (f" [{_plain(low, digits)}, {_plain(high, digits)}]" if math.isfinite(low) else "")
-
-
-def _plain(value: Any, digits: int) -> str:
-    return number(float(value), digits) if math.isfinite(float(value)) else "–"
 
 
 def _rmse(value: Any, unit: str) -> str:

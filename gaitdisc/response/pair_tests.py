@@ -16,7 +16,7 @@ from gaitdisc.report.table import Table
 from gaitdisc.response.participant_response import ResponseRun
 from gaitdisc.response.participants_result import FAMILIES, PAIRS, PairTests
 from gaitdisc.response.r2_tables import lowest_drawn, models_key, r2_numbers, tail_words, variables
-from gaitdisc.words import MODEL_WORDS, counted, label, listing, number
+from gaitdisc.words import MODEL_WORDS, NONE, counted, label, listing, number
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -80,7 +80,7 @@ def _pair_table(tests: PairTests, first: str, second: str) -> Table:
     rows = []
     for _, row in numbers.iterrows():
         tested = math.isfinite(row["p"])
-        untested = ("–", "–", str(int(row["n"])), *("not tested",) * (len(columns) - 3))
+        untested = (NONE, NONE, str(int(row["n"])), *("not tested",) * (len(columns) - 3))
         rows.append((label(row["variable"]), *([write(row) for write in columns.values()] if tested else untested)))
     count = int(numbers["p"].notna().sum())
     missing = [f"{label(str(row.variable))}: {row.left_out}" for row in numbers.itertuples() if row.left_out]
@@ -114,7 +114,7 @@ def _columns(first: str, second: str) -> dict[str, Callable[[pd.Series], str]]:
         f"{_WORDS[second]} is": direction_found,
         "median": lambda row: number(row["median_difference"], 4),
         "shift [95 %]": lambda row: f"{number(row['shift'], 4)}\n[{_bound(row['low'])}, {_bound(row['high'])}]",
-        "rank-biserial": lambda row: "–" if math.isnan(row["rank_biserial"]) else number(row["rank_biserial"]),
+        "rank-biserial": lambda row: number(row["rank_biserial"], none=NONE),
     }
 
 
@@ -202,7 +202,7 @@ def _bound(value: float) -> str:
 
 def _range(values: pd.Series, form: str) -> str:
     if not len(values):
-        return "–"
+        return NONE
     low, high = f"{values.min():{form}}", f"{values.max():{form}}"
     return low if low == high else f"{low} to {high}"
 

@@ -9,7 +9,7 @@ import pandas as pd
 
 from gaitdisc.response.participant_response import ParticipantResponse, ResponseRun
 from gaitdisc.response.r2_tables import R2_TABLE, participant_medians, r2_by_variable, sample_counts, tail_words
-from gaitdisc.words import MODEL_WORDS, counted, label, listing, number, plain
+from gaitdisc.words import MODEL_WORDS, NONE, counted, label, listing, number, plain
 
 if TYPE_CHECKING:
     import rich.table
@@ -183,10 +183,10 @@ def _print(values: pd.DataFrame, caption: str) -> rich.table.Table:
         place = "no dev." if column.walk == "nominal" else ""
         table.add_column(plain(f"{kind}\n{_SHORT[column.model]}\n{place}"), justify="right", no_wrap=True)
     for name, row in values.iterrows():
-        table.add_row(plain(str(name)), *(_short(float(row[column.key])) for column in _SHOWN))
+        table.add_row(plain(str(name)), *(number(row[column.key], none=NONE) for column in _SHOWN))
     table.add_section()
     middle = values.median()
-    table.add_row("median", *(_short(float(middle[column.key])) for column in _SHOWN), style="bold")
+    table.add_row("median", *(number(middle[column.key], none=NONE) for column in _SHOWN), style="bold")
     return table
 
 
@@ -202,7 +202,3 @@ def _empty(caption: str) -> rich.table.Table:
         pad_edge=False,
         padding=(0, 1, 0, 0),
     )
-
-
-def _short(value: float) -> str:
-    return "–" if pd.isna(value) else number(value)
