@@ -61,8 +61,3 @@ class Augmented:
     def __call__(self, x: NDArray[np.float64]) -> NDArray[np.float64]:
         """Sum of both models, (sample, output)."""
         return self.known(x) + self.missing(x)
-
-
-def augment(known: Model, missing: Model) -> Augmented:
-    """Add what a model misses to it."""
-    return Augmented(known, missing)

@@ -12,7 +12,7 @@ import pandas as pd
 from numpy.typing import NDArray
 
 from gaitdisc.errors import LOG, ChannelError, TrainingError
-from gaitdisc.model import Augmented, Model, augment
+from gaitdisc.model import Augmented, Model
 from gaitdisc.models.ridge import INNER_SHARE, SEAM_S, fit_ridge
 from gaitdisc.models.training_settings import TrainingSettings
 from gaitdisc.processing.samples import gait_samples
@@ -210,7 +210,7 @@ def response_bands(
         (rest_nominal, out_nominal), (rest, out) = (part(samples, number) for samples in (nominal, exo))
         f, y = refit(models.nominal.model, rest_nominal), refit(models.exo.model, rest)
         g = refit(models.discrepancy.model, rest.with_outputs(rest.y - f(rest.x)))
-        for name, model, block in (("nominal", f, out_nominal), ("augmented", augment(f, g), out), ("exo", y, out)):
+        for name, model, block in (("nominal", f, out_nominal), ("augmented", Augmented(f, g), out), ("exo", y, out)):
             members[name].append((model(held.x), np.abs(block.y - model(block.x)), _part(block.phi)))
     return {name: _bounds(group, _part(held.phi)) for name, group in members.items()}
 
@@ -267,7 +267,7 @@ class ResponseModels:
     @property
     def augmented(self) -> Augmented:
         """Nominal plus Discrepancy (Eq. 4.5)."""
-        return augment(self.nominal.model, self.discrepancy.model)
+        return Augmented(self.nominal.model, self.discrepancy.model)
 
     def fits(self) -> dict[str, Fit]:
         """Return the models that were fitted, by name."""

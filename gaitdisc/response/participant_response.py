@@ -14,7 +14,7 @@ import pandas as pd
 from numpy.typing import NDArray
 
 from gaitdisc.errors import SchemaError, ShapeError
-from gaitdisc.model import Model, augment
+from gaitdisc.model import Augmented, Model
 from gaitdisc.processing.pooled_cycles import CYCLES, WALK, PooledCycles, WalkSummary
 from gaitdisc.processing.samples import gait_samples
 from gaitdisc.recording import PERCENT, Recording, Trial
@@ -116,7 +116,7 @@ class ParticipantResponse:
     def model(self, name: str) -> Model:
         """Fitted network `nominal`, `exo` or `discrepancy`, or `augmented`, the sum of the first and the last."""
         if name == "augmented":
-            return augment(self.model("nominal"), self.model("discrepancy"))
+            return Augmented(self.model("nominal"), self.model("discrepancy"))
         arrays = pick_arrays(self.weights, f"{name}_")
         if not arrays:
             raise SchemaError(

@@ -10,7 +10,7 @@ from hypothesis import strategies as st
 from threadpoolctl import threadpool_info
 
 from gaitdisc.errors import SchemaError
-from gaitdisc.model import Model, augment
+from gaitdisc.model import Augmented, Model
 from gaitdisc.models.networks import FeedForward, ShallowDecoder
 from gaitdisc.models.trained_network import TrainedNetwork, pin_threads, torch_threads
 from gaitdisc.reconstruction.model_folder import load_weights, save_weights
@@ -47,7 +47,7 @@ def test_it_is_a_model_and_adds():
     one, other = network(seed=0), network(seed=1)
     x = np.ones((4, 3))
     assert isinstance(one, Model)
-    np.testing.assert_array_equal(augment(one, other)(x), one(x) + other(x))
+    np.testing.assert_array_equal(Augmented(one, other)(x), one(x) + other(x))
 
 
 def test_outputs_are_in_their_units_and_missing_inputs_stay_missing():
