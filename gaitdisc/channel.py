@@ -10,7 +10,7 @@ from dataclasses import dataclass, replace
 from functools import cache, cached_property
 from pathlib import Path
 
-from gaitdisc.errors import ChannelError, UnitError
+from gaitdisc.errors import ChannelError, SchemaError, UnitError
 from gaitdisc.units import list_units
 
 QUANTITIES = ("angle", "translation", "marker", "moment", "force", "vertical_force",
@@ -125,14 +125,18 @@ def nearest_word(word: str, among: Iterable[str]) -> str | None:
 
 def hint_nearest(word: str, among: Iterable[str]) -> str:
     """Return the end of a sentence that names the nearest word, or nothing."""
-    nearest = nearest_word(word, among)
-    return f", the nearest is {nearest!r}" if nearest else ""
+    return f", the nearest is {nearest!r}" if (nearest := nearest_word(word, among)) else ""
 
 
 def did_you_mean(word: str, among: Iterable[str], otherwise: str = "") -> str:
     """Return the question whether the nearest word was meant, or another remedy where none is near."""
-    nearest = nearest_word(word, among)
-    return f"Did you mean {nearest!r}?" if nearest else otherwise
+    return f"Did you mean {nearest!r}?" if (nearest := nearest_word(word, among)) else otherwise
+
+
+def check_word(word: str, words: Iterable[str], what: str) -> None:
+    """Refuse a word that is none of those that there are."""
+    if word not in words:
+        raise SchemaError(f"{what} must be one of {', '.join(words)}", f"found {word!r}", "Use one of these.")
 
 
 def list_names(names: Sequence[str], most: int = 6, none: str = "nothing") -> str:

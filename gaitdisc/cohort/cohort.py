@@ -7,8 +7,8 @@ from typing import Any
 
 import numpy as np
 
+from gaitdisc.channel import check_word
 from gaitdisc.cohort.person import PATTERNS, STIFFNESS, Person, Spring, draw_one, walking_with
-from gaitdisc.errors import SchemaError
 from gaitdisc.recording import Trial
 
 WALK_S = 240.0
@@ -89,10 +89,7 @@ def make_walks(person: Person, duration_s: float = WALK_S, hidden: str = "spring
 
 
 def _with_effect(person: Person, hidden: str) -> tuple[Spring | None, Person, float]:
-    if hidden not in HIDDEN:
-        raise SchemaError(
-            f"the hidden effect must be one of {', '.join(HIDDEN)}", f"found {hidden!r}", "Use one of these."
-        )
+    check_word(hidden, HIDDEN, "the hidden effect")
     spring = Spring(STIFFNESS * (0.6 if hidden == "scaled moment" else 1.0))
     if hidden in ("spring", "scaled moment"):
         return spring, person.adapt_to(spring), 0.0

@@ -12,7 +12,7 @@ from dataclasses import dataclass, field, replace
 
 import numpy as np
 
-from gaitdisc.errors import SchemaError
+from gaitdisc.channel import check_word
 from gaitdisc.recording.arrays import Values
 from gaitdisc.recording.trial import LEG_OF_STATURE
 
@@ -258,6 +258,7 @@ WEAKNESS = 0.6  # of soleus and gastrocnemius, which the person's own commands d
 
 def somebody(kind: str, seed: int = 1, sex: str = "f") -> Person:
     """Somebody of one of `PEOPLE`, drawn from a seed."""
+    check_word(kind, PEOPLE, "the kind of person")
     person = draw_one(kind, seed, sex)
     if kind in SIZES:
         return _resize(person, **SIZES[kind])
@@ -268,10 +269,7 @@ def somebody(kind: str, seed: int = 1, sex: str = "f") -> Person:
 
 def walking_with(person: Person, pattern: str) -> Person:
     """Return the same person, who walks in one of `PATTERNS`."""
-    if pattern not in PATTERNS:
-        raise SchemaError(
-            f"the kind of person must be one of {', '.join(PEOPLE)}", f"found {pattern!r}", "Use one of these."
-        )
+    check_word(pattern, PATTERNS, "the kind of person")
     chosen = PATTERNS[pattern]
     bumps = tuple(
         Bump(side, JOINTS.index(joint), centre, half_width, degrees)

@@ -8,8 +8,8 @@ from functools import partial
 
 import numpy as np
 
-from gaitdisc.channel import Channel
-from gaitdisc.errors import ChannelError, GaitdiscError, SamplingError, SchemaError, UnitError
+from gaitdisc.channel import Channel, check_word
+from gaitdisc.errors import ChannelError, GaitdiscError, SamplingError, UnitError
 from gaitdisc.ingest.c3d import C3DReader
 from gaitdisc.ingest.public_words import PublicWords, list_words, of_trial
 from gaitdisc.ingest.study import Models, Participant, Study
@@ -84,7 +84,7 @@ def read_walks(study: Study, sensors: Sequence[str], condition: str = "", target
     sensors: channels of the kinematics that are read; they may be others than the 18 states
     condition: a word of the study's conditions; both where it is empty
     """
-    refuse_unknown_targets(targets)
+    check_word(targets, (STATES, *TARGETS), "the targets")
     walks: dict[str, list[SensedWalk]] = {}
     refusals, findings, files = [], [], {}
     with C3DReader() as reader:
@@ -171,7 +171,7 @@ def target_walk(
     trial: with kinematics or markers, and the stream of the targets
     returns strides: of the study's side, or of the one whose contacts are found
     """
-    refuse_unknown_targets(targets)
+    check_word(targets, (STATES, *TARGETS), "the targets")
     filters = study.filters
     there = [key for key in SENSED if key in trial.streams] or [SENSED[0]]
     stream = next((key for key in there if set(sensors) <= set(trial.stream(key).names)), there[0])
@@ -191,13 +191,6 @@ def target_walk(
         )
     both = join_recordings(read, replace(target, time=read.time, values=values, suspect=None))
     return replace(both, suspect=None, subject=trial.subject, condition=trial.condition), strides, findings
-
-
-def refuse_unknown_targets(targets: str) -> None:
-    """Refuse what cannot be reconstructed."""
-    if targets not in (STATES, *TARGETS):
-        known = ", ".join((STATES, *TARGETS))
-        raise SchemaError(f"the targets must be one of {known}", f"found {targets!r}", "Use one of these.")
 
 
 def _find_targets(trial: Trial, study: Study, targets: str) -> tuple[Recording, list[Finding]]:

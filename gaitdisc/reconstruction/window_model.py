@@ -11,7 +11,8 @@ from typing import TYPE_CHECKING, Any, Protocol
 
 import numpy as np
 
-from gaitdisc.errors import ChannelError, SchemaError, TrainingError
+from gaitdisc.channel import check_word
+from gaitdisc.errors import ChannelError, TrainingError
 from gaitdisc.model import Model
 from gaitdisc.reconstruction.windows import Lags, cut_windows, hidden, present, thin_windows
 from gaitdisc.recording import Recording, Samples, Scale
@@ -186,9 +187,7 @@ def fit_reconstructor(
     training, check: windows to fit, and windows to choose by; readings may be missing for `masked shred`
     device: that a network is fitted on: `cpu`, `cuda`, or `auto`, the GPU where there is one
     """
-    if kind not in (*KINDS, *ON_REQUEST):
-        known = ", ".join((*KINDS, *ON_REQUEST))
-        raise SchemaError(f"the kind of model must be one of {known}", f"found {kind!r}", "Use one of these.")
+    check_word(kind, (*KINDS, *ON_REQUEST), "the kind of model")
     device = fitting_device((kind,), device)
     fit = _find_fit(kind, len(what.sensors), seed, device)
     training, check = thin_windows(training, MOST_FITTED), thin_windows(check, MOST_FITTED)

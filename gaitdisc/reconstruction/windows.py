@@ -8,6 +8,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
+from gaitdisc.channel import check_word
 from gaitdisc.errors import SamplingError, SchemaError, ShapeError
 from gaitdisc.recording import Recording, Samples
 from gaitdisc.recording.arrays import Values
@@ -157,8 +158,7 @@ def split_within(trials: Sequence[Samples], rule: str, reach_s: float, seed: int
     >>> parts.fitted().time[[0, -1]].round(1).tolist(), parts.checked().time[[0, -1]].round(1).tolist()
     ([0.0, 42.0], [43.3, 48.0])
     """
-    if rule not in RULES:
-        raise SchemaError(f"the split rule must be one of {', '.join(RULES)}", f"found {rule!r}", "Use one of these.")
+    check_word(rule, RULES, "the split rule")
     rng = np.random.default_rng(seed)
     labels = [_labels(trial, rule, reach_s, rng) for trial in trials]
     training, check, test = (_chosen(trials, labels, part) for part in (TRAINING, CHECK, TEST))
