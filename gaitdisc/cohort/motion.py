@@ -88,7 +88,7 @@ def integrate(leg, strength, belt, loop, worn, tables, noise):  # noqa: PLR0912,
     carried, slip, spring, turn = np.zeros(2), np.zeros(2), np.zeros(2), np.zeros(2)
     standing = np.zeros(2, np.bool_)
     pelvis, pelvis_rate, pelvis_speedup, pelvis_push = np.zeros(2), np.zeros(2), np.zeros(2), np.zeros(2)
-    row, rattle = np.empty((2, COLUMNS.width)), np.empty(NOISE)
+    row, rattle, taken = np.empty((2, COLUMNS.width)), np.empty(NOISE), np.empty(3)
     joint, joint_rate, moments, leg_moments = np.empty(3), np.empty(3), np.empty(3), np.empty((2, 3))
     m, b, q, force, arm = np.empty((3, 3)), np.empty(3), np.empty(3), np.empty((2, 2)), np.empty(2)
     phase, pace = 0.0, 1.0 / worn.stride_s
@@ -127,7 +127,7 @@ def integrate(leg, strength, belt, loop, worn, tables, noise):  # noqa: PLR0912,
             joint_rate[0] = rate[s, 0]
             joint_rate[1] = rate[s, 0] - rate[s, 1]
             joint_rate[2] = rate[s, 2] - rate[s, 1]
-            moments[:] = 0.0
+            moments[:], taken[:] = 0.0, 0.0
             # what differs from the habit, by joint
             for j in range(3):
                 want = row[s, COLUMNS.psi + j]
@@ -156,17 +156,14 @@ def integrate(leg, strength, belt, loop, worn, tables, noise):  # noqa: PLR0912,
                 for j in range(3):
                     take = strength[s].take_up[muscle, j] if reflex[s, j] > 0 else strength[s].take_down[muscle, j]
                     u += take * reflex[s, j]
+                    taken[j] += take * strength[s].reach[muscle, j]
                 u = min(MOST, max(LEAST, u))
                 excitation[s, muscle] = u
                 activation[s, muscle] = activate(u, activation[s, muscle], STEP_S)
             joint[0], joint[1], joint[2] = psi[s, 0], psi[s, 0] - psi[s, 1], psi[s, 2] - psi[s, 1]
             muscle_moments(strength[s], activation[s], joint, joint_rate, moments)
             for j in range(3):
-                taken = 0.0
-                for muscle in range(MUSCLES_A_LEG):
-                    take = strength[s].take_up[muscle, j] if reflex[s, j] > 0 else strength[s].take_down[muscle, j]
-                    taken += take * strength[s].reach[muscle, j]
-                want = row[s, COLUMNS.others + j] + (1.0 - taken) * reflex[s, j]
+                want = row[s, COLUMNS.others + j] + (1.0 - taken[j]) * reflex[s, j]
                 others[s, j] += (want - others[s, j]) * STEP_S / LAG_S
                 moments[j] += others[s, j]
                 leg_moments[s, j] = moments[j]
