@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-import time
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from pathlib import Path
+from time import monotonic, sleep
 
 from gaitdisc.ingest.new_study import read_stamp, recording_files
 
@@ -17,24 +17,15 @@ class WatchedFolder:
 
     without: a folder inside of it that is left out: that of the run
     still_s: for how long size and time of a file have to be the same [s]
-    clock, sleep: seconds that only increase, and a pause
     """
 
-    def __init__(
-        self,
-        folder: Path,
-        without: Path,
-        still_s: float = STILL_S,
-        clock: Callable[[], float] = time.monotonic,
-        sleep: Callable[[float], None] = time.sleep,
-    ) -> None:
+    def __init__(self, folder: Path, without: Path, still_s: float = STILL_S) -> None:
         self._folder, self._without, self._still_s = folder, without.resolve(), still_s
-        self._clock, self._sleep = clock, sleep
         self._seen: dict[Path, tuple[tuple[int, int], float]] = {}
 
     def settled(self) -> dict[Path, tuple[int, int]]:
         """Files that stand still, with size and time; an empty file is one that is not yet written."""
-        now, before = self._clock(), self._seen
+        now, before = monotonic(), self._seen
         self._seen = {}
         for file in recording_files(self._folder):
             if self._without in (self._folder / file).resolve().parents:
@@ -53,4 +44,4 @@ class WatchedFolder:
                 last = settled
                 yield list(settled)
             else:
-                self._sleep(self._still_s / LOOKS)
+                sleep(self._still_s / LOOKS)

@@ -2,6 +2,7 @@
 
 import os
 from pathlib import Path
+from unittest.mock import patch
 
 import pytest
 
@@ -33,8 +34,11 @@ def written(path, content, time_s=1):
 
 def seen(folder, clock, still_s=5.0):
     found = []
-    watch = WatchedFolder(folder, folder / "run", still_s, lambda: clock.now, clock.sleep)
-    with pytest.raises(KeyboardInterrupt):
+    watch, turned = (
+        WatchedFolder(folder, folder / "run", still_s),
+        {"monotonic": lambda: clock.now, "sleep": clock.sleep},
+    )
+    with patch.multiple("gaitdisc.run.watched_folder", **turned), pytest.raises(KeyboardInterrupt):
         for files in watch.changes():
             found.append((clock.now, [file.as_posix() for file in files]))
     return found
