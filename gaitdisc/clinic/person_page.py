@@ -1,9 +1,11 @@
-"""Page of a person and session, one file that is mailed; and the week's index: refused first, then amber, links."""
+"""Page of a person and session, one file that is mailed, its PDF; and the week's index: refused first, then amber."""
 
 from __future__ import annotations
 
 import base64
 import hashlib
+import json
+from collections.abc import Mapping
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
@@ -14,7 +16,6 @@ from gaitdisc._version import __version__
 from gaitdisc.clinic.clinical_reference import ClinicalReading, ClinicalReference, Contrast, PersonSession
 from gaitdisc.clinic.page_words import ENGLISH, TIERS, PageWords
 from gaitdisc.clinic.panels import contrast_sheet, emg_sheet, panel_numbers, raw_numbers, sheet
-from gaitdisc.clinic.person_pdf import write_person_pdf
 from gaitdisc.clinic.sentences import (
     contrast_heading,
     contrast_sentences,
@@ -26,6 +27,7 @@ from gaitdisc.clinic.sentences import (
     write_noted,
 )
 from gaitdisc.clinic.values import MARKS, change_table, numbers_table, profile_svg, profile_table, values_table
+from gaitdisc.errors import SchemaError
 from gaitdisc.processing.leg_curves import FORCES, KINEMATICS, MOMENTS, POWERS
 from gaitdisc.report.curve_panels import MOST_SINGLE, TEMPLATES, Panel, svg
 from gaitdisc.report.figure import file_names
@@ -36,6 +38,7 @@ from gaitdisc.saved.study_run import StudyRun
 from gaitdisc.whole_file import write_whole
 from gaitdisc.words import NONE, counted, number
 
+NO_PDF = ("PDF requires the package typst", "it is not installed", "Install it: pip install 'gaitdisc[pdf]'.")
 MOMENT_SIGNS = (
     "Moments are internal (of the muscles), per kg of body mass, and named after the movement that they produce. Power "
     "is positive when it is generated. Forces are those of the ground on the foot. Only cycles in which the "
@@ -97,6 +100,35 @@ def write_person_page(
     }
     page = write_whole(folder / "people" / f"{name}.html", page_text("person", shown))
     return [page, write_person_pdf(shown, page.with_suffix(".pdf"))] if pdf else [page]
+
+
+def write_person_pdf(shown: Mapping[str, Any], path: Path) -> Path:
+    """Write the PDF of what a page shows; the same bytes for the same numbers.
+
+    Words and curves are set in DejaVu Sans, which matplotlib brings, so that sheets are alike on all machines.
+    """
+    import matplotlib as mpl
+    import typst
+
+    style = (TEMPLATES / "curves.css").read_text(encoding="utf-8") + "svg text { font-family: 'DejaVu Sans'; }"
+    picture = list(base64.b64decode(shown["logo"].partition(",")[2]))
+    page = json.dumps({**shown, "style": style, "picture": picture}, default=_as_json)
+    template, fonts = TEMPLATES / "person.typ", [Path(mpl.get_data_path(), "fonts", "ttf")]
+    try:
+        sheets = typst.compile(template, root=TEMPLATES, font_paths=fonts, sys_inputs={"page": page}, timestamp=0)
+    except typst.TypstError as error:
+        raise SchemaError("typst must typeset the page", f"it reports: {error}", "Save the logo again.") from error
+    return write_whole(path, sheets)
+
+
+def _as_json(value: object) -> Any:
+    """What the template reads of a word list, a table or a panel."""
+    if isinstance(value, PageWords):
+        return value.other
+    if isinstance(value, Table):
+        return {"columns": value.columns, "rows": value.rows, "caption": value.caption}
+    assert isinstance(value, Panel)
+    return {"title": value.title, "unit": value.unit, "note": value.note, "span": value.span, "alt": value.alt}
 
 
 def list_sheets(reading: ClinicalReading) -> dict[str, tuple[list[Panel], str]]:

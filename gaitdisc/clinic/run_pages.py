@@ -18,8 +18,7 @@ from gaitdisc.clinic.clinical_reference import (
 )
 from gaitdisc.clinic.laboratory import Laboratory, load_laboratory
 from gaitdisc.clinic.page_words import ENGLISH, english_words, read_words, write_words
-from gaitdisc.clinic.person_page import index_rows, write_index, write_person_page
-from gaitdisc.clinic.person_pdf import NO_PDF
+from gaitdisc.clinic.person_page import NO_PDF, index_rows, write_index, write_person_page
 from gaitdisc.clinic.reading import contrast, read_beside
 from gaitdisc.errors import LOG, GaitdiscError, SchemaError, WriteError
 from gaitdisc.own_files import file_sha256
