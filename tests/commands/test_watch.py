@@ -98,7 +98,7 @@ def test_what_is_refused_and_mended_ends_with_the_code_of_the_last_run(called, t
         return {(lab / "P01" / "walk.mot").relative_to(lab): (9, 9)}
 
     (lab / "P01" / "walk.mot").write_text("half")
-    monkeypatch.setattr("gaitdisc.run.watched_folder.WatchedFolder.settled", settled)
+    monkeypatch.setattr("gaitdisc.commands.watch.WatchedFolder.settled", settled)
     done = called("watch", tmp_path / "clinic", "--from", lab, ends=1)
     assert "lab must contain recordings" in done.stderr and "[gd-read]" in done.stderr
     assert done.stderr.endswith("Stopped.\n") and not (tmp_path / "clinic" / "study.toml").exists()

@@ -108,7 +108,7 @@ def run_once(_):
 @pytest.fixture
 def refused_words(monkeypatch, called):
     """The one line that a command prints which is refused; `watch` looks once."""
-    monkeypatch.setattr("gaitdisc.run.watched_folder.WatchedFolder.changes", run_once)
+    monkeypatch.setattr("gaitdisc.commands.watch.WatchedFolder.changes", run_once)
     monkeypatch.setattr("gaitdisc.commands.watch._grow_study", lambda *_: [])
     return lambda *words: " ".join(called(*words, ends=REFUSED).stderr.split())
 

@@ -6,7 +6,7 @@ from unittest.mock import patch
 
 import pytest
 
-from gaitdisc.run.watched_folder import WatchedFolder
+from gaitdisc.commands.watch import WatchedFolder
 
 
 class Clock:
@@ -38,7 +38,7 @@ def seen(folder, clock, still_s=5.0):
         WatchedFolder(folder, folder / "run", still_s),
         {"monotonic": lambda: clock.now, "sleep": clock.sleep},
     )
-    with patch.multiple("gaitdisc.run.watched_folder", **turned), pytest.raises(KeyboardInterrupt):
+    with patch.multiple("gaitdisc.commands.watch", **turned), pytest.raises(KeyboardInterrupt):
         for files in watch.changes():
             found.append((clock.now, [file.as_posix() for file in files]))
     return found
