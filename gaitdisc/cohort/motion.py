@@ -105,15 +105,12 @@ def integrate(leg, strength, belt, loop, worn, tables, noise):  # noqa: PLR0912,
                 second = tables[1, s, low, c] + share * (tables[1, s, low + 1, c] - tables[1, s, low, c])
                 row[s, c] = first + rattle[WANDER] * (second - first)
             if step == 0:
-                for j in range(3):
-                    psi[s, j] = row[s, COLUMNS.psi + j]
-                    rate[s, j] = row[s, COLUMNS.turning + j] * pace
-                    others[s, j] = row[s, COLUMNS.others + j]
-                for muscle in range(MUSCLES_A_LEG):
-                    activation[s, muscle] = row[s, COLUMNS.excitation + muscle]
-                for j in range(2):
-                    side[s, j] = row[s, COLUMNS.side + j]
-                    side_rate[s, j] = row[s, COLUMNS.side + 2 + j] * pace
+                psi[s] = row[s, COLUMNS.psi : COLUMNS.turning]
+                rate[s] = row[s, COLUMNS.turning : COLUMNS.place] * pace
+                activation[s] = row[s, COLUMNS.excitation : COLUMNS.others]
+                others[s] = row[s, COLUMNS.others : COLUMNS.side]
+                side[s] = row[s, COLUMNS.side : COLUMNS.side + 2]
+                side_rate[s] = row[s, COLUMNS.side + 2 : COLUMNS.side + 4] * pace
         ahead = 0.0
         for s in range(2):
             way = row[s, COLUMNS.turning]
@@ -228,24 +225,13 @@ def integrate(leg, strength, belt, loop, worn, tables, noise):  # noqa: PLR0912,
                 side_rate[s, j] += (habit + effort / loop.side_inertia[j]) * STEP_S
                 side[s, j] += side_rate[s, j] * STEP_S
         if step % EVERY_MS == 0:
-            n = step // EVERY_MS
-            quick[n, 0] = phase
-            for s in range(2):
-                quick[n, 1 + 2 * s], quick[n, 2 + 2 * s] = force[s, 0], force[s, 1]
-                for muscle in range(MUSCLES_A_LEG):
-                    quick[n, 5 + MUSCLES_A_LEG * s + muscle] = excitation[s, muscle]
+            quick[step // EVERY_MS, 0] = phase
+            quick[step // EVERY_MS, 1:] = np.concatenate((force.ravel(), excitation.ravel()))
         if step % EVERY_TEN_MS == 0:
-            n = step // EVERY_TEN_MS
-            slow[n, 0] = phase
-            for s in range(2):
-                for j in range(3):
-                    slow[n, 1 + 3 * s + j] = psi[s, j]
-                    slow[n, 11 + 3 * s + j] = leg_moments[s, j]
-                    slow[n, 23 + 3 * s + j] = speedup[s, j]
-                for j in range(2):
-                    slow[n, 7 + 2 * s + j] = side[s, j]
-                slow[n, 17 + s], slow[n, 19 + s], slow[n, 21 + s] = spring[s], slip[s], pelvis[s]
-                slow[n, 29 + s] = turn[s]
+            slow[step // EVERY_TEN_MS, 0] = phase
+            slow[step // EVERY_TEN_MS, 1:] = np.concatenate(
+                (psi.ravel(), side.ravel(), leg_moments.ravel(), spring, slip, pelvis, speedup.ravel(), turn)
+            )
         for s in range(2):
             for j in range(3):
                 rate[s, j] += speedup[s, j] * STEP_S
