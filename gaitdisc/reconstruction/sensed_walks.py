@@ -28,16 +28,10 @@ from gaitdisc.signals.emg import emg_findings, envelopes
 from gaitdisc.signals.strides import cut_strides
 
 EDGE_S = 0.3  # where a zero-lag filter lacks one side
-WHOLE_STATE = (
-    *(f"pelvis_{word}" for word in ("tilt", "list", "rotation", "tx", "ty", "tz")),
-    "lumbar_extension",
-    "lumbar_bending",
-    *(
-        f"{joint}_{side}"
-        for side in "rl"
-        for joint in ("hip_flexion", "hip_adduction", "hip_rotation", "knee_angle", "ankle_angle")
-    ),
-)  # the 18 of section 5.3.3
+PELVIS = tuple(f"pelvis_{word}" for word in ("tilt", "list", "rotation", "tx", "ty", "tz"))
+LEG = ("hip_flexion", "hip_adduction", "hip_rotation", "knee_angle", "ankle_angle")
+# the 18 of section 5.3.3
+WHOLE_STATE = (*PELVIS, "lumbar_extension", "lumbar_bending", *(f"{joint}_{side}" for side in "rl" for joint in LEG))
 STATES = "states"
 TARGETS = {
     "emg": ("emg", ("emg",)),

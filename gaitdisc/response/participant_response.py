@@ -24,14 +24,7 @@ from gaitdisc.saved.study_run import StudyRun, load_run_as, save_whole_run
 from gaitdisc.saved.unit_folder import Arrays, lies_on_disk, may_lie_on_disk
 from gaitdisc.words import as_html
 
-PROCESSING = (
-    "filters",
-    "strides",
-    "treadmill",
-    "models",
-    "quality",
-    "conditions",
-)  # settings that a walk is processed by
+PROCESSING = ("filters", "strides", "treadmill", "models", "quality", "conditions")  # settings of a processed walk
 QUESTIONS = ("modalities", "sensitivity")  # answered in folders beside a run
 MODELS = ("nominal", "augmented", "exo")
 BASELINES = ("ridge", "linear", "null")
@@ -166,10 +159,10 @@ RESPONSE = Kind(
     ("participant", "inputs", "outputs", "units", "held_out_s"),
     {"r2": CSV("r2.csv", R2_COLUMNS), "fits": CSV("fits.csv", FIT_COLUMNS)},
     {
-        name: partial(pick_arrays, prefix=f"{word}_")
-        for name, word in (("residuals", "residual"), ("weights", "weights"))
-    }
-    | {"held_out": _find_held_out},
+        "residuals": partial(pick_arrays, prefix="residual_"),
+        "weights": partial(pick_arrays, prefix="weights_"),
+        "held_out": _find_held_out,
+    },
     _predict,
     unit=lambda response: response.participant,
 )
