@@ -99,14 +99,15 @@ def electrode_volts(
 
     moments = np.arange(len(excitation)) - round((late_s - DELAY_S) * rate_hz)
     drive = excitation[np.clip(moments, 0, len(excitation) - 1)]  # the ends are held
-    carrier = np.asarray(sosfilt(butter(2, BAND_HZ, "bandpass", fs=rate_hz, output="sos"), _draw(rng, drive), axis=0))
+    band = butter(2, BAND_HZ, "bandpass", fs=rate_hz, output="sos")
+    carrier = np.asarray(sosfilt(band, rng.standard_normal(drive.shape), axis=0))
     carrier /= carrier.std(axis=0)
     keep = np.exp(-1 / (UNITS_S * rate_hz))
-    share = np.asarray(lfilter([np.sqrt(1 - keep**2)], [1.0, -keep], _draw(rng, drive), axis=0))
+    share = np.asarray(lfilter([np.sqrt(1 - keep**2)], [1.0, -keep], rng.standard_normal(drive.shape), axis=0))
     carrier *= drive * np.maximum(0.1, 1.0 + UNITS * share)
     caught = np.exp(np.random.default_rng(round(person.mass_kg * 1e6)).normal(0.0, CATCH, drive.shape[1]))
     volts = VOLTS * caught * (carrier @ heard(drive.shape[1] // len(MUSCLES)).T)
-    volts += FLOOR_V * _draw(rng, drive)
+    volts += FLOOR_V * rng.standard_normal(drive.shape)
     step = RANGE_V / STEPS
     return np.clip(np.round(volts / step), -STEPS, STEPS - 1) * step
 
@@ -117,7 +118,3 @@ def heard(sides: int) -> Values:
     for (electrode, muscle), share in CROSS_TALK.items():
         leg[MUSCLES.index(electrode), MUSCLES.index(muscle)] = share
     return np.asarray(np.kron(np.eye(sides), leg), dtype=np.float64)
-
-
-def _draw(rng: np.random.Generator, like: Values) -> Values:
-    return rng.standard_normal(like.shape)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass, field
-from functools import partial
+from functools import cache, partial
 from typing import Any, cast
 
 import numpy as np
@@ -101,15 +101,8 @@ def fit_response(
 
 def _log_tenths() -> Callable[[float], None]:
     """Return a callback that logs each tenth of the fit once."""
-    logged: set[int] = set()
-
-    def progress(share: float) -> None:
-        tenth = int(10 * share)
-        if tenth not in logged:
-            logged.add(tenth)
-            LOG.info("fitting the models: %d %%", 10 * tenth)
-
-    return progress
+    log = cache(lambda tenth: LOG.info("fitting the models: %d %%", 10 * tenth))
+    return lambda share: log(int(10 * share))
 
 
 def training_samples(nominal: Trajectory, exo: Trajectory, settings: ResponseSettings) -> tuple[Samples, Samples]:
