@@ -113,7 +113,9 @@ def _columns(first: str, second: str) -> dict[str, Callable[[pd.Series], str]]:
         "adjusted p": lambda row: p_text(row["p_adjusted"]),
         f"{_WORDS[second]} is": direction_found,
         "median": lambda row: number(row["median_difference"], 4),
-        "shift [95 %]": lambda row: f"{number(row['shift'], 4)}\n[{_bound(row['low'])}, {_bound(row['high'])}]",
+        "shift [95 %]": lambda row: (
+            f"{number(row['shift'], 4)}\n[{number(row['low'], 4, '−∞')}, {number(row['high'], 4, '∞')}]"
+        ),
         "rank-biserial": lambda row: number(row["rank_biserial"], none=NONE),
     }
 
@@ -194,10 +196,6 @@ def _say_unexplained(tests: PairTests) -> str:
         f"{number(float(unexplained.max()))} of the variance unexplained (medians of the variables). Every model has "
         "R² below 1, so the p-value of this comparison carries no information."
     )
-
-
-def _bound(value: float) -> str:
-    return number(value, 4) if math.isfinite(value) else ("−∞" if value < 0 else "∞")
 
 
 def _range(values: pd.Series, form: str) -> str:
