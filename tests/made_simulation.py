@@ -7,7 +7,7 @@ from gaitdisc.simulation.simulation import Simulation
 def system(equations, inputs=(), parameters=None, observations=()) -> Simulation:
     """Simulation with a state for each equation; numbers and expressions by name."""
     states, driven = map(State, equations), map(Input, inputs)
-    numbers = (Parameter(name, value) for name, value in (parameters or {}).items())
+    numbers = (Parameter(name, float(value)) for name, value in (parameters or {}).items())
     return Simulation("a system", states, driven, numbers, equations=equations, observations=observations)  # type: ignore[arg-type]
 
 

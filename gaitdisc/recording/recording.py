@@ -177,7 +177,7 @@ class Recording:
     @property
     def names(self) -> tuple[str, ...]:
         """Names of the channels, in order."""
-        return tuple(channel.name for channel in self.channels)
+        return tuple([channel.name for channel in self.channels])  # faster than of a generator
 
     @property
     def rate_hz(self) -> float:
@@ -209,17 +209,17 @@ class Recording:
                 "Use the channel's name. For several channels use recording.selected([...]); for a period of time "
                 "use recording.between(...).",
             )
-        if name not in self.names:
-            axes = [label for label in self.names if label.rpartition(".")[0] == name]
-            nearest = None if axes else nearest_word(name, self.names)
-            there = f"{', '.join(self.names[:SHOWN])}{', ...' * (len(self.names) > SHOWN)}" or "none"
+        if name not in (names := self.names):
+            axes = [label for label in names if label.rpartition(".")[0] == name]
+            nearest = None if axes else nearest_word(name, names)
+            there = f"{', '.join(names[:SHOWN])}{', ...' * (len(names) > SHOWN)}" or "none"
             hint = f"the marker is {', '.join(axes)}" if axes else f"the nearest is {nearest!r}" if nearest else there
             raise ChannelError(
                 f"channel {name!r} is required",
-                f"{self.source.file or 'the recording'} has {len(self.names)} channels: {hint}",
+                f"{self.source.file or 'the recording'} has {len(names)} channels: {hint}",
                 "Use one of these, or map the column in the study's [channels] or in read(..., channels=...).",
             )
-        return self.names.index(name)
+        return names.index(name)
 
     def __getitem__(self, name: str) -> Values:
         return self.values[:, self.index(name)]

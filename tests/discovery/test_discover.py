@@ -260,14 +260,15 @@ def test_where_one_trial_comes_to_rest_its_first_quarter_proves_the_friction():
 
 
 def test_where_the_last_quarter_of_one_trial_alone_shows_a_gap_the_first_is_held_out():
-    numbers = (Parameter("rest", 78, low=65, high=90), Parameter("gain", 0.25, low=0.1, high=0.5), Parameter("tau", 60))
+    rest, gain = Parameter("rest", 78.0, low=65, high=90), Parameter("gain", 0.25, low=0.1, high=0.5)
+    numbers = rest, gain, Parameter("tau", 60.0)  # no integers: for these the machine would be compiled once more
     given = {one.name: one.value for one in numbers}
     heart = system({"rate": "(rest + gain*power - rate)/tau"}, ["power"], given, {"rate": "rate"})
-    base, time = replace(heart, parameters=numbers), np.arange(240) * 5.0
-    drive = Drive.of([np.where(time < 1000, 25 * np.floor(time / 120) + 50, 25.0)[:, None]], 0.2)  # it rises, and falls
+    base, time = replace(heart, parameters=numbers), np.arange(120) * 10.0
+    drive = Drive.of([np.where(time < 1000, 25 * np.floor(time / 120) + 50, 25.0)[:, None]], 0.1)  # it rises, and falls
     truth = compile_simulation(base.with_values({"rest": 85, "gain": 0.235, "tau": 400}))
-    states, _ = truth.run(drive, Rows(np.zeros(1, int), np.zeros(1, int), np.array([[84.0]])), 239)
-    seen = states[:, :, :1] + np.random.default_rng(0).normal(size=(1, 240, 1))
+    states, _ = truth.run(drive, Rows(np.zeros(1, int), np.zeros(1, int), np.array([[84.0]])), 119)
+    seen = states[:, :, :1] + np.random.default_rng(0).normal(size=(1, 120, 1))
     found, _ = discover(base, Measured(drive, seen, ("1",), ("rate",)))
     assert _named(found) == ("wrong_parameter", [("wrong_parameter", "tau")])
     assert found.effects[0].estimates["value"].low < 400 < found.effects[0].estimates["value"].high
