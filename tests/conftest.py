@@ -83,6 +83,7 @@ def what_all_tests_share_is_made_once(tmp_path_factory):
     compiled = jinja2.FileSystemBytecodeCache(str(tmp_path_factory.mktemp("templates")))
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(typer.main, "get_command", cache(typer.main.get_command))
+        patch.setattr(os, "fsync", lambda _: None)  # no test ends the power; a disk takes milliseconds for each file
         patch.setattr(jinja2, "Environment", partial(jinja2.Environment, bytecode_cache=compiled))
         patch.setattr(walk, "learnt_table", _remembered(walk.learnt_table))
         patch.setattr(motion, "find_exchanged_pairs", _remembered(motion.find_exchanged_pairs))

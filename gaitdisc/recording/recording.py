@@ -152,7 +152,7 @@ class Recording:
                 "Give one mark per sample and channel.",
             )
         names = [channel.name for channel in channels]
-        doubled = sorted({name for name in names if names.count(name) > 1})
+        doubled = len({*names}) < len(names) and sorted({name for name in names if names.count(name) > 1})
         if doubled:
             raise ChannelError(
                 "each channel must have its own name",

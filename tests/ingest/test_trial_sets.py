@@ -4,14 +4,7 @@ import pytest
 from texts import says
 
 from gaitdisc.ingest.study import Conditions, Participant, PlannedTrial, Study
-from gaitdisc.ingest.trial_sets import (
-    calibration_trial,
-    is_calibration,
-    is_walk,
-    not_compared,
-    trial_sets,
-    why_refused,
-)
+from gaitdisc.ingest.trial_sets import calibration_trial, is_calibration, is_walk, not_compared, trial_sets, why_refused
 from gaitdisc.recording.trial import BodyMeasures
 
 

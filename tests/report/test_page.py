@@ -6,6 +6,7 @@ import numpy as np
 import pandas as pd
 import pytest
 from chapter3.pages import statements_table
+from fresh_process import where, written
 from further import write_page as write_study_page
 from texts import says
 
@@ -25,7 +26,6 @@ from gaitdisc.report.table import (
     words_table,
 )
 from gaitdisc.saved.provenance import Refusal
-from gaitdisc.whole_file import write_whole
 
 
 def test_a_page_lies_in_its_folder_and_says_the_version(tmp_path):
@@ -54,22 +54,12 @@ def test_the_page_of_a_study_holds_its_blocks_and_all_tables_lie_beside_once_mor
     assert (tmp_path / "tables.md").read_text(encoding="utf-8") == f"{table}\n\n{table}\n"
 
 
-def _where(word):
-    return word, os.getpid()
-
-
 def test_few_are_drawn_here_and_many_elsewhere_in_order(monkeypatch):
     monkeypatch.setattr("gaitdisc.report.page.os.cpu_count", lambda: 2)
-    few = draw_side_by_side(_where, [("a",), ("b",)], 2)
+    few = draw_side_by_side(where, [("a",), ("b",)], 2)
     assert few == [("a", os.getpid()), ("b", os.getpid())]
-    many = draw_side_by_side(_where, [("a",), ("b",), ("c",)], 2)
+    many = draw_side_by_side(where, [("a",), ("b",), ("c",)], 2)
     assert [word for word, _ in many] == ["a", "b", "c"] and os.getpid() not in {at for _, at in many}
-
-
-def _written(folder, number, breaks, here):
-    write_whole(folder / f"{number}.txt", "drawn")
-    if breaks and os.getpid() != here:
-        os._exit(1)
 
 
 @pytest.mark.parametrize("breaks", [False, True])  # the first in the processes of the test above
@@ -78,13 +68,13 @@ def test_what_other_processes_wrote_may_be_written_again(monkeypatch, tmp_path, 
     each = [(tmp_path, number, breaks, os.getpid()) for number in range(8)]
     with guard("gaitdisc test"):
         claim_folder(tmp_path)
-        assert [draw_side_by_side(_written, each, most) for most in (2, 8)] == [[None] * 8] * 2
+        assert [draw_side_by_side(written, each, most) for most in (2, 8)] == [[None] * 8] * 2
     assert {path.read_text() for path in tmp_path.glob("*.txt")} == {"drawn"}
 
 
 def test_one_processor_draws_alone(monkeypatch):
     monkeypatch.setattr("gaitdisc.report.page.MOST_PROCESSES", 1)
-    assert {at for _, at in draw_side_by_side(_where, [(k,) for k in range(4)], 2)} == {os.getpid()}
+    assert {at for _, at in draw_side_by_side(where, [(k,) for k in range(4)], 2)} == {os.getpid()}
 
 
 def test_tables_are_written_without_index(tmp_path):

@@ -157,9 +157,9 @@ def test_what_lies_below_the_axis_is_counted(tested_maker):
 
 
 def test_many_variables_fill_several_figures(tested_maker):
-    figures = comparison_figures(tested_maker(6, tuple(f"signal_{i}" for i in range(12))))
+    figures = comparison_figures(tested_maker(6, tuple(f"signal_{i}" for i in range(11))))
     assert [figure.name for figure in figures] == ["comparison-1", "comparison-2"]
-    assert pd.concat([figure.numbers for figure in figures])["variable"].nunique() == 12
+    assert pd.concat([figure.numbers for figure in figures])["variable"].nunique() == 11
 
 
 def test_without_tests_there_is_no_figure(tested_maker, run):

@@ -2,6 +2,7 @@
 
 import re
 from dataclasses import replace
+from functools import cache
 
 import numpy as np
 import pandas as pd
@@ -41,6 +42,7 @@ VARIABLES = ("knee_angle_r", "ankle_angle_r", "emg_sol_r")
 FALLS = {ALL: 0.0, "percent stride": 0.0, "ankle_angle": 0.05, "emg_sol": 0.2}
 
 
+@cache
 def variant_run(count=8):
     people = []
     for number in range(count):
@@ -92,6 +94,7 @@ def test_nobody_is_no_figure():
 MODELS = {"nominal": 0.8, "augmented": 0.9, "exo": 0.91}
 
 
+@cache
 def variant_run_sensitivity(count=8, four_hz=0.0):
     """Under 4 Hz the Augmented model gets `four_hz` less."""
     people = []

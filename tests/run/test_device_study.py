@@ -79,10 +79,7 @@ def one_walk(word="nominal", **others):
 
 @pytest.mark.parametrize(
     ("joint", "said"),
-    [
-        ("ankle_angle", r"both.*W01.*1.*'nominal', none.*'exo'"),
-        ("toe", r"ankle_angle, knee_angle, hip_flexion.*'toe'"),
-    ],
+    [("ankle_angle", r"both.*W01.*1.*'nominal', none.*'exo'"), ("toe", r"ankle_angle, knee_angle, hip_flexion.*'toe'")],
 )
 def test_conditions_without_a_pair_and_a_joint_that_is_none_are_refused(joint, said):
     study = one_walk()
