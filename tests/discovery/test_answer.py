@@ -62,6 +62,15 @@ def test_the_gap_is_the_noise_once_the_effect_is_in(answered):
     assert discovery.effects[0].held_out == pytest.approx(1.0, abs=0.02)
 
 
+def test_what_is_left_is_told_as_a_share_beside_the_noise_of_the_sensors(case, as_read, labelled):
+    spring = as_read.refitted(as_read.shooting, (Part(labelled["linear_stiffness@load"], {"factor": -1.0}),))
+    found, _ = answer(case, as_read, Verdict(score(spring), ()))
+    size = found.held_out
+    assert size.noise_floor == pytest.approx(0.02 * case.measured.observed.std(), rel=0.25)
+    left = (size.after**2 - size.noise_floor**2) / (size.before**2 - size.noise_floor**2)
+    assert found.to_json()["gap"]["held_out"]["unexplained"] == pytest.approx(left) and left > 0.1
+
+
 def test_the_place_of_the_gap_and_its_share_are_given(answered):
     (where,) = answered[0].where
     assert (where.kind, where.place, where.phase) == ("port", "load", ())
