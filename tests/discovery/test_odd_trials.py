@@ -10,6 +10,7 @@ from hidden_in_a_mass import Experiment, mass, neuron, record, two_rods, with_lo
 from texts import says
 
 from gaitdisc.discovery.case import set_up_case
+from gaitdisc.discovery.decision import Verdict
 from gaitdisc.discovery.discover import discover
 from gaitdisc.discovery.folder import save_discovery
 from gaitdisc.discovery.odd_trials import agreeing_trials, odd_trials, shift_channels, without_trial_apart
@@ -158,12 +159,19 @@ def spoiled(measured, how):
 
 
 @pytest.mark.parametrize(
-    "how", ["gain", *(pytest.param(how, marks=pytest.mark.slow) for how in ("offset", "drift", "still"))]
+    ("how", "named"),
+    [
+        ("gain", False),
+        *(pytest.param(how, True, marks=pytest.mark.slow) for how in ("gain", "offset", "drift", "still")),
+    ],
 )
-def test_a_trial_that_goes_with_no_explanation_of_the_others_is_left_out_and_the_name_is_right(how):
+def test_a_trial_that_goes_with_no_explanation_of_the_others_is_left_out_and_the_name_is_right(how, named, monkeypatch):
+    if not named:
+        monkeypatch.setattr("gaitdisc.discovery.discover.decide", lambda _, as_read: Verdict(as_read, ()))
     measured = spoiled(record(with_load("-14*x**3"), 3, Experiment(seconds=6.0)), how)
     found, _ = discover(mass(), measured)
-    assert [(one.name, one.place) for one in found.effects] == [("cubic_stiffness", "load")]
+    assert [(one.name, one.place) for one in found.effects] == [("cubic_stiffness", "load")] * named
+    assert found.runs.names == ("1", "3", "4")
     assert says(found.sentence, "rial '2'", "no single model fits it", "left out")
     assert "This trial was left out" in found.sentence
 
