@@ -4,6 +4,7 @@ import ast
 import io
 import re
 import tokenize
+from functools import cache
 from pathlib import Path
 
 import pytest
@@ -67,19 +68,22 @@ def test_help_of_every_command():
     assert {name: found for name, text in helps.items() if (found := found_in(text))} == {}
 
 
-def sentences(path: Path) -> list[str]:
-    """String literals with a space in them, docstrings apart; a text that is joined from parts is one."""
-    tree = ast.parse(path.read_text(encoding="utf-8"))
-    bodies = [node.body for node in ast.walk(tree) if hasattr(node, "body") and isinstance(node.body, list)]
+@cache
+def texts_in(source: str) -> tuple[list[str], set[str]]:
+    """String literals with a space in them, a text that is joined from parts is one; and docstrings."""
+    nodes = list(ast.walk(ast.parse(source)))
+    bodies = [node.body for node in nodes if hasattr(node, "body") and isinstance(node.body, list)]
     docstrings = {id(body[0].value) for body in bodies if body and isinstance(body[0], ast.Expr)}
-    texts = [node for node in ast.walk(tree) if isinstance(node, ast.Constant) and id(node) not in docstrings]
-    return [node.value for node in texts if isinstance(node.value, str) and " " in node.value.strip()]
+    texts = [node for node in nodes if isinstance(node, ast.Constant) and id(node) not in docstrings]
+    kinds = (ast.Module, ast.ClassDef, ast.FunctionDef, ast.AsyncFunctionDef)
+    said = {ast.get_docstring(node) or "" for node in nodes if isinstance(node, kinds)}
+    return [node.value for node in texts if isinstance(node.value, str) and " " in node.value.strip()], said
 
 
 def test_what_pages_findings_and_errors_are_made_of():
     found = {}
     for path in sorted((PROJECT / "gaitdisc").rglob("*.py")):
-        words = [word for text in sentences(path) for word in found_in(text)]
+        words = [word for text in texts_in(path.read_text(encoding="utf-8"))[0] for word in found_in(text)]
         if words:
             found[str(path.relative_to(PROJECT))] = words
     assert found == {}
@@ -100,14 +104,12 @@ def test_first_lines_of_studies_and_benchmarks():
 
 def words_of_code(source: str) -> list[str]:
     """Private words in names, comments and docstrings, each once and in its line."""
-    body = ast.walk(ast.parse(source))
-    kinds = (ast.Module, ast.ClassDef, ast.FunctionDef, ast.AsyncFunctionDef)
-    texts = {ast.get_docstring(node) or "" for node in body if isinstance(node, kinds)}
-    for token in tokenize.generate_tokens(io.StringIO(source).readline):
-        if token.type == tokenize.COMMENT:
-            texts.add(token.string)
-        elif token.type == tokenize.NAME:
-            texts.add(re.sub(r"_|(?<=[a-z])(?=[A-Z])", " ", token.string))
+    texts = set(texts_in(source)[1])
+    for kind, word in {token[:2] for token in tokenize.generate_tokens(io.StringIO(source).readline)}:
+        if kind == tokenize.COMMENT:
+            texts.add(word)
+        elif kind == tokenize.NAME:
+            texts.add(re.sub(r"_|(?<=[a-z])(?=[A-Z])", " ", word))
     return sorted(
         {found.group().lower() for text in texts for found in PRIVATE_IN_CODE.finditer(without_allowed(text))}
     )
