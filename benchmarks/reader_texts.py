@@ -54,7 +54,7 @@ def list_code_texts(path: Path) -> Iterator[Text]:
     docstrings = {id(node.body[0]) for node in ast.walk(tree) if isinstance(node, OWNERS) and node.body}
 
     def walk(node: ast.AST) -> Iterator[Text]:
-        name = ast.unparse(node.func).rpartition(".")[2] if isinstance(node, ast.Call) else ""
+        name = getattr(node.func, "attr", getattr(node.func, "id", "")) if isinstance(node, ast.Call) else ""
         if isinstance(node, ast.Call) and (name.endswith("Error") or name == "Finding"):
             parts = [*node.args, *(key.value for key in node.keywords)]
             marks = [f"{mark}: " if name == "Finding" and mark in ("kind", "affects") else "" for mark in FINDING]

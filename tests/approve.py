@@ -113,7 +113,7 @@ def _templates(module: ast.Module) -> Iterator[str]:
     functions = (node for node in ast.walk(module) if isinstance(node, ast.FunctionDef))  # outer ones first
     inside = {node: function for function in functions for node in ast.walk(function)}
     for node in ast.walk(module):
-        name = ast.unparse(node.func).rpartition(".")[2] if isinstance(node, ast.Call) else ""
+        name = getattr(node.func, "attr", getattr(node.func, "id", "")) if isinstance(node, ast.Call) else ""
         if isinstance(node, ast.Call) and (name.endswith("Error") or name == "Finding") and len(node.args) >= 2:
             assigned = _assigned(inside.get(node, module))
             named = (_template(one.value, assigned) for one in node.keywords)
