@@ -74,16 +74,21 @@ def _remembered(compute):
 
 @pytest.fixture(scope="session", autouse=True)
 def what_all_tests_share_is_made_once(tmp_path_factory):
-    """The tree of commands, templates, what a simulated leg has learnt, exchanged labels, the period of an angle."""
+    """The tree of commands, templates, what a simulated leg has learnt, exchanged labels, the period of an angle.
+
+    A disk and chance are asked less: no test ends the power, and groups of people are held against 39 clouds.
+    """
     from gaitdisc.cohort import walk
     from gaitdisc.kinematics import motion
+    from gaitdisc.response import over_participants
     from gaitdisc.signals import contact_movement, strides
 
     period = _remembered(strides.stride_period)
     compiled = jinja2.FileSystemBytecodeCache(str(tmp_path_factory.mktemp("templates")))
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(typer.main, "get_command", cache(typer.main.get_command))
-        patch.setattr(os, "fsync", lambda _: None)  # no test ends the power; a disk takes milliseconds for each file
+        patch.setattr(os, "fsync", lambda _: None)
+        patch.setattr(over_participants, "find_groups", partial(over_participants.find_groups, clouds=39))
         patch.setattr(jinja2, "Environment", partial(jinja2.Environment, bytecode_cache=compiled))
         patch.setattr(walk, "learnt_table", _remembered(walk.learnt_table))
         patch.setattr(motion, "find_exchanged_pairs", _remembered(motion.find_exchanged_pairs))
