@@ -149,9 +149,11 @@ def briefly():
     """Return a context in which networks take two passes over their samples: for what several tests share."""
 
     @contextmanager
-    def brief():
+    def brief(painted=True):
         with pytest.MonkeyPatch.context() as patch:
             patch.setattr("gaitdisc.models.training_settings.count_epochs", lambda *_: 2)
+            if not painted:
+                _unpaint(patch)
             yield
 
     return brief
@@ -167,8 +169,12 @@ def trained_briefly(briefly):
         yield
 
 
+def _unpaint(patch):
+    patch.setattr("gaitdisc.report.figure._svg", lambda _: b"<svg/>")
+    patch.setattr("gaitdisc.report.figure._png", lambda _: b"")
+
+
 @pytest.fixture
 def unpainted(monkeypatch):
     """Figures are laid out and not painted, most of the time of a report: for tests of what a page says."""
-    monkeypatch.setattr("gaitdisc.report.figure._svg", lambda _: b"<svg/>")
-    monkeypatch.setattr("gaitdisc.report.figure._png", lambda _: b"")
+    _unpaint(monkeypatch)

@@ -54,7 +54,7 @@ def ran(recordings, tmp_path_factory, said, briefly):
     for word in ("nominal", "exo"):
         shutil.copy(recordings / f"{word}.mot", folder)
     written(folder, walker("P01"))
-    with briefly():
+    with briefly(painted=False):
         said("run", folder, "--quiet", ends=0)
     return folder
 
@@ -114,7 +114,7 @@ def test_whoever_is_left_out_is_named_and_every_table_has_its_n(folder, said):
     assert set(tests["n"]) <= {2}
 
 
-def test_an_input_that_does_not_move_is_told(folder, said):
+def test_an_input_that_does_not_move_is_told(folder, said, trained_briefly, unpainted):
     written(folder, walker("P01", "still_ankle_angle_l_nominal.mot", "still_ankle_angle_l_exo.mot"))
     said("run", folder, "--quiet", ends=0)
     findings = pd.read_csv(folder / "run" / "report" / "tables" / "findings.csv")

@@ -157,7 +157,7 @@ def test_a_search_that_is_stopped_continues_with_the_same_command(lab, whole, tm
     assert not (tmp_path / "kept").exists()
 
 
-def test_the_answer_stands_before_its_twins_are_searched(lab, tmp_path, monkeypatch, called):
+def test_the_answer_stands_before_its_twins_are_searched(lab, tmp_path, monkeypatch, called, unpainted):
     """What twins say is printed and written after it; the search of twins is tested in tests/discovery."""
     twins, before = Twins(20, "no_gap", {}, {"no_gap": 19, "gravity@v": 1}), []
 

@@ -181,7 +181,7 @@ def test_what_the_same_command_wrote_is_replaced_until_a_user_changes_it(tmp_pat
     called("angles", "mine.mot", "--out", "x.csv", ends=REFUSED)
 
 
-def test_a_page_is_drawn_again_by_report_until_a_user_changes_it(tmp_path, monkeypatch, called):
+def test_a_page_is_drawn_again_by_report_until_a_user_changes_it(tmp_path, monkeypatch, called, unpainted):
     monkeypatch.chdir(tmp_path)
     save_discovery(manufactured(), Path("found"))  # as before there were lists
     for _ in range(2):

@@ -143,6 +143,7 @@ def test_the_nominal_walk_calibrates_one_model_for_all_conditions(three_walks):
     assert stiff.model is soft.model and stiff.nominal is soft.nominal and stiff.device is not soft.device
 
 
+@pytest.mark.usefixtures("unpainted")
 def test_conditions_stand_side_by_side_and_one_without_a_walk_costs_no_other(three_walks, tmp_path, monkeypatch):
     def answered(walks, word, request, joint):
         walks.calibrated(word, joint)

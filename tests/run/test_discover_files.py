@@ -48,7 +48,7 @@ def test_the_answer_carries_what_it_rests_on(files):
     assert (term.place, term.name) == ("load", "cubic_stiffness")
 
 
-def test_names_of_people_are_hidden_in_what_is_written_and_held_by_python(tmp_path):
+def test_names_of_people_are_hidden_in_what_is_written_and_held_by_python(tmp_path, unpainted):
     """A trial may have the name of whoever walked it."""
     data = SimpleNamespace(trials=("Otto", "1", "2", "Erika"), rate=100.0, channels=("x",))
     seen = Finding("warning", "odd trial", "walk.csv", "trial 'Erika' is late", "", "x")
