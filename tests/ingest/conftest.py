@@ -9,6 +9,7 @@ import pytest
 from gaitdisc.errors import GaitdiscError
 from gaitdisc.ingest import reader_process
 from gaitdisc.ingest.c3d import C3DReader
+from gaitdisc.ingest.new_study import _describe_trial
 from gaitdisc.ingest.reading import read_trial
 
 
@@ -76,15 +77,22 @@ def some_analog():
 
 
 @pytest.fixture(scope="session")
-def real_trials(gait_data, reader):
-    """Every real recording that can be read: path, names of its channels, findings."""
+def real_files(gait_data, reader):
+    """Every real recording: path, names of its channels, findings, how a draft describes it; or path, the refusal."""
     found = []
     for path in sorted(gait_data.parent.rglob("*")):
         if path.suffix in (".mot", ".sto", ".trc", ".c3d"):
             try:
                 trial = read_trial(path, reader=reader)
-            except GaitdiscError:
+            except GaitdiscError as error:
+                found.append((path, type(error)))
                 continue
             names = {name for recording in trial.streams.values() for name in recording.names}
-            found.append((path, names, trial.findings))
+            found.append((path, names, trial.findings, _describe_trial((Path("P01/a.c3d"),), trial)))
     return found
+
+
+@pytest.fixture(scope="session")
+def real_trials(real_files):
+    """Of those that can be read."""
+    return [one[:3] for one in real_files if len(one) > 2]
