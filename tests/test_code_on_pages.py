@@ -26,9 +26,7 @@ def test_there_is_a_picture_of_each_and_none_is_long():
         assert [line for line in text.splitlines() if "from gaitdisc" in line or "import gaitdisc." in line] == []
 
 
-@pytest.mark.parametrize(
-    "name", [pytest.param(each, marks=() if each in QUICK else pytest.mark.slow) for each in PICTURES]
-)
+@pytest.mark.parametrize("name", [pytest.param(p, marks=() if p in QUICK else pytest.mark.slow) for p in PICTURES])
 def test_a_script_runs_as_it_stands(tmp_path, name, trained_briefly):
     run_script(scripts()[name], tmp_path)
     assert (tmp_path / f"{name}.png").stat().st_size > 5000

@@ -110,9 +110,7 @@ def words_of_code(source: str) -> list[str]:
             texts.add(word)
         elif kind == tokenize.NAME:
             texts.add(re.sub(r"_|(?<=[a-z])(?=[A-Z])", " ", word))
-    return sorted(
-        {found.group().lower() for text in texts for found in PRIVATE_IN_CODE.finditer(without_allowed(text))}
-    )
+    return sorted({one.group().lower() for text in texts for one in PRIVATE_IN_CODE.finditer(without_allowed(text))})
 
 
 def code_by_room() -> dict[str, dict[str, list[str]]]:

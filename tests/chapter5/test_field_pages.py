@@ -99,9 +99,7 @@ def test_open_ended_bins_are_not_drawn_and_their_share_is_said():
 
 
 def test_every_model_is_a_point_and_the_ceiling_a_line():
-    cells = [
-        cell(route, split, run, 0.1 * run) for route in ("fixed", "walk") for split in ("a", "b") for run in (1, 2, 3)
-    ]
+    cells = [cell(route, split, k, 0.1 * k) for route in ("fixed", "walk") for split in ("a", "b") for k in (1, 2, 3)]
     figure = boxes_figure(cells, "b", "As Fig. 5.2", {"a": 0.05, "b": 0.8})
     assert len(figure.numbers) == 12
     assert 0.8 in [line.get_ydata()[0] for line in figure.drawn.axes[1].lines]

@@ -126,9 +126,7 @@ def test_a_window_holds_what_the_route_reads_oldest_first():
     assert snapshots_of(windows)[[0, -1]].tolist() == [4, 119]
     row = np.concatenate([np.concatenate([read[t, k], places[t, k]]) for t in (6, 8, 10) for k in (0, 1)])
     np.testing.assert_array_equal(windows.x[6], row)
-    assert [name.split(" of ") for name in windows.inputs[:3]] == [
-        [x, "sensor 1 4 month ago"] for x in ("h", "g", "lat")
-    ]
+    assert [one.split(" of ") for one in windows.inputs[:3]] == [[x, "sensor 1 4 month ago"] for x in ("h", "g", "lat")]
     assert windows.inputs[-4:] == ("h of sensor 2", "g of sensor 2", "lat of sensor 2", "lon of sensor 2")
     assert reading_names(TWO, ROUTE) == ("h of sensor 1", "g of sensor 1", "h of sensor 2", "g of sensor 2")
 

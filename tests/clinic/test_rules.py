@@ -131,9 +131,7 @@ def test_legs_that_differ_more_than_those_of_controls_are_noted_where_neither_is
     assert said.startswith("Knee in swing: left") and says(
         said, "deg less than right", "neither leg stands out", "limits", "20 people"
     )
-    few = {
-        side: replace(leg, cycles={name: each[:2] for name, each in leg.cycles.items()}) for side, leg in legs.items()
-    }
+    few = {side: replace(leg, cycles={name: one[:2] for name, one in leg.cycles.items()}) for side, leg in legs.items()}
     assert not any(one.tier for one in outstanding(few, even, table)[0])
 
 

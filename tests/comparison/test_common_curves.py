@@ -86,7 +86,7 @@ def test_headings_on_either_side_of_180_deg_are_neighbours():
 
 
 CURVES = np.stack(
-    [np.cos(2 * np.pi * k * PERCENT / 100 + k) + 0.3 * np.sin(2 * np.pi * PERCENT / 50) for k in (1, 2, 3)], 1
+    [np.cos(2 * np.pi * k * PERCENT / 100 + k) + 0.3 * np.sin(np.pi * PERCENT / 25) for k in (1, 2, 3)], 1
 )
 
 

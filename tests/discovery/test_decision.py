@@ -59,9 +59,7 @@ def test_what_the_held_out_data_do_not_bear_out_beside_another_is_left_out(case,
     assert keep_useful(case, as_read, alone) is alone
 
 
-def test_held_out_data_prefer_two_plain_effects_to_one_of_more_numbers_that_imitates_them(
-    case, as_read, beside, labelled
-):
+def test_held_out_data_prefer_two_plain_effects_to_one_of_more_numbers_that_imitates(case, as_read, beside, labelled):
     imitates = Part(labelled["periodic_forcing@load"], {"factor": 1.0, "factor_1": 1.0, "w": 3.0})
     one = score(as_read.refitted(as_read.shooting, (imitates,)))
     true, two = beside(), beside("viscous_damping@load")

@@ -156,7 +156,7 @@ def test_nothing_is_named_where_nothing_is_hidden(seed, cutoff_hz):
 
 
 @pytest.mark.parametrize(
-    ("term", "noise"), [("0", 0.0), slow("-1e-4*x**3", 1e-7), slow("0", 1e-7), slow("-1e-4*x**3", 0.0)]
+    ("term", "noise"), [("0", 0), slow("-1e-4*x**3", 1e-7), slow("0", 1e-7), slow("-1e-4*x**3", 0)]
 )
 def test_what_integration_may_leave_is_not_named(term, noise):
     discovery, _ = _found(with_load(term), Experiment(noise=noise))

@@ -252,7 +252,7 @@ def test_trials_of_no_group_are_those_of_the_only_person_of_that_name(tmp_path):
 
 def study_of(people, sessions=(), others=(), **more):
     participants = tuple(
-        Participant(id=name, trials=tuple(trials), **more.get(name, {})) for name, trials in people.items()
+        Participant(id=who, trials=tuple(trials), **more.get(who, {})) for who, trials in people.items()
     )
     return Study(sessions=sessions, conditions=Conditions(nominal="straight", others=others), participants=participants)
 

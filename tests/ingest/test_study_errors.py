@@ -92,9 +92,7 @@ def test_a_refusal_carries_its_place_and_three_parts():
 
 def _participants(words, *people):
     """Study that is not validated, so that one rule can be tested alone."""
-    trials = [
-        Participant(id=id, trials=(PlannedTrial(condition=condition, files=("a.mot",)),)) for id, condition in people
-    ]
+    trials = [Participant(id=id, trials=(PlannedTrial(condition=word, files=("a.mot",)),)) for id, word in people]
     return Study.model_construct(conditions=Conditions(nominal=words[0], device=words[1]), participants=tuple(trials))
 
 

@@ -77,9 +77,7 @@ def test_models_compare_one_walk_of_each_of_one_session(trials, message):
 
 def test_who_lacks_a_condition_is_refused_but_not_a_group_that_never_has_it():
     lacking = _person("P01", _trial("free"))
-    control, patient = (
-        _person(id, _trial("free"), group=group) for id, group in (("P02", "control"), ("P03", "patient"))
-    )
+    control, patient = (_person(id, _trial("free"), group=who) for id, who in (("P02", "control"), ("P03", "patient")))
     treated = _person("P04", _trial("free"), _trial("exo"), group="patient")
     study = _study(lacking, control, patient, treated, nominal="free", device="exo")
     refused = {person.id: bool(why_refused(study, person)) for person in study.participants}

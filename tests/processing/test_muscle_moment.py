@@ -13,9 +13,7 @@ def made():
     count = np.arange(STRIDES * STRIDE) / STRIDE
     phase = count % 1
     heights = [np.interp(count, np.arange(STRIDES + 1), 1 + 0.2 * rng.normal(size=STRIDES + 1)) for _ in range(2)]
-    emg = np.column_stack(
-        [h * np.exp(-(((phase - at) / 0.08) ** 2)) for h, at in zip(heights, (0.4, 0.75), strict=True)]
-    )
+    emg = np.column_stack([h * np.exp(-(((phase - a) / 0.08) ** 2)) for h, a in zip(heights, (0.4, 0.75), strict=True)])
     usual = 0.2 * np.sin(2 * np.pi * phase)
     angle = usual + 0.02 * np.interp(count, np.arange(0, STRIDES + 0.1, 0.5), rng.normal(size=2 * STRIDES + 1))
     signs = np.array([-1.0, 1.0])

@@ -43,9 +43,7 @@ def _apart_ms(kind, walks):
 def test_every_walk_of_one_stride_or_more_has_its_events(walks):
     seen = {name: step_events(walk) for name, walk in walks.items()}
     assert len(seen) == 12
-    assert {name: steps.detector for name, steps in seen.items() if steps.detector != "events"} == {
-        "HC036A23": "markers"
-    }
+    assert {name: one.detector for name, one in seen.items() if one.detector != "events"} == {"HC036A23": "markers"}
     assert all(max(len(times) for times in steps.contacts.values()) >= 2 for steps in seen.values())
     assert all(over_ground(walk) for walk in walks.values())
 

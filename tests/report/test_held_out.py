@@ -91,10 +91,8 @@ def response_residual(response_maker):
 
 
 def test_the_mean_and_its_interval_are_the_known_ones(response_residual):
-    numbers = residual_numbers(response_residual)
-    nominal = numbers[(numbers["variable"] == OUTPUTS_RESIDUAL[1]) & (numbers["model"] == "nominal")].set_index(
-        "percent"
-    )
+    numbers = residual_numbers(response_residual).set_index("percent")
+    nominal = numbers[(numbers["variable"] == OUTPUTS_RESIDUAL[1]) & (numbers["model"] == "nominal")]
     assert nominal.loc[40.0, "mean"] == pytest.approx(100.0)
     assert nominal.loc[90.0, "low"] < 0 < nominal.loc[90.0, "high"]
     assert nominal.loc[40.0, "low"] > 95
@@ -134,9 +132,7 @@ def test_few_strides_have_a_mean_and_no_interval(response_residual):
     assert "n = 3 strides" in figure.caption
     assert says(figure.caption, "no", "5 complete strides")
     assert "too few strides" in figure.alt
-    none = replace(
-        response_residual, residuals={key: values[:0] for key, values in response_residual.residuals.items()}
-    )
+    none = replace(response_residual, residuals={key: size[:0] for key, size in response_residual.residuals.items()})
     assert residual_figures(none, "P01") == []
 
 

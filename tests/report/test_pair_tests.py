@@ -88,9 +88,8 @@ def test_a_variable_that_was_not_tested_says_so(tested_maker):
     from gaitdisc.response.over_participants import compare_models
 
     def without_soleus(response):
-        return replace(
-            response, r2=response.r2.assign(r2=response.r2["r2"].where(response.r2["variable"] != "emg_sol_r"))
-        )
+        table = response.r2
+        return replace(response, r2=table.assign(r2=table["r2"].where(table["variable"] != "emg_sol_r")))
 
     responses = (*(without_soleus(one) for one in run.responses[:2]), *run.responses[2:])
     run = run.with_units(RESPONSE, responses).with_units(TESTS, (compare_models(responses),))
@@ -172,11 +171,9 @@ def test_the_blocks_that_have_something_to_say(tested, run):
 
 
 def test_none_is_said_with_n_and_with_what_it_is_worth(tested):
-    none = replace(
-        tested.over, responders=tested.over.responders.assign(group=0), responders_said="No sub-groups (n = 11)"
-    )
+    none = replace(tested.over, responders=tested.over.responders.assign(group=0), responders_said="No groups (n = 11)")
     said = responder_sentences(tested.with_units(OVER, (none,)))
-    assert said[0] == "No sub-groups (n = 11)."
+    assert said[0] == "No groups (n = 11)."
     assert "does not prove homogeneity" in said[1]
     assert responder_table(tested.with_units(OVER, (none,))) is None
 

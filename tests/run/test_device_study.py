@@ -297,9 +297,8 @@ def test_a_walk_without_emg_has_one_verdict(monkeypatch, verdict):
     def refused(*_):
         raise NoMomentsError("naming the effect needs EMG in both walks", "W01 exo has no EMG", "Add it.")
 
-    study = SimpleNamespace(
-        participant=lambda _: SimpleNamespace(id="W01", trials=()), conditions=one_walk().conditions
-    )
+    who = SimpleNamespace(id="W01", trials=())
+    study = SimpleNamespace(participant=lambda _: who, conditions=one_walk().conditions)
     monkeypatch.setattr("gaitdisc.discovery.discover_device.load_study", lambda _: study)
     monkeypatch.setattr("gaitdisc.discovery.discover_device.list_words", lambda *_: PublicWords())
     monkeypatch.setattr(PersonWalks, "calibrated", refused)

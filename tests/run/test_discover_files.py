@@ -87,9 +87,7 @@ HIDDEN = {
 
 
 @pytest.mark.usefixtures("unpainted")
-@pytest.mark.parametrize(
-    "verdict", [pytest.param(one, marks=() if one in QUICK else pytest.mark.slow) for one in HIDDEN]
-)
+@pytest.mark.parametrize("verdict", [pytest.param(v, marks=() if v in QUICK else pytest.mark.slow) for v in HIDDEN])
 def test_a_simulation_that_is_a_function_goes_all_the_way(tmp_path, verdict):
     model = tank(initial=3.0 if verdict == "wrong_initial_condition" else None)
     measured = write_record(tmp_path / "tank.csv", seed=1, **HIDDEN[verdict])

@@ -101,9 +101,7 @@ def units(folder):
 @pytest.mark.timeout(1800)
 @pytest.mark.parametrize("word", ["run", "ablate"])
 def test_a_run_killed_at_random_moments_gives_the_same_bytes(word, runs, study, tmp_path):
-    people = [
-        person.model_copy(update={"id": f"{person.id}{letter}"}) for person in study.participants for letter in "ab"
-    ]
+    people = [one.model_copy(update={"id": f"{one.id}{letter}"}) for one in study.participants for letter in "ab"]
     people[0] = people[0].model_copy(update={"trials": (people[0].trials[0], people[1].trials[0])})  # not a pair
     study = study.model_copy(update={"participants": tuple(people)})
     write_study(study, tmp_path / "whole" / "study.toml")

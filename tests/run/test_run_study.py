@@ -106,9 +106,7 @@ def killed_for_the_second(study, participant, folder, progress):
 
 
 @pytest.mark.slow  # tests/run/test_workers.py kills a process that computes next to nothing
-def test_a_participant_whose_process_is_killed_is_refused_and_the_others_stand(
-    run, study, finished, tmp_path, monkeypatch
-):
+def test_a_participant_whose_process_is_killed_is_refused_and_others_stand(run, study, finished, tmp_path, monkeypatch):
     copy = shutil.copytree(finished, tmp_path / "copy")
     monkeypatch.setattr("gaitdisc.run.run_study.compute_unit", killed_for_the_second)
     done = run_study(study, copy, Workers(jobs=2))

@@ -82,9 +82,7 @@ def test_what_was_found_over_the_participants_is_loaded(tmp_path):
 
 @pytest.fixture(scope="module")
 def mismatch():
-    walks = [
-        DrivenWalker("A", seed=1, spring_per_s2=k).walked(25.0, name) for k, name in ((250.0, "exo"), (0.0, "free"))
-    ]
+    walks = [DrivenWalker("A", seed=1, spring_per_s2=k).walked(25.0, name) for k, name in ((250, "exo"), (0, "free"))]
     return compare_walks(*walk_pair(*walks))
 
 

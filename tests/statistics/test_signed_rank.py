@@ -29,9 +29,7 @@ def enumerated(differences):
     ranks = [sum((abs(e) < abs(d)) + (abs(e) == abs(d)) / 2 for e in kept) + 0.5 for d in kept]
     total = sum(ranks)
     seen = min(s := sum(r for r, d in zip(ranks, kept, strict=True) if d > 0), total - s)
-    sums = [
-        sum(r for r, up in zip(ranks, ups, strict=True) if up) for ups in itertools.product((0, 1), repeat=len(kept))
-    ]
+    sums = [sum(r for r, u in zip(ranks, ups, strict=True) if u) for ups in itertools.product((0, 1), repeat=len(kept))]
     return min(1.0, sum(min(s, total - s) <= seen for s in sums) / len(sums))
 
 

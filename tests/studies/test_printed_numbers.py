@@ -89,9 +89,7 @@ def test_friction_in_the_examples_is_that_of_the_results():
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize(
-    "last", sorted({block.commands[-1] for _, block in EVERY}), ids=lambda one: shlex.split(one)[1]
-)
+@pytest.mark.parametrize("last", sorted({one.commands[-1] for _, one in EVERY}), ids=lambda one: shlex.split(one)[1])
 def test_every_block_is_what_its_command_prints(last, tmp_path):
     block = next(block for _, block in EVERY if block.commands[-1] == last)
     if "DATA" in last and not SHARED.is_dir():
