@@ -153,7 +153,7 @@ def briefly():
         with pytest.MonkeyPatch.context() as patch:
             patch.setattr("gaitdisc.models.training_settings.count_epochs", lambda *_: 2)
             if not painted:
-                _unpaint(patch)
+                _unpaint(patch, drawn=False)
             yield
 
     return brief
@@ -169,12 +169,20 @@ def trained_briefly(briefly):
         yield
 
 
-def _unpaint(patch):
+def _unpaint(patch, drawn=True):
     patch.setattr("gaitdisc.report.figure._svg", lambda _: b"<svg/>")
     patch.setattr("gaitdisc.report.figure._png", lambda _: b"")
+    for figures in () if drawn else ("draw_held_out", "residual_figures", "curves_figures"):
+        patch.setattr(f"gaitdisc.response.page.{figures}", lambda *_: [])
 
 
 @pytest.fixture
 def unpainted(monkeypatch):
     """Figures are laid out and not painted, most of the time of a report: for tests of what a page says."""
     _unpaint(monkeypatch)
+
+
+@pytest.fixture
+def undrawn(monkeypatch):
+    """Nor are those of a participant laid out: for tests of what becomes of a run, not of its page."""
+    _unpaint(monkeypatch, drawn=False)

@@ -161,7 +161,7 @@ def test_a_participant_with_one_condition_only(folder, called):
     assert says(said, "'nominal'", "'exo'; P02", "1", "'nominal', none", "'exo'")
 
 
-def test_a_held_out_part_longer_than_the_trial(folder, walk, called, unpainted):
+def test_a_held_out_part_longer_than_the_trial(folder, walk, called, undrawn):
     written(folder, SOUND, held_out={"seconds": 90.0})
     said = called("run", folder, "--quiet", ends=REFUSED).stderr
     assert says(said, "must be longer than", "90 s to be held out") and "lasts 30.00 s" in said

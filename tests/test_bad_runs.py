@@ -114,7 +114,7 @@ def test_whoever_is_left_out_is_named_and_every_table_has_its_n(folder, said):
     assert set(tests["n"]) <= {2}
 
 
-def test_an_input_that_does_not_move_is_told(folder, said, trained_briefly, unpainted):
+def test_an_input_that_does_not_move_is_told(folder, said, trained_briefly, undrawn):
     written(folder, walker("P01", "still_ankle_angle_l_nominal.mot", "still_ankle_angle_l_exo.mot"))
     said("run", folder, "--quiet", ends=0)
     findings = pd.read_csv(folder / "run" / "report" / "tables" / "findings.csv")
@@ -182,6 +182,7 @@ def test_two_runs_in_one_folder(folder, monkeypatch, said):
     assert says(words, f"{os.getpid()}", f"{folder}/run/")
 
 
+@pytest.mark.usefixtures("undrawn")
 def test_a_run_that_was_moved_to_another_machine_goes_on_there(ran, monkeypatch, tmp_path, said, called, request):
     there = shutil.copytree(ran, tmp_path / "machine")
     here = ran.rename(tmp_path / "here")
@@ -193,6 +194,7 @@ def test_a_run_that_was_moved_to_another_machine_goes_on_there(ran, monkeypatch,
     called("report", there / "run", ends=0)
 
 
+@pytest.mark.usefixtures("undrawn")
 @pytest.mark.parametrize("file", ["response.json", "r2.csv", "arrays.npz"])
 def test_a_damaged_unit_is_told_by_report_and_mended_by_run(ran, tmp_path, said, file):
     folder = shutil.copytree(ran, tmp_path / "copy")

@@ -7,7 +7,7 @@ from gaitdisc.clinic.clinical_reference import save_reference
 from gaitdisc.commands.options import REFUSED
 
 
-def test_the_report_of_a_run_is_drawn_again_without_fitting(study, called, unpainted):
+def test_the_report_of_a_run_is_drawn_again_without_fitting(study, called, undrawn):
     called("run", study, "--quiet", ends=0)
     page = study / "run" / "report" / "report.html"
     first = page.read_bytes()

@@ -4,7 +4,7 @@ import pytest
 
 from gaitdisc.commands.options import REFUSED, SOME_REFUSED
 
-pytestmark = pytest.mark.usefixtures("unpainted")
+pytestmark = pytest.mark.usefixtures("undrawn")
 
 
 def test_the_batch_goes_on_past_a_broken_file(study, recordings, tmp_path, called):
