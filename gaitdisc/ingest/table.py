@@ -7,7 +7,7 @@ import io
 import re
 from collections.abc import Mapping, Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -27,6 +27,8 @@ from gaitdisc.whole_file import write_whole
 if TYPE_CHECKING:
     import pandas as pd
 
+# even times [s], labels, and columns (time, column) in their own units
+TimedColumns = tuple[Values, list[str], Values]
 FRAME = "the table"  # a DataFrame has no name
 LEADING = 50  # lines above the header: who, when, which software
 LEADING_EVENTS = 10  # above that of a table of events
@@ -79,14 +81,6 @@ def read_frame(frame: pd.DataFrame, channels: Mapping[str, str] | None = None) -
     return _trial(Source(FRAME, reader="DataFrame"), frame_columns(frame, channels), channels)
 
 
-class TimedColumns(NamedTuple):
-    """Columns of a table (time, column) in their own units, and its even times [s]."""
-
-    time: Values
-    labels: list[str]
-    values: Values
-
-
 def has_times(frame: pd.DataFrame) -> bool:
     """Whether times stand in a column of a DataFrame, or in its index."""
     return any(_time_unit(str(name)) for name in (frame.index.name, *frame.columns))
@@ -119,12 +113,12 @@ def _split_time(
         digit = printed_digit(map(repr, values[:, at].tolist()))
     time = even_time(clock, digit * (1e-3 if unit == "ms" else 1.0), file, None if cells is None else cells.lines)
     others = [label for i, label in enumerate(labels) if i != at]
-    return TimedColumns(time, others, np.delete(values, at, axis=1))
+    return time, others, np.delete(values, at, axis=1)
 
 
 def _trial(source: Source, table: TimedColumns, channels: Mapping[str, str] | None) -> Trial:
-    columns = [find_column(label, source.file, channels) for label in table.labels]
-    return check_trial(source, table.time, table.values, columns)
+    time, labels, values = table
+    return check_trial(source, time, values, [find_column(label, source.file, channels) for label in labels])
 
 
 def write_table(recording: Recording, path: Path | str) -> Path:

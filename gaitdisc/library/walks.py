@@ -44,10 +44,10 @@ def make_recording(signal: Recording | Trial | pd.DataFrame, kind: Kind | None =
             f"found {type(signal).__name__}",
             "Read a file with gaitdisc.read first, or put arrays into a DataFrame.",
         )
-    columns = frame_columns(signal)
+    time, labels, values = frame_columns(signal)
     known = {} if kind else vocabulary().by_name
-    channels = tuple(known.get(label) or Channel(label, *(kind or PLAIN)) for label in columns.labels)
-    return Recording(columns.time, columns.values, channels)
+    channels = tuple(known.get(label) or Channel(label, *(kind or PLAIN)) for label in labels)
+    return Recording(time, values, channels)
 
 
 def make_trial(walk: Walk) -> Trial:
