@@ -54,22 +54,21 @@ def fit_ridge(samples: Samples, harmonics: int = 8) -> Ridge:
     before, inner = samples.last_block(INNER_SHARE, SEAM_S)
     before.trainable(LEAST_BEFORE_INNER)
     spread = before.y.std(axis=0)
-    losses = []
-    for penalty in PENALTIES:
-        scale, weights, offset = _solved(before, harmonics, penalty)
-        predicted = scale.scaled(_columns(inner.x, inner.inputs, harmonics)) @ weights + offset
-        losses.append(float(np.mean(((inner.y - predicted) / spread) ** 2)))
+    scale, offset, solved = _solved(before, harmonics, PENALTIES)
+    columns = scale.scaled(_columns(inner.x, inner.inputs, harmonics))
+    losses = [float(np.mean(((inner.y - (columns @ weights + offset)) / spread) ** 2)) for weights in solved]
     penalty = PENALTIES[int(np.argmin(losses))]
-    scale, weights, offset = _solved(samples, harmonics, penalty)
+    scale, offset, (weights,) = _solved(samples, harmonics, (penalty,))
     return Ridge(samples.inputs, samples.outputs, harmonics, scale, weights, offset, penalty=penalty)
 
 
-def _solved(samples: Samples, harmonics: int, penalty: float) -> tuple[Scale, Values, Values]:
+def _solved(samples: Samples, harmonics: int, penalties: tuple[float, ...]) -> tuple[Scale, Values, list[Values]]:
+    """Scale, offset, and the weights (column, output) of each penalty."""
     columns = _columns(samples.x, samples.inputs, harmonics)
     scale = fit_scale(columns)
     scaled, offset = scale.scaled(columns), samples.y.mean(axis=0)
-    normal = scaled.T @ scaled / len(scaled) + penalty * np.eye(scaled.shape[1])
-    return scale, np.linalg.solve(normal, scaled.T @ (samples.y - offset) / len(scaled)), offset
+    normal, right = scaled.T @ scaled / len(scaled), scaled.T @ (samples.y - offset) / len(scaled)
+    return scale, offset, [np.linalg.solve(normal + penalty * np.eye(len(normal)), right) for penalty in penalties]
 
 
 def _columns(x: Values, inputs: tuple[str, ...], harmonics: int) -> Values:
