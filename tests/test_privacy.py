@@ -244,6 +244,7 @@ def test_a_comparison_holds_none_of_them(study, recordings, tmp_path, said):
         assert found_in(tmp_path) == {}
 
 
+@pytest.mark.usefixtures("painted")
 def test_models_and_what_they_tell_hold_none_of_them(study, recordings, tmp_path, said):
     options = ["--sensors", "ankle_angle_r", "--kinds", "linear", "--out", tmp_path / "out", "--quiet"]
     words = said("reconstruct", study, *options, ends=SOME_REFUSED)

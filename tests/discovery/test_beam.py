@@ -21,9 +21,8 @@ CLEAN = Experiment(seconds=8.0, noise=0.001)
 def beam():
     """Return a beam over what explains a stiffening spring and a loss between viscous and quadratic."""
     hidden = with_load("-16*x**3 - 0.6*v*abs(v)**0.5")
-    case = set_up_case(mass(), record(hidden, 5, CLEAN))
-    scale = case.scale
-    return Beam(case.search, scale, near_runs(case))
+    case = set_up_case(mass(), record(hidden, 5, replace(CLEAN, seconds=3.0)))
+    return Beam(case.search, case.scale, near_runs(case))
 
 
 @pytest.fixture(scope="module")
