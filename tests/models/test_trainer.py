@@ -29,14 +29,14 @@ def test_it_learns_a_pendulum(swing):
     assert np.all(1 - missed.var(axis=0) / later.y.var(axis=0) > 0.995)
 
 
-def test_same_seed_same_weights_and_another_seed_others(swing, quick):
+def test_same_seed_same_weights_and_another_seed_others(swing, quick, trained_briefly):
     first = train(swing, FeedForward, quick)
     torch.rand(10)  # the global generator is neither used nor moved
     assert same_weights(first, train(swing, FeedForward, quick))
     assert not same_weights(first, train(swing, FeedForward, replace(quick, seed=1)))
 
 
-def test_training_leaves_the_global_generator_alone(swing, quick):
+def test_training_leaves_the_global_generator_alone(swing, quick, trained_briefly):
     torch.manual_seed(5)
     expected = torch.rand(3)
     torch.manual_seed(5)
@@ -44,7 +44,7 @@ def test_training_leaves_the_global_generator_alone(swing, quick):
     assert torch.equal(torch.rand(3), expected)
 
 
-def test_the_scale_never_sees_the_inner_block(swing, quick):
+def test_the_scale_never_sees_the_inner_block(swing, quick, trained_briefly):
     before = swing.time < swing.last_block(quick.inner_share)[1].time[0] - 0.3
     shifted = replace(swing, x=swing.x + 100.0 * ~before[:, None], y=swing.y - 50.0 * ~before[:, None])
     network = train(shifted, FeedForward, quick).network
@@ -53,7 +53,7 @@ def test_the_scale_never_sees_the_inner_block(swing, quick):
         np.testing.assert_array_equal(found.sd, wanted.sd)
 
 
-def test_the_last_layer_stays_as_it_was_descended_where_that_is_wanted(swing, quick):
+def test_the_last_layer_stays_as_it_was_descended_where_that_is_wanted(swing, quick, trained_briefly):
     done = train(swing, FeedForward, replace(quick, solved=False))
     assert not same_weights(done, train(swing, FeedForward, quick))
 
@@ -100,7 +100,7 @@ def test_compiled_code_and_torch_give_one_r2(swing):
     np.testing.assert_allclose(found, wanted, atol=0.005)
 
 
-def test_a_constant_input_weighs_nothing(swing, quick):
+def test_a_constant_input_weighs_nothing(swing, quick, trained_briefly):
     network = train(swing, FeedForward, quick).network
     assert network.x_scale.constant.tolist() == [name == "still" for name in swing.inputs]
     assert np.isfinite(network(swing.x)).all()
