@@ -189,9 +189,7 @@ OFF = {"m": (2.0, 2.08), "k": (24.0, 22.9), "c": (0.8, 0.84)}
 
 def within(low, high):
     """The mass, whose stiffness has bounds."""
-    return replace(
-        mass(), parameters=[replace(k, low=low, high=high) if k.name == "k" else k for k in mass().parameters]
-    )
+    return mass().with_parameter(Parameter("k", 24.0, "N/m", low, high))
 
 
 def believed(bounds=0.125):

@@ -33,11 +33,7 @@ def test_an_explanation_that_earns_nothing_is_thrown_out(case, as_read, cubic):
     assert prune(case.search, _idle_and_true(case, as_read, cubic), CRITERIA.margin).labels == ("cubic_stiffness@load",)
 
 
-def test_a_wrong_explanation_is_exchanged_for_the_true_one(case, as_read):
-    assert "cubic_stiffness@load" in exchange(case.search, _wrong_and_idle(case, as_read), set()).labels
-
-
-def test_what_is_settled_holds_the_true_one_alone(case, as_read):
+def test_a_wrong_explanation_is_exchanged_for_the_true_one_and_what_is_settled_holds_it_alone(case, as_read):
     now = settle(case.search, _wrong_and_idle(case, as_read), CRITERIA.margin, set())
     assert now.labels == ("cubic_stiffness@load",)
 
