@@ -138,9 +138,7 @@ def test_a_search_that_is_stopped_continues_with_the_same_command(lab, whole, tm
         monkeypatch.setattr(Shooting, "_descend", counted)
 
     stopping_at(3)
-    assert says(
-        called(*words, "--no-report", ends=STOPPED).stderr, "Stopped. Finished parts are kept; the same command"
-    )
+    assert says(called(*words, "--no-report", ends=STOPPED).stderr, "Stopped. Finished parts are kept; the same")
     stopping_at(3)
     anew = called(*words, "--no-report", "--overwrite", ends=STOPPED).stderr
     assert "continuing" not in anew and "the same command without --overwrite continues from there." in anew
@@ -180,9 +178,7 @@ def test_the_answer_stands_before_its_twins_are_searched(lab, tmp_path, monkeypa
 
 def test_twins_are_refused_where_an_engine_runs_the_model(lab, tmp_path, called):
     done = called("discover", lab / "leg.xml", lab / "good.csv", "--twins", "2", "--out", tmp_path, ends=REFUSED)
-    assert says(
-        done.stderr, "twins and a plan need a simulation file or a Python function", "leg.xml", "Leave both out"
-    )
+    assert says(done.stderr, "twins and a plan need a simulation file or a Python function", "leg.xml", "Leave both")
 
 
 def test_a_plan_says_from_which_size_on_an_effect_is_found(lab, tmp_path, monkeypatch, called):
