@@ -1,7 +1,5 @@
 """Reference of controls, of a laboratory or published; what is read of a person's cycles beside it."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from pathlib import Path

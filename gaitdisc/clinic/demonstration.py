@@ -1,7 +1,5 @@
 """A week of a clinic, made: controls, healthy people, and some with gait planted that their pages must find."""
 
-from __future__ import annotations
-
 import json
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace

@@ -1,7 +1,5 @@
 """What a laboratory says of its pages and people: `clinic.toml`."""
 
-from __future__ import annotations
-
 import csv
 from collections.abc import Mapping
 from dataclasses import dataclass, field

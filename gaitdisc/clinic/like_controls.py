@@ -1,7 +1,5 @@
 """Which controls a person is read beside: of the like age and speed where there are enough, and at this leg length."""
 
-from __future__ import annotations
-
 from bisect import bisect_right
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace

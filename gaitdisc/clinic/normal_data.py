@@ -1,7 +1,5 @@
 """Normal data that other programs keep (`.gcd` of Vicon, `.xlsx` of Polygon) as the table of a published reference."""
 
-from __future__ import annotations
-
 import io
 import re
 import zipfile

@@ -1,7 +1,5 @@
 """Words of the pages, in another language where a laboratory has filled in a table of them."""
 
-from __future__ import annotations
-
 import csv
 import io
 import re

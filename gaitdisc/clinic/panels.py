@@ -1,7 +1,5 @@
 """Panels of a person's sheets: what each shows of the cycles of both legs, and the numbers drawn."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from dataclasses import replace
 

@@ -1,7 +1,5 @@
 """Page of a person and session, one file that is mailed, its PDF; and the week's index: refused first, then amber."""
 
-from __future__ import annotations
-
 import base64
 import hashlib
 import json

@@ -1,7 +1,5 @@
 """A person's cycles read beside a reference or another session: light, what stands out, profile, scores."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping, Sequence
 from functools import partial
 

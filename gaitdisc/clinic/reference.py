@@ -1,7 +1,5 @@
 """A reference of controls: mean cycles of their legs, and bands and limits over them."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 

@@ -1,7 +1,5 @@
 """What of a person's legs stands out from the reference, in two tiers, by the rules of `rules.toml`."""
 
-from __future__ import annotations
-
 import tomllib
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace

@@ -1,7 +1,5 @@
 """Pages of a run: its own, those of its people, each apart, so that one who fails costs nobody else, and the index."""
 
-from __future__ import annotations
-
 import itertools
 from collections.abc import Callable, Sequence
 from dataclasses import asdict, replace

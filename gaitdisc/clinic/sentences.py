@@ -1,7 +1,5 @@
 """Sentences of a person's page: what stands out, scores, quality, before and after."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Sequence
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Values and scores of a person beside the reference, as tables and bars."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from html import escape
 

@@ -7,8 +7,6 @@ M(psi) psi'' + b(psi, psi', hip acceleration) = moments, Lagrange's for three li
 Lengths, masses, centres and radii of gyration are Winter's (2009, table 4.1), with the mass of the device on top.
 """
 
-from __future__ import annotations
-
 from typing import NamedTuple
 
 import numpy as np

@@ -1,7 +1,5 @@
 """The cohort: twelve people, two walks each, and what is true of them."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass, replace
 from typing import Any
 

@@ -7,8 +7,6 @@ follows its habit to within the integration's error, and whoever meets no spring
 (Feedback-error learning does not get there: its orbit goes on changing, which then looks like a response.)
 """
 
-from __future__ import annotations
-
 from typing import NamedTuple
 
 import numpy as np

@@ -1,7 +1,5 @@
 """The embedded cohort as a laboratory's study folder, and gait planted into its walks for tests of the rules."""
 
-from __future__ import annotations
-
 import json
 from collections.abc import Callable
 from dataclasses import replace

@@ -16,8 +16,6 @@ Lacquaniti F (2004). Five basic muscle activation patterns account for muscle ac
 Physiol 556(1), 267-282 (synergies; from memory).
 """
 
-from __future__ import annotations
-
 import csv
 from dataclasses import dataclass
 from functools import cache

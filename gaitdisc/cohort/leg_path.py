@@ -6,8 +6,6 @@ further or less far than the leg's habit is pulled along: it sticks to the belt,
 phase does. All of this passes through a gate that is exactly zero in swing.
 """
 
-from __future__ import annotations
-
 from typing import NamedTuple
 
 import numpy as np

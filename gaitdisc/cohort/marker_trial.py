@@ -12,8 +12,6 @@ References
 Rajagopal 2016, IEEE Trans Biomed Eng 63:2068. Leardini 2005, Gait Posture 21:212. Harrington 2007, J Biomech 40:595.
 """
 
-from __future__ import annotations
-
 from dataclasses import replace
 from typing import NamedTuple
 

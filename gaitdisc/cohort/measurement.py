@@ -1,7 +1,5 @@
 """A walk as a laboratory measures it: joint angles from markers, raw EMG, forces of a split belt; all with noise."""
 
-from __future__ import annotations
-
 import numpy as np
 
 from gaitdisc.channel import vocabulary

@@ -7,8 +7,6 @@ what the ground gives beyond the habit, and so couples the legs. The phase runs 
 leg that is ahead of its habit hurries it.
 """
 
-from __future__ import annotations
-
 from typing import NamedTuple
 
 import numpy as np

@@ -13,8 +13,6 @@ Arnold EM, Ward SR, Lieber RL, Delp SL (2010). A model of the lower limb for ana
 38(2), 269-279. Zajac FE (1989). Muscle and tendon. Crit Rev Biomed Eng 17(4), 359-411.
 """
 
-from __future__ import annotations
-
 from typing import NamedTuple
 
 import numpy as np

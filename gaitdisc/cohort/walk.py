@@ -1,7 +1,5 @@
 """A walk: a person, a device, a duration and a seed; and the truth of it, which no laboratory sees."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass, field
 
 import numpy as np

@@ -1,7 +1,5 @@
 """`gaitdisc ablate`: the models on less and less data."""
 
-from __future__ import annotations
-
 from typing import Annotated
 
 import typer

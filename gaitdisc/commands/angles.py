@@ -1,7 +1,5 @@
 """`gaitdisc angles`: joint angles of a trial from its markers and a static trial."""
 
-from __future__ import annotations
-
 from pathlib import Path
 from typing import Annotated
 

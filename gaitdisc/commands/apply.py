@@ -1,7 +1,5 @@
 """`gaitdisc apply`: a recording's states by a model that `gaitdisc reconstruct` saved."""
 
-from __future__ import annotations
-
 from pathlib import Path
 from typing import Annotated
 

@@ -1,7 +1,5 @@
 """`gaitdisc chapter`: the tables and figures of chapters 3, 4 and 5, computed anew."""
 
-from __future__ import annotations
-
 from pathlib import Path
 from typing import Annotated
 

@@ -1,7 +1,5 @@
 """`gaitdisc cite`: literature of the methods that a result used, as BibTeX."""
 
-from __future__ import annotations
-
 from pathlib import Path
 from typing import Annotated
 

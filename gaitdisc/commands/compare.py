@@ -1,7 +1,5 @@
 """`gaitdisc compare`: where a simulated and a measured walk, or two conditions, disagree over the stride."""
 
-from __future__ import annotations
-
 from pathlib import Path
 from typing import Annotated
 

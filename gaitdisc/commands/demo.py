@@ -1,7 +1,5 @@
 """`gaitdisc demo`: the whole job on the embedded cohort."""
 
-from __future__ import annotations
-
 from pathlib import Path
 from typing import Annotated
 

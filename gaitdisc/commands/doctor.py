@@ -1,7 +1,5 @@
 """`gaitdisc doctor`: whether this installation works, and what it lacks."""
 
-from __future__ import annotations
-
 import typer
 
 from gaitdisc.commands.options import REFUSED

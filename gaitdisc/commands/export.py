@@ -1,7 +1,5 @@
 """`gaitdisc export`: streams of one walk on one time base; cycles of a run as tidy tables; a saved model as ONNX."""
 
-from __future__ import annotations
-
 from pathlib import Path
 from typing import Annotated
 

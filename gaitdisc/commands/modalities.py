@@ -1,7 +1,5 @@
 """`gaitdisc modalities`: the models without one family of inputs at a time."""
 
-from __future__ import annotations
-
 from gaitdisc.commands.options import Cluster, Jobs, Quiet, RunPlace, StudyPlace
 from gaitdisc.commands.run_report import vary
 

@@ -1,7 +1,5 @@
 """`gaitdisc moments`: joint moments and powers of a trial from its markers, its force platforms and a static trial."""
 
-from __future__ import annotations
-
 from pathlib import Path
 from typing import Annotated
 

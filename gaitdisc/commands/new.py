@@ -1,7 +1,5 @@
 """`gaitdisc new`: a study file from a folder of recordings, or the mapping file of a model."""
 
-from __future__ import annotations
-
 from pathlib import Path
 from typing import Annotated
 

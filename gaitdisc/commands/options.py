@@ -1,7 +1,5 @@
 """Options and arguments that several commands share, and what their exit codes say; 0 is done, 2 is wrong usage."""
 
-from __future__ import annotations
-
 from pathlib import Path
 from typing import Annotated
 

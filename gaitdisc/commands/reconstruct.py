@@ -1,7 +1,5 @@
 """`gaitdisc reconstruct`: models of the full state from a few sensors and their history."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 from pathlib import Path
 from typing import Annotated

@@ -1,7 +1,5 @@
 """`gaitdisc report`: the page of a saved result, drawn again."""
 
-from __future__ import annotations
-
 from pathlib import Path
 from typing import Annotated
 

@@ -1,7 +1,5 @@
 """`gaitdisc run`: process, fit, test and report."""
 
-from __future__ import annotations
-
 from pathlib import Path
 from typing import Annotated
 

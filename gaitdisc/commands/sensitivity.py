@@ -1,7 +1,5 @@
 """`gaitdisc sensitivity`: the models under other cut-offs and training lengths."""
 
-from __future__ import annotations
-
 from gaitdisc.commands.options import Cluster, Jobs, Quiet, RunPlace, StudyPlace
 from gaitdisc.commands.run_report import vary
 

@@ -1,7 +1,5 @@
 """What two walks have in common: channels, whole strides, and the shift along the stride that most share."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from dataclasses import dataclass
 

@@ -1,7 +1,5 @@
 """Where two walks disagree, in which part of the stride, how much, and whether strides by chance could have made it."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from dataclasses import asdict, dataclass
 

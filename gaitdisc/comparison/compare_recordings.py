@@ -1,7 +1,5 @@
 """Two recordings, or the two conditions of a study, from their files to their mismatch."""
 
-from __future__ import annotations
-
 import re
 from dataclasses import replace
 from pathlib import Path

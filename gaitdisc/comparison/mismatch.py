@@ -1,7 +1,5 @@
 """Where two walks disagree: the gap over the stride of every channel, and where it is more than chance."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any

@@ -1,7 +1,5 @@
 """Sentences about a mismatch: which joint, which way, how far, in which part of the stride; or that there is no gap."""
 
-from __future__ import annotations
-
 import math
 
 from gaitdisc.comparison.mismatch import Exchange, Mismatch

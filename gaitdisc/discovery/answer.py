@@ -1,7 +1,5 @@
 """The answer: numbers with intervals, where it acts, how far the gap shrank, and one sentence."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from dataclasses import dataclass, replace
 

@@ -6,8 +6,6 @@ Forward selection with exchange, several sets side by side.
 Source: Miller 2002, Subset Selection in Regression (forward selection with replacement).
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Iterable
 from dataclasses import dataclass, field, replace

@@ -1,7 +1,5 @@
 """A candidate: one explanation of a gap, at one place, with numbers still to be found."""
 
-from __future__ import annotations
-
 import math
 import re
 from collections.abc import Collection, Iterator, Mapping

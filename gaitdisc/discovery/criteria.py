@@ -1,7 +1,5 @@
 """Criteria: every number set by hand that decides what is named; how it is computed stands beside each computation."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 
 

@@ -1,7 +1,5 @@
 """What a device does, from a laboratory's own files: both walks of a person, read and compared at a joint."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property, partial

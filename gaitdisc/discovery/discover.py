@@ -1,7 +1,5 @@
 """Find, name, add, show: the whole way, from a simulation and measured trials to an answer."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from dataclasses import replace
 from difflib import get_close_matches

@@ -1,7 +1,5 @@
 """What a device does, from a laboratory's own files: a study, to the answer in each condition and over people."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 from dataclasses import replace
 from pathlib import Path

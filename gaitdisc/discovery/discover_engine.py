@@ -1,7 +1,5 @@
 """A model of an engine and measured data, from their files to what was discovered and to the model with it."""
 
-from __future__ import annotations
-
 import os
 from collections.abc import Callable
 from contextlib import suppress

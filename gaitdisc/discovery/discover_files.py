@@ -1,7 +1,5 @@
 """A simulation file and measured data, from their files to what was discovered."""
 
-from __future__ import annotations
-
 import re
 from collections.abc import Mapping
 from dataclasses import replace

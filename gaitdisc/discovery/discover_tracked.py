@@ -1,7 +1,5 @@
 """A walk with recorded forces in a model of OpenSim: from its files to what each joint lacks, and the model with it."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from pathlib import Path

@@ -1,7 +1,5 @@
 """How the amounts and effects of a discovery are said, and which recording would separate two explanations."""
 
-from __future__ import annotations
-
 import math
 import re
 

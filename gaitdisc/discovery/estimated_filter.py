@@ -4,8 +4,6 @@ Where noise alone shows at the cut-off, the record's spectrum shows it. Where th
 fall is in the way; then the simulation as read, laid over the record run by run, may say better how the signal falls.
 """
 
-from __future__ import annotations
-
 from dataclasses import replace
 from statistics import geometric_mean
 

@@ -1,7 +1,5 @@
 """Estimates: numbers of explanations and starts under the names a person gives them, with units, signs, intervals."""
 
-from __future__ import annotations
-
 import re
 
 import numpy as np

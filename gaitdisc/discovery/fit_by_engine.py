@@ -1,7 +1,5 @@
 """What an engine's own runs say of what was found, its numbers fitted by them: neither rests on an expansion."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from dataclasses import dataclass, field, replace
 

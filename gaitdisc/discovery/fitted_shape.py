@@ -1,7 +1,5 @@
 """A fitted shape: bumps over the states, where no known effect explains what is left."""
 
-from __future__ import annotations
-
 import re
 from collections.abc import Iterator
 from dataclasses import replace

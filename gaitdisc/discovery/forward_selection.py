@@ -4,8 +4,6 @@ Source: Efroymson 1960, in Ralston and Wilf, Mathematical Methods for Digital Co
 Miller 2002, Subset Selection in Regression (replacement of one at a time).
 """
 
-from __future__ import annotations
-
 from dataclasses import dataclass, field
 
 from gaitdisc.discovery.criteria import CRITERIA

@@ -4,8 +4,6 @@ Where no simulation is exact, the likelihood goes on growing with every explanat
 person can use is another question: how much of the disagreement goes, and with how plain a statement.
 """
 
-from __future__ import annotations
-
 import math
 from dataclasses import dataclass, field, replace
 

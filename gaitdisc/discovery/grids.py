@@ -1,7 +1,5 @@
 """Where the search for a constant inside a shape begins: thresholds, delays, frequencies, phases."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 from itertools import product
 

@@ -1,7 +1,5 @@
 """Proof on data that were never fitted: each run's start is found, nothing else."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass, replace
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Stated errors of inputs: one that stays as it is is a number of the simulation, one that wanders is random."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 
 import numpy as np

@@ -4,8 +4,6 @@ A search is deterministic: each of its results follows from the model, the data,
 of all these is its key, so that no result stands in for another.
 """
 
-from __future__ import annotations
-
 import time
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager, suppress

@@ -4,8 +4,6 @@ Along a fitted run the map from one sample to the next is linearised once, x[k+1
 any candidate is then a recursion over samples, for hundreds of candidates at once.
 """
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 
 import numpy as np

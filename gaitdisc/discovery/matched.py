@@ -3,8 +3,6 @@
 Its channels, its inputs, values to compare, delays within; of an idle place, parameter or state no data could say more.
 """
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 from itertools import compress
 

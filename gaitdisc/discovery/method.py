@@ -1,7 +1,5 @@
 """How the numbers of a discovery were made, as its page says it."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 
 from gaitdisc.discovery.result import DEVICE, ENGINE, TRACKED, Discovery

@@ -4,8 +4,6 @@ Source: Cochrane and Orcutt 1949, J. Am. Stat. Assoc. 44, 32 (residuals whitened
 order, Yule-Walker); Schwarz 1978, Ann. Stat. 6, 461 (the order).
 """
 
-from __future__ import annotations
-
 import math
 from dataclasses import dataclass
 

@@ -5,8 +5,6 @@ it is, a record with its sign turned or its time shifted goes with it worse stil
 so (shifted, about as well as the others do), while the others go worse, was recorded otherwise than they were.
 """
 
-from __future__ import annotations
-
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
 

@@ -1,7 +1,5 @@
 """The page of a discovery: the answer first, then the evidence; self-contained, with every number beside it as CSV."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Sequence
 from dataclasses import asdict

@@ -1,7 +1,5 @@
 """Whether unseen data bear a change of a model out: what it errs by, projected on what the change does to its runs."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 
 import numpy as np

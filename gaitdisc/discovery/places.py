@@ -1,7 +1,5 @@
 """Places: where in a simulation an effect may enter, and which states it would see there."""
 
-from __future__ import annotations
-
 import re
 from dataclasses import dataclass, replace
 from itertools import combinations, permutations

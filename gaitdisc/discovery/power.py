@@ -3,8 +3,6 @@
 Source: Finney 1947, Probit Analysis (the share of records in which it is found, a normal distribution of log size).
 """
 
-from __future__ import annotations
-
 import math
 from collections import Counter
 from collections.abc import Sequence

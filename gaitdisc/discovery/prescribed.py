@@ -6,8 +6,6 @@ joint is whitened by what noise of the angles makes of its own moment, or by wha
 that is more.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 

@@ -6,8 +6,6 @@ Source: Kristensen, Madsen and Jorgensen 2004, Automatica 40, 225 (process noise
 filter); Patterson and Thompson 1971, Biometrika 58, 545 (restricted likelihood).
 """
 
-from __future__ import annotations
-
 from dataclasses import dataclass, replace
 
 import numpy as np

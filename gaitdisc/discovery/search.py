@@ -1,7 +1,5 @@
 """The search: every explanation is scored to first order, the best are fitted and compared under one noise."""
 
-from __future__ import annotations
-
 import time
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass, field, replace

@@ -1,7 +1,5 @@
 """A second look at a verdict on unseen data: the simpler relative of a shape, a delay, or what free runs refuse."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 
 import numpy as np

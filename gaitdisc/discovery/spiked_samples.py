@@ -4,8 +4,6 @@ They are emptied before anything is fitted. A square error would follow them, an
 for whatever moves the simulation towards them.
 """
 
-from __future__ import annotations
-
 from dataclasses import replace
 
 import numpy as np

@@ -6,8 +6,6 @@ that come nearest are fitted inside the integrator, and the one that the data sp
 closes about as much of the held-out gap as the shape.
 """
 
-from __future__ import annotations
-
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
 

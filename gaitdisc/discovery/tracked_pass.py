@@ -1,7 +1,5 @@
 """Generalised forces along a recorded walk: what the motion demands, what files give of it, what noise makes of it."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
 from functools import cached_property

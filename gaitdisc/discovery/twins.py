@@ -5,8 +5,6 @@ Source: Efron and Tibshirani 1993, An Introduction to the Bootstrap, section 6.5
 62, 57 (two models are distinguished where the rival, fitted, errs most).
 """
 
-from __future__ import annotations
-
 import os
 import time
 from collections import Counter

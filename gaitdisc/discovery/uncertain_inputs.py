@@ -7,8 +7,6 @@ Where none is stated, models are compared by restricted likelihood with errors o
 Source: Fuller 1987, Measurement Error Models; Boggs and Rogers 1990, Contemporary Mathematics 112, 183.
 """
 
-from __future__ import annotations
-
 from collections import Counter
 from collections.abc import Callable
 from dataclasses import dataclass, replace

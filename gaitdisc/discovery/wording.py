@@ -1,7 +1,5 @@
 """The answer in one sentence that a clinician or an engineer understands."""
 
-from __future__ import annotations
-
 import math
 import re
 from dataclasses import replace

@@ -3,8 +3,6 @@
 Labels that contradict where the landmarks of a standing person lie to each other, whoever it is, are found first.
 """
 
-from __future__ import annotations
-
 import itertools
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field

@@ -1,7 +1,5 @@
 """Two markers that bear each other's label: which they are, and in which frames of a trial or in the static trial."""
 
-from __future__ import annotations
-
 import itertools
 from collections.abc import Iterable, Mapping, Sequence
 from typing import NamedTuple

@@ -1,7 +1,5 @@
 """Hip joint centres from a trial in which the thighs are moved about them."""
 
-from __future__ import annotations
-
 from typing import NamedTuple
 
 import numpy as np

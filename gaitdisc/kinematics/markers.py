@@ -1,7 +1,5 @@
 """Markers as arrays; where the person stands stillest; up, forward and right-handedness, from the data."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 

@@ -1,7 +1,5 @@
 """Segments, joint centres and joint angles of a trial, from markers and a static trial, or from given poses."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path

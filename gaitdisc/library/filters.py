@@ -1,7 +1,5 @@
 """Filters and derivatives of recordings, tables and arrays: what comes in comes back in the same form."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from typing import TYPE_CHECKING, Any, TypeVar
 

@@ -1,7 +1,5 @@
 """Joint angles and moments from markers and ground forces."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from dataclasses import replace
 from pathlib import Path

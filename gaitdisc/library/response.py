@@ -1,7 +1,5 @@
 """The response of one person to a device: models of walking without it, and what they miss of walking with it."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping, Sequence
 from dataclasses import asdict, replace
 

@@ -1,7 +1,5 @@
 """SHRED read live: every window that is under way carries its state, and none is read again."""
 
-from __future__ import annotations
-
 from typing import NamedTuple
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Ridge regression on columns and on random Fourier features of them: what a network that sees the same has to beat."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Steps of the dissertation's network by compiled code on the CPU: products by BLAS, torch's numbers to rounding."""
 
-from __future__ import annotations
-
 import math
 from typing import NamedTuple
 

@@ -1,7 +1,5 @@
 """The dissertation's networks: feed-forward (section 4.2.2), and SHRED with its shallow decoder (section 2.3.5)."""
 
-from __future__ import annotations
-
 from typing import cast
 
 import torch

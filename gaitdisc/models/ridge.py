@@ -1,7 +1,5 @@
 """Ridge regression with phase harmonics: the rival that a network has to beat."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 
 import numpy as np

@@ -1,7 +1,5 @@
 """A trained network: a model with its names, scales and weights; and how many threads it and its training take."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Iterator, Mapping
 from contextlib import contextmanager
 from dataclasses import dataclass

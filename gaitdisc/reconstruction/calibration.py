@@ -1,7 +1,5 @@
 """A person whom a model never saw, after a few strides of which the states are known: what the model then says."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 

@@ -1,7 +1,5 @@
 """Reconstruct one person's states: fit every kind of model on two parts of the windows, test it on the third."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from dataclasses import dataclass
 

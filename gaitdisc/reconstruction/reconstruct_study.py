@@ -1,7 +1,5 @@
 """Reconstruct states from a few sensors: of a study's participants, or of a new recording by a saved model."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Sequence
 from dataclasses import asdict, dataclass, replace
 from pathlib import Path

@@ -1,7 +1,5 @@
 """The result of a reconstruction: errors of every model, state and participant, and curves over the stride."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 from dataclasses import dataclass
 

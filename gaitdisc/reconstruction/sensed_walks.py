@@ -1,7 +1,5 @@
 """The walks of a study as sensing needs them: sensors and what is reconstructed from them, filtered, on one rate."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from functools import partial

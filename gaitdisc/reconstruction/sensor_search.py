@@ -1,7 +1,5 @@
 """How many sensors are enough, and which: every set of up to three, then the one that helps most, again and again."""
 
-from __future__ import annotations
-
 import time
 from collections.abc import Sequence
 from dataclasses import dataclass

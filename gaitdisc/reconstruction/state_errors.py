@@ -1,7 +1,5 @@
 """Errors of a reconstruction, each under its own name: RMSE, relative L2 and R2 are three different things."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from dataclasses import dataclass
 

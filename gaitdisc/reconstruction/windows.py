@@ -1,7 +1,5 @@
 """Windows of sensors now and a while ago beside the states; which a model is fitted to, chosen by, tested on."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 

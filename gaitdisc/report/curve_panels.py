@@ -1,7 +1,5 @@
 """Curves of both legs over the cycle in panels, each drawn as SVG of a few kilobytes in a few milliseconds."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from html import escape

@@ -1,7 +1,5 @@
 """A page of the report: blocks of sentences, figures and tables in a template; one file that needs nothing else."""
 
-from __future__ import annotations
-
 import os
 import re
 from collections.abc import Callable, Mapping, Sequence

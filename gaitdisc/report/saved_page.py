@@ -1,7 +1,5 @@
 """The page of any saved result, drawn again from its folder; one of the very same run is not drawn again."""
 
-from __future__ import annotations
-
 import hashlib
 import json
 from collections.abc import Callable

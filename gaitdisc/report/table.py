@@ -1,7 +1,5 @@
 """A table of the report, as read and as numbers beside the page; and the tables that every page ends with."""
 
-from __future__ import annotations
-
 import re
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass

@@ -1,7 +1,5 @@
 """What the participants say together: which model explains more (section 4.2.3), and all beside these pairs."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping, Sequence
 from itertools import product
 

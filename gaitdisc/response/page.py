@@ -1,7 +1,5 @@
 """The page of a run: one self-contained page, with every figure and table beside it as files."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 from dataclasses import replace
 from pathlib import Path

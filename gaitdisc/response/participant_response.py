@@ -1,7 +1,5 @@
 """What one participant's models say of held-out walks, and a study's: every participant, refusal and settings."""
 
-from __future__ import annotations
-
 import json
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace

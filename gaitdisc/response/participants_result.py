@@ -1,7 +1,5 @@
 """What the participants of a study say together: models in pairs, lengths, residuals, baselines, kinds."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any

@@ -1,7 +1,5 @@
 """What a participant's models explain when one thing is changed: an input left away, a filter, a training length."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path

@@ -1,7 +1,5 @@
 """A page for a question beside the study: which inputs carry the response, or does a cut-off decide it."""
 
-from __future__ import annotations
-
 from pathlib import Path
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Models with one thing changed at a time: inputs left away (section 6.2.2), filters, less data (section 4.2.4)."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from functools import partial

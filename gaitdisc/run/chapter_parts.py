@@ -1,7 +1,5 @@
 """The studies that make the tables and figures of chapters 3, 4 and 5: their names, and what each costs."""
 
-from __future__ import annotations
-
 from pathlib import Path
 from typing import NamedTuple
 

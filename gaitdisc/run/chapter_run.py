@@ -1,7 +1,5 @@
 """A part of a chapter: its study runs as a program of its own, as from a checkout; what is finished is kept."""
 
-from __future__ import annotations
-
 import hashlib
 import os
 import subprocess

@@ -1,7 +1,5 @@
 """Which literature a saved result rests on: what each method cites, and when a result used it."""
 
-from __future__ import annotations
-
 import re
 from collections.abc import Iterable, Iterator
 from functools import cache

@@ -1,7 +1,5 @@
 """Whether an installation works: versions, libraries that are extra, and files that are written and read back."""
 
-from __future__ import annotations
-
 import tempfile
 from collections.abc import Iterator
 from dataclasses import dataclass

@@ -1,7 +1,5 @@
 """Participants' models with one thing changed at a time: less training data, inputs left away, other filters."""
 
-from __future__ import annotations
-
 import hashlib
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
