@@ -16,7 +16,7 @@ def report(
     before: Annotated[str, typer.Option(help="Session or condition of the person, to compare with --after.")] = "",
     after: Annotated[str, typer.Option(help="Session or condition that is compared with --before.")] = "",
     pdf: Annotated[bool, typer.Option("--pdf", help="Also write the pages of people as PDF.")] = False,
-    reference: Annotated[Path | None, typer.Option(help="Folder of `gaitdisc reference` for bands and scores.")] = None,
+    reference: Annotated[Path | None, typer.Option(help="Folder from `gaitdisc reference`: bands and scores.")] = None,
     language: Annotated[
         str,
         typer.Option(

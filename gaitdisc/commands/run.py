@@ -15,7 +15,7 @@ def run(
     participant: Annotated[list[str] | None, typer.Option(help="Use only this participant; may be repeated.")] = None,
     jobs: Jobs = 1,
     cluster: Cluster = "",
-    reference: Annotated[Path | None, typer.Option(help="Folder of `gaitdisc reference` for bands and scores.")] = None,
+    reference: Annotated[Path | None, typer.Option(help="Folder from `gaitdisc reference`: bands and scores.")] = None,
     quiet: Quiet = False,
 ) -> None:
     """Process, fit, test and report; finished parts of an earlier run are kept."""

@@ -24,7 +24,7 @@ LOOKS = 5  # in the time for which a file has to stand still
 def watch(
     study: Annotated[Path, typer.Argument(help="The study file or its folder; a draft is written if there is none.")],
     recordings: Annotated[Path, typer.Option("--from", help="Folder of recordings; it is not changed.")],
-    reference: Annotated[Path | None, typer.Option(help="Folder of `gaitdisc reference` for bands and scores.")] = None,
+    reference: Annotated[Path | None, typer.Option(help="Folder from `gaitdisc reference`: bands and scores.")] = None,
     still: Annotated[float, typer.Option(min=0.1, help="Time without a change before a file is used [s].")] = STILL_S,
     jobs: Jobs = 1,
     quiet: Quiet = False,

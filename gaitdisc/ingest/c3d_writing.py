@@ -92,7 +92,7 @@ def _apart(
     markers = [r for r in recordings if all(channel.quantity == "marker" for channel in r.channels)]
     if len(markers) > 1 or any(abs(marker.time[0]) > 1e-9 for marker in markers):
         fault = f"number of recordings: {len(markers)}; start of the first: {markers[0].time[0]:g} s"
-        raise SamplingError(f"markers of {file} must be one recording from 0 s on", fault, "Join or shift the parts.")
+        raise SamplingError(f"markers of {file} must be one recording that starts at 0 s", fault, "Join or shift them.")
     names = {channel.name for recording in recordings for channel in recording.channels}
     absent = [name for surface in surfaces for name in _plate_channels(surface) if name not in names]
     if absent:

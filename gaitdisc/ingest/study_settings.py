@@ -61,7 +61,7 @@ class Kinematics(StudyPart):
 
     angles: Literal["file", "markers"] | None = Field(
         default=None,
-        description="file: the file's angles; markers: angles computed from markers; by default file, if it has angles",
+        description="file: angles of the file; markers: from its markers; default: file if it has angles, else markers",
     )
     marker_set: str = Field(
         default="",

@@ -97,7 +97,7 @@ def cycles_sentences(run: StudyRun) -> list[str]:
     out = sum(len(pooled.left_out) for pooled in run.of(CYCLES))
     sentences = [
         f"{counted(len(people), 'participant')}: {counted(left, 'left cycle')} and {counted(right, 'right cycle')} of "
-        f"{counted(sum(pooled.trials for pooled in kept), 'trial')} are kept; {out} are left out, each with its reason."
+        f"{counted(sum(pooled.trials for pooled in kept), 'trial')} are kept. Excluded (see “Left out”): {out}."
     ]
     if few := sorted({pooled.subject for pooled in kept if min(pooled.counted("l"), pooled.counted("r")) < FEW}):
         sentences.append(

@@ -36,7 +36,7 @@ OF_TEXT, TEXT_STEPS, TEXT_PATIENCE = "shred-text", 4000, 1600  # steps of 64 win
 ON_REQUEST = {
     MASKED: "SHRED with a mask of missing samples, trained with some samples hidden",
     ENSEMBLE: f"mean of {MEMBERS} SHRED networks with different seeds",
-    OF_TEXT: "SHRED as in the dissertation's code: two LSTM layers of 64, decoder 350-400, Adam at a rate of 0.001",
+    OF_TEXT: "SHRED as in the dissertation's code: two LSTM layers of 64 units, decoder of 350 and 400, Adam at 0.001",
 }
 STATIC = ("linear", "shallow decoder")
 WITHOUT_NETWORK = ("linear", "delay ridge", "fourier ridge")  # cheap: fitted many times where that is wanted

@@ -85,8 +85,8 @@ def _pair_table(tests: PairTests, first: str, second: str) -> Table:
     count = int(numbers["p"].notna().sum())
     missing = [f"{label(str(row.variable))}: {row.left_out}" for row in numbers.itertuples() if row.left_out]
     explained = (
-        "n: pairs with a non-zero difference; W: smaller sum of ranks; p: exact, two-sided; level: the threshold for "
-        f"p in its step; median: of the differences; shift: Hodges-Lehmann with its {100 * tests.level:.0f} % "
+        "n: pairs with a non-zero difference; W: smaller sum of ranks; p: exact, two-sided; Holm-Sidak level: limit "
+        f"for p in its step; median: of the differences; shift: Hodges-Lehmann with its {100 * tests.level:.0f} % "
         "interval, not corrected for the number of tests; rank-biserial: −1 all lower, 1 all higher"
         if (first, second) == PAIRS[0]
         else f"columns as for {_WORDS[PAIRS[0][0]]} and {_WORDS[PAIRS[0][1]]}"
@@ -109,7 +109,7 @@ def _columns(first: str, second: str) -> dict[str, Callable[[pd.Series], str]]:
         "zeros": lambda row: str(int(row["zeros"])),
         "W": lambda row: f"{row['w']:g}",
         "p": lambda row: p_text(row["p"]),
-        "level of its step": lambda row: f"{row['step_level']:.4f}",
+        "Holm-Sidak level": lambda row: f"{row['step_level']:.4f}",
         "adjusted p": lambda row: p_text(row["p_adjusted"]),
         f"{_WORDS[second]} is": direction_found,
         "median": lambda row: number(row["median_difference"], 4),

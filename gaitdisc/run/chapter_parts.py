@@ -34,7 +34,7 @@ PARTS = (
     Part(3, "measurement_bias", "ch3_systems", "3.4.4, Fig. 3.13", 8, 0.2,
          words=("measurement_bias", OUT), needs=METHODS),
     Part(3, "who_names", "ch3_who_names", "which method names the effect (3.4 and 3.5)", 30, 0.3, needs=METHODS),
-    Part(3, "seeds", "ch3_seeds", "results of `tables` again, for each set, start and seed", 120, 0.3, needs=METHODS),
+    Part(3, "seeds", "ch3_seeds", "results of `tables` for each data set, start and seed", 120, 0.3, needs=METHODS),
     Part(3, "further", "ch3_further", "further methods, noise, starts and trajectories of 3.4 and 3.5", 40, 0.5,
          quick_words=(OUT, "--seeds", "1", "--tables", "variance"), needs=METHODS),
     Part(4, "ankle_exo", "ch4_ankle_exo", "the entire chapter, Figs. 4.2-4.4", 9, 0.7),

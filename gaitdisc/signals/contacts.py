@@ -264,9 +264,9 @@ def force_contacts(forces: Recording, body_weight_n: float | None = None) -> dic
     sides = {c.name: c.side for c in forces.channels if c.quantity == "vertical_force" and c.side}
     if not sides:
         raise ChannelError(
-            "for contacts from force, each foot must have a vertical force",
-            f"{forces.source.file or 'the recording'} has {', '.join(forces.names) or 'no channel'}",
-            "Name the foot of each plate or belt in [channels], or add markers, which show the foot.",
+            "for contacts from force, each foot must have a channel of vertical force",
+            f"{forces.source.file or 'the recording'} names no foot for {', '.join(forces.names) or 'any channel'}",
+            "Name the foot of each plate or belt in [channels], or add markers, which identify the foot.",
         )
     contacts = {}
     for side in sorted(set(sides.values())):

@@ -42,7 +42,7 @@ def test_a_table_a_pair_and_one_of_the_families(tested):
     row = dict(zip(tables["tests-augmented-exo"].columns, tables["tests-augmented-exo"].rows[1], strict=True))
     assert row["variable"] == "ankle angle, left"
     assert (row["n"], row["zeros"], row["W"], row["p"], row["adjusted p"]) == ("11", "0", "0", "0.000977", "0.00293")
-    assert (row["level of its step"], row["Exo is"], row["rank-biserial"]) == ("0.0170", "higher", "1.00")
+    assert (row["Holm-Sidak level"], row["Exo is"], row["rank-biserial"]) == ("0.0170", "higher", "1.00")
     assert abs(float(row["shift [95 %]"].split()[0]) - 0.02) < 0.001
 
 
