@@ -64,7 +64,7 @@ def _takes_parameters(thing) -> bool:
 
 def _offered(public) -> dict[str, object]:
     """Of the public things, those that `import gaitdisc` offers, with the methods of its classes."""
-    homes = {f"{module}.{name}" for module, name in gaitdisc._HOME.values()}
+    homes = {f"gaitdisc.{module}.{name}".rstrip(".") for module, name in gaitdisc._HOME.values()}
     return {name: thing for name, thing in public.items() if name in homes or name.rpartition(".")[0] in homes}
 
 

@@ -26,11 +26,20 @@ def test_every_name_is_there_and_listed_once():
 
 
 def test_type_checkers_see_the_names_that_are_loaded():
-    imports = [node for node in ast.walk(ast.parse(SOURCE.read_text("utf-8"))) if isinstance(node, ast.ImportFrom)]
-    seen = {alias.asname: (node.module, alias.name) for node in imports for alias in node.names}
+    seen = {}
+    for node in ast.walk(ast.parse(SOURCE.read_text(encoding="utf-8"))):
+        if isinstance(node, ast.ImportFrom) and (node.module or "").startswith("gaitdisc"):
+            seen |= {alias.asname or alias.name: (node.module, alias.name) for alias in node.names}
+        if isinstance(node, ast.Assign) and isinstance(node.value, ast.Tuple):  # those of another name inside
+            for name, inside in zip(node.targets[0].elts, node.value.elts, strict=True):
+                seen[name.id] = seen.pop(inside.id)
+    loaded = {
+        name: (f"gaitdisc.{module}", inside) if inside else (f"gaitdisc.{module.rpartition('.')[0]}", name)
+        for name, (module, inside) in gd._HOME.items()
+    }
     assert seen.pop("__version__") == ("gaitdisc._version", "__version__")
-    assert seen == gd._HOME
-    assert sorted(gd.__all__) == sorted(seen)
+    assert seen == loaded
+    assert sorted(gd.__all__) == sorted(loaded)
 
 
 def test_a_name_that_is_none_of_them_is_refused():
