@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 Lines = tuple[tuple[str, str], ...]  # name, expression
+SECTIONS = ("definitions", "equations", "observations")  # of a simulation: those that are lines
 
 
 @dataclass(frozen=True)

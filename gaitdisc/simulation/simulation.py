@@ -9,7 +9,7 @@ from pathlib import Path
 from gaitdisc.errors import SimulationError
 from gaitdisc.simulation.checking import check
 from gaitdisc.simulation.expression import parse, substitute, written
-from gaitdisc.simulation.parts import Input, Lines, Parameter, Port, Sensor, State, Term
+from gaitdisc.simulation.parts import SECTIONS, Input, Lines, Parameter, Port, Sensor, State, Term
 from gaitdisc.words import as_html
 
 
@@ -81,10 +81,10 @@ class Simulation:
         """Make every part a tuple, and refuse what does not hold together."""
         for part in ("states", "inputs", "parameters", "ports", "effects", "sensors"):
             object.__setattr__(self, part, tuple(getattr(self, part)))
-        for part in ("definitions", "equations", "observations"):
-            lines = getattr(self, part)
+        for section in SECTIONS:
+            lines = getattr(self, section)
             pairs = lines.items() if isinstance(lines, Mapping) else lines
-            object.__setattr__(self, part, tuple((str(name), str(text)) for name, text in pairs))
+            object.__setattr__(self, section, tuple((str(name), str(text)) for name, text in pairs))
         if not self.observations:
             object.__setattr__(self, "observations", tuple((state.name, state.name) for state in self.states))
         order = {name: number for number, (name, _) in enumerate(self.observations)}
@@ -115,7 +115,7 @@ class Simulation:
 
     def expressions(self) -> Iterator[tuple[tuple[str, str], str]]:
         """Every expression with its section and key in the simulation file; the key of an effect is its number."""
-        for section in ("definitions", "equations", "observations"):
+        for section in SECTIONS:
             for name, text in getattr(self, section):
                 yield (section, name), text
         for number, effect in enumerate(self.effects):
@@ -285,13 +285,9 @@ class Simulation:
             other = substitute(tree, by, self.signals)
             return text if other == tree else written(other)
 
-        return replace(
-            self,
-            definitions=tuple((key, changed(text)) for key, text in self.definitions),
-            equations=tuple((key, changed(text)) for key, text in self.equations),
-            observations=tuple((key, changed(text)) for key, text in self.observations),
-            effects=tuple(replace(effect, term=changed(effect.term)) for effect in self.effects),
-        )
+        lines = {part: tuple((key, changed(text)) for key, text in getattr(self, part)) for part in SECTIONS}
+        effects = tuple(replace(effect, term=changed(effect.term)) for effect in self.effects)
+        return replace(self, **lines, effects=effects)
 
 
 def _refuse_unknown(names: Iterable[str], kind: str, known: Collection[str]) -> None:

@@ -13,7 +13,7 @@ from gaitdisc.channel import did_you_mean
 from gaitdisc.errors import MissingFileError, ReadError, SchemaError, SimulationError
 from gaitdisc.regular_file import check_regular
 from gaitdisc.simulation.evaluating import refuse_delays
-from gaitdisc.simulation.parts import Input, Parameter, Port, Sensor, State, Term
+from gaitdisc.simulation.parts import SECTIONS, Input, Parameter, Port, Sensor, State, Term
 from gaitdisc.simulation.python_simulation import any_equations
 from gaitdisc.simulation.simulation import Simulation
 from gaitdisc.simulation.unit_check import refuse_units
@@ -28,8 +28,7 @@ TABLES = {
     section: tuple(item.name for item in fields(part)[1:] if item.name != "computed")
     for section, part in _PARTS.items()
 }
-_EXPRESSIONS = ("definitions", "equations", "observations")
-_SECTIONS = ("title", "model", *TABLES, *_EXPRESSIONS, "effects")
+_KEYS = ("title", "model", *TABLES, *SECTIONS, "effects")
 _EFFECT = ("port", "equation", "name", "term")
 SENSOR = tuple(item.name for item in fields(Sensor)[1:])
 _FOLDER = Path(__file__).parent / "systems"
@@ -124,17 +123,17 @@ def _not_toml(file: str, fault: str) -> ReadError:
 
 
 def _simulation(table: Mapping[str, Any], text: str, source: Path | None) -> Simulation:
-    _check_keys(table, _SECTIONS, ())
-    tables = {section: _table(table.get(section, {}), (section,)) for section in (*TABLES, *_EXPRESSIONS)}
+    _check_keys(table, _KEYS, ())
+    tables = {section: _table(table.get(section, {}), (section,)) for section in (*TABLES, *SECTIONS)}
     parts = {section: tuple(_part(section, *entry) for entry in tables[section].items()) for section in TABLES}
     effects = table.get("effects", [])
     if not isinstance(effects, list):
         raise SimulationError("effects must be tables", "they have another form", "Write [[effects]].", ("effects",))
-    observed = {n: (e, _sensor(n, e)) if isinstance(e, dict) else (e, None) for n, e in tables["observations"].items()}
-    tables["observations"] = {n: e["expression"] if sensor else e for n, (e, sensor) in observed.items()}
+    sensors = {name: _sensor(name, e) for name, e in tables["observations"].items() if isinstance(e, dict)}
+    tables["observations"] = {n: e["expression"] if n in sensors else e for n, e in tables["observations"].items()}
     lines: dict[str, Any] = {
         section: tuple((name, _expression(value, (section, name))) for name, value in tables[section].items())
-        for section in _EXPRESSIONS
+        for section in SECTIONS
     }
     model = _text(table, "model", ())
     if model and lines["equations"]:
@@ -151,7 +150,7 @@ def _simulation(table: Mapping[str, Any], text: str, source: Path | None) -> Sim
         **parts,
         **lines,
         effects=tuple(_effect(entry, number) for number, entry in enumerate(effects)),
-        sensors=tuple(sensor for _, sensor in observed.values() if sensor),
+        sensors=tuple(sensors.values()),
         source=source,
         layout=text,
         model=model,
