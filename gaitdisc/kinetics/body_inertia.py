@@ -69,7 +69,6 @@ class TableRow:
     # tuple of float [% of the segment's length], xx, yy, zz, xy, xz, yz of the right side; a negative product of
     # inertia has a negative number
     gyration: tuple[float, ...]
-    count: int  # how many of it a body has
 
 
 @cache
@@ -89,7 +88,6 @@ def inertia_table(sex: str) -> Mapping[str, TableRow]:
             float(row["mass"]),
             tuple(float(row[key]) for key in ("x", "y", "z") if row[key]),
             tuple(float(row[key]) for key in ("xx", "yy", "zz", "xy", "xz", "yz") if row[key]),
-            int(row["whole"]),
         )
         for row in rows
     }
@@ -102,6 +100,7 @@ def leg_inertia(person: Person, side: str, lengths_m: Mapping[str, float], toe: 
         the ankle in the foot's frame; Dumas' foot ends there
     """
     lengths = {**lengths_m, "foot": float(np.linalg.norm(toe))}
+    means = {}
     for segment in LEG:
         low, high = (0.05, 0.35) if segment == "foot" else (0.1, 0.8)
         if not low <= lengths[segment] <= high:
@@ -110,8 +109,6 @@ def leg_inertia(person: Person, side: str, lengths_m: Mapping[str, float], toe: 
                 f"{segment}_{side} is {lengths[segment]:.4g} m",
                 "Check the markers' unit and the joint centres.",
             )
-    means = {}
-    for segment in LEG:
         rows = [inertia_table(sex)[segment] for sex in person.sex or "fm"]
         bodies = [_body(row, person.kg, lengths[segment], side) for row in rows]
         mass = float(np.mean([body.mass_kg for body in bodies]))

@@ -12,13 +12,10 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from gaitdisc.channel import Channel
 from gaitdisc.errors import ShapeError
 from gaitdisc.kinematics.pose import Pose
-from gaitdisc.kinetics.platform import Wrench
-from gaitdisc.recording import Recording
+from gaitdisc.kinetics.platform import Wrench, low_passed
 from gaitdisc.recording.arrays import Values, mean_rate
-from gaitdisc.signals.butterworth import low_pass
 from gaitdisc.signals.derivatives import derivative
 
 GRAVITY = 9.80665  # m/s2
@@ -45,8 +42,7 @@ def smooth_pose(pose: Pose, time: Values, cutoff_hz: float) -> Pose:
     frames = len(pose)
     values = np.hstack([pose.origin, pose.rotation.reshape(frames, 9)])
     values[~pose.known] = np.nan
-    channels = tuple(Channel(f"pose_{place}", "signal", "1") for place in range(12))
-    smooth = low_pass(Recording(time, values, channels), cutoff_hz).values
+    smooth = low_passed(time, values, cutoff_hz)
     return Pose(smooth[:, :3], nearest_rotations(smooth[:, 3:].reshape(frames, 3, 3)))
 
 

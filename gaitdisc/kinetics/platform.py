@@ -120,10 +120,16 @@ class Platform:
         """
         on = np.any([span.holds(self.time) for span in spans], axis=0)
         values = np.hstack([self.wrench.force, self.wrench.about(self.point)]) * on[:, None]
-        if np.isfinite(cutoff_hz):
-            channels = tuple(Channel(f"wrench_{place}", "signal", "1") for place in range(6))
-            values = low_pass(Recording(self.time, values, channels), cutoff_hz).values
+        values = low_passed(self.time, values, cutoff_hz)
         return Wrench.at(self.point, values[:, :3], values[:, 3:])
+
+
+def low_passed(time: Values, values: Values, cutoff_hz: float) -> Values:
+    """Columns (sample, column) on even times without what is faster than the cut-off; an infinite one leaves all."""
+    if not np.isfinite(cutoff_hz):
+        return values
+    channels = tuple(Channel(f"column_{number}", "signal", "1") for number in range(values.shape[1]))
+    return low_pass(Recording(time, values, channels), cutoff_hz).values
 
 
 def platforms(trial: Trial) -> list[Platform]:

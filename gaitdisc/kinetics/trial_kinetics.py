@@ -7,17 +7,15 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from gaitdisc.channel import Channel
 from gaitdisc.errors import ChannelError
 from gaitdisc.kinematics.pose import Pose
 from gaitdisc.kinetics.body_inertia import Person
 from gaitdisc.kinetics.joint_moments import FootLoad, KineticsSettings, Leg, foot_loads, joint_moments, legs, swings
 from gaitdisc.kinetics.newton_euler import GRAVITY
 from gaitdisc.kinetics.plate_steps import FootPath, PlateStep, Weight, empty_findings, plate_steps, weigh_steps
-from gaitdisc.kinetics.platform import platforms
+from gaitdisc.kinetics.platform import low_passed, platforms
 from gaitdisc.recording import Finding, Recording, Trial
 from gaitdisc.recording.arrays import Values
-from gaitdisc.signals.butterworth import low_pass
 from gaitdisc.signals.derivatives import derivative
 from gaitdisc.signals.direction import marker_position
 
@@ -151,10 +149,7 @@ def trial_kinetics(
         alike = foot_loads(plates, steps, time, cutoff_hz, airborne)
         if trunk:
             mean = np.mean([marker_position(markers, name) for name in trunk], axis=0)
-            channels = tuple(Channel(f"trunk.{axis}", "marker", "m") for axis in "xyz")
-            carried = Recording(time, mean, channels, source=markers.source)
-            smooth = low_pass(carried, cutoff_hz) if np.isfinite(cutoff_hz) else carried
-            acceleration = derivative(smooth.values, markers.rate_hz, 2)
+            acceleration = derivative(low_passed(time, mean, cutoff_hz), markers.rate_hz, 2)
         balance = force_balance(both, alike, up, person, acceleration)
     findings = (*empty_findings(plates, file), *left_out, balance.finding(file))
     moments = replace(moments, subject=trial.subject, condition=trial.condition, source=markers.source)
