@@ -8,7 +8,7 @@ from pathlib import Path
 
 import numpy as np
 
-from gaitdisc.channel import nearest_word
+from gaitdisc.channel import did_you_mean
 from gaitdisc.engines.engine import Engine, read_model
 from gaitdisc.engines.motion import Motion, Values
 from gaitdisc.engines.tracked_mapping import read_tracked
@@ -97,12 +97,11 @@ def check_mapping(mapping: Simulation, engine: Engine) -> None:
     }
     for kind, (parts, has) in known.items():
         given = tuple(part.name for part in parts)
-        for name in (absent for absent in given if absent not in has):
-            hint = f"Did you mean {near!r}? " if (near := nearest_word(name, has)) else ""
+        if absent := [name for name in given if name not in has]:
             raise SchemaError(
                 f"each {kind} of a mapping must exist in the model",
-                f"{file} has no {name!r}",
-                f"{hint}Known: {', '.join(has) or 'none'}.",
+                f"{file} has no {absent[0]!r}",
+                f"{did_you_mean(absent[0], has)} Known: {', '.join(has) or 'none'}.".lstrip(),
             )
         if kind not in ("parameter", "port") and given != has:
             raise SchemaError(

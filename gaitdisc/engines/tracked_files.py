@@ -7,7 +7,7 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
-from gaitdisc.channel import Channel, nearest_word
+from gaitdisc.channel import Channel, did_you_mean
 from gaitdisc.engines.motion import Coordinate, TrackedMotion, Values
 from gaitdisc.engines.opensim_tracked import OpensimTracked
 from gaitdisc.engines.tracked_mapping import Tracked, find_loads, read_xml
@@ -58,11 +58,10 @@ def check_loads(tracked: Tracked) -> None:
     for force in read_xml(loads).iter("ExternalForce"):
         body = (force.findtext("applied_to_body") or "").strip()
         if body.rpartition("/")[2] not in bodies:
-            near = nearest_word(body, tuple(bodies))
             raise SchemaError(
                 "a recorded force must act on a body of the model",
                 f"{loads.name}: force {force.get('name')!r} acts on {body!r}, a body that {tracked.model.name} lacks",
-                f"Did you mean {near!r}? " if near else f"Correct <applied_to_body>: {', '.join(bodies)}.",
+                did_you_mean(body, bodies, f"Correct <applied_to_body>: {', '.join(bodies)}."),
             )
         for word in ("force_identifier", "point_identifier", "torque_identifier"):
             prefix = (force.findtext(word) or "").strip()
@@ -164,13 +163,11 @@ def _coordinates(path: Path, coordinates: tuple[Coordinate, ...], word: str) -> 
             columns[name] = stream.values[:, k] * (np.pi / 180 if unit.startswith("deg") else 1.0)
     for coordinate in coordinates:
         if coordinate.called not in columns:
-            near = nearest_word(coordinate.called, tuple(columns))
+            meant = did_you_mean(coordinate.called, columns)
             raise ChannelError(
                 "every free coordinate of the model must be measured",
                 f"{path.name} has no column {coordinate.called!r}",
-                f"Did you mean {near!r}? Rename this column, or lock the coordinate in the model."
-                if near
-                else "Add this column, or lock the coordinate in the model.",
+                f"{f'{meant} Rename' if meant else 'Add'} this column, or lock the coordinate in the model.",
             )
     return streams[0].time, np.column_stack([columns[coordinate.called] for coordinate in coordinates])
 
@@ -196,12 +193,11 @@ def actuator_forces(tracked: Tracked, known: tuple[str, ...]) -> tuple[tuple[str
     kept = [0, *(k for k, name in enumerate(names) if k and (name in net or not name.startswith(again)))]
     for name in (names[k] for k in kept[1:]):
         if name not in known and name not in net:
-            near = nearest_word(name, known)
             raise ChannelError(
                 "every column of the forces file must be an actuator of the model",
                 f"{path.name} has {name!r}, which is no actuator",
-                (f"Did you mean {near!r}? " if near else "")
-                + "If it is a reserve or residual actuator, name the file that defines it in [tracked] as actuators.",
+                f"{did_you_mean(name, known)} If it is a reserve or residual actuator, ".lstrip()
+                + "name the file that defines it in [tracked] as actuators.",
             )
     lacking = [name for name in known if name not in names]
     if lacking and not net.issuperset(names[k] for k in kept[1:]):  # net moments hold those of all muscles

@@ -10,7 +10,7 @@ from xml.etree import ElementTree
 
 import numpy as np
 
-from gaitdisc.channel import nearest_word
+from gaitdisc.channel import did_you_mean
 from gaitdisc.errors import ReadError, SchemaError
 from gaitdisc.toml_text import parse_toml, quote
 from gaitdisc.whole_file import write_whole
@@ -60,14 +60,14 @@ def read_tracked(path: Path | str) -> Tracked | None:
     except (OSError, ValueError) as error:
         raise ReadError("a mapping must be a TOML file", f"{file.name}: {error}", "Correct it.") from None
     given = table["tracked"]
+    known = (*FILES, *NUMBERS)
     unknown = [name for name in table if name not in ("title", "model", "tracked")]
-    unknown += [name for name in given if name not in (*FILES, *NUMBERS)]
+    unknown += [name for name in given if name not in known]
     if unknown:
-        near = nearest_word(unknown[0], (*FILES, *NUMBERS))
         raise SchemaError(
-            f"a mapping with [tracked] may have only title, model and, in [tracked], {', '.join((*FILES, *NUMBERS))}",
+            f"a mapping with [tracked] may have only title, model and, in [tracked], {', '.join(known)}",
             f"{file.name} has {unknown[0]!r}",
-            f"Did you mean {near!r}?" if near else "Remove this key.",
+            did_you_mean(unknown[0], known, "Remove this key."),
         )
     if "external_loads" not in given:
         raise SchemaError(
