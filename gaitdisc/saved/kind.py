@@ -14,7 +14,7 @@ from gaitdisc.errors import SchemaError
 from gaitdisc.own_files import claim_folder, guard
 from gaitdisc.recording import Finding
 from gaitdisc.recording.arrays import Values
-from gaitdisc.saved.unit_folder import NO_KEY, Arrays, Keyed, load_finding, load_unit, save_unit, with_words
+from gaitdisc.saved.unit_folder import NO_KEY, Arrays, Keyed, OnDisk, load_finding, load_unit, save_unit, with_words
 from gaitdisc.whole_file import write_together
 
 if TYPE_CHECKING:
@@ -85,7 +85,7 @@ class Kind(Generic[T]):
         hints = _hints(self.noun)
         values = {name: _type(hints[name], data[name]) for name in self.keys if name in hints and name in data}
         values |= {name: self._table(csv, tables) for name, csv in self.tables.items()}
-        values |= {name: arrays.later(made) if self.later else made(arrays) for name, made in self.arrays.items()}
+        values |= {name: OnDisk(made, arrays) if self.later else made(arrays) for name, made in self.arrays.items()}
         return Keyed(self.noun(**values), data.get("key", ""))
 
     def kept(self, folder: Path, key: str) -> T | None:

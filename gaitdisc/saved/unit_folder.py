@@ -13,7 +13,7 @@ import json
 import zipfile
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
-from functools import cache, lru_cache
+from functools import cache, lru_cache, partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Generic, NamedTuple, TypeVar
 
@@ -54,7 +54,7 @@ class StoredArrays(Mapping[str, Values]):
     sha256: str  # hash it had when it was saved; empty where there is no file, and no array
 
     def __getitem__(self, name: str) -> Values:
-        return self._read()[name]
+        return _arrays(self.path, self.sha256)[name]
 
     def __iter__(self) -> Iterator[str]:
         return iter(self._read())
@@ -62,21 +62,12 @@ class StoredArrays(Mapping[str, Values]):
     def __len__(self) -> int:
         return len(self._read())
 
-    def later(self, made: Callable[[Arrays], T]) -> Any:
-        """Return what shall be made of the arrays when it is looked at, for a field that `may_lie_on_disk`."""
-        return OnDisk(self.path, self.sha256, made)
-
     def _read(self) -> Arrays:
         return _arrays(self.path, self.sha256) if self.sha256 else {}
 
 
-@dataclass(frozen=True)
-class OnDisk(Generic[T]):
-    """Something made of the arrays of one file each time it is looked at."""
-
-    path: Path
-    sha256: str  # hash it had when it was saved
-    made: Callable[[Arrays], T]
+class OnDisk(partial[T]):
+    """Something made of the arrays of one file each time it is looked at, for a field that `may_lie_on_disk`."""
 
 
 def may_lie_on_disk(*fields: str) -> Callable[[type[Kind]], type[Kind]]:
@@ -128,7 +119,7 @@ class _Field:
         if thing is None:
             raise AttributeError(self._name)
         value = vars(thing)[self._name]
-        return value.made(_arrays(value.path, value.sha256)) if isinstance(value, OnDisk) else value
+        return value() if isinstance(value, OnDisk) else value
 
     def __set__(self, thing: object, value: object) -> None:
         vars(thing)[self._name] = value
@@ -237,9 +228,7 @@ def save_unit(
     write_whole(folder / name, seal_text({"format": FORMAT, **data, "sha256": hashes}))
 
 
-def load_unit(
-    folder: Path, name: str, columns: Mapping[str, Sequence[str]] | None = None, words: Sequence[str] = ()
-) -> Unit:
+def load_unit(folder: Path, name: str, columns: Mapping[str, Sequence[str]], words: Sequence[str] = ()) -> Unit:
     """Read a unit after comparing hashes; `columns` that tables must have, `words` whose cells are no numbers."""
     data = read_json(folder / name)
     check_files(folder, data["sha256"])
@@ -249,7 +238,7 @@ def load_unit(
             tables[file] = read_csv(folder / file, words).rename(columns=EARLIER)
         except (OSError, ValueError) as error:  # what pandas cannot parse is a ValueError
             raise damage(folder / file, f"cannot be read as a table ({error})") from error
-    for file, wanted in (columns or {}).items():
+    for file, wanted in columns.items():
         if file not in tables:
             raise damage(folder / file, f"is not among the files that {name} names")
         absent = [column for column in wanted if column not in tables[file]]

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import inspect
 from collections.abc import Callable, Iterable, Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 from typing import Any
 
@@ -119,8 +119,8 @@ def simulation_from_function(
         simulation = Simulation(taken.title, *parts, equations=equations, observations=seen)
         return _refuse_other_numbers(simulation, taken)
     except NotTraced as reason:
-        rates = _Called(taken, count, by_points=False)
-        rates = rates if rates.agrees else _Called(taken, count, by_points=True)
+        rates = _Called(taken, by_points=False)
+        rates = rates if rates.agrees else _Called(taken, by_points=True)
         model = python_simulation(taken.title, rates, *parts, observations)
         return replace(model, manner=f"{rates.manner}, because its equations could not be derived: {reason}")
 
@@ -139,6 +139,7 @@ class _Taken:
     ports: tuple[str, ...]
     arguments: Callable[[Callable[[str], Any]], tuple[tuple, dict]]  # from what gives the value of a name
     remedy: str = "Call the function yourself with numbers, and correct it."  # where it raises whatever it is given
+    raised: list[Exception] = field(default_factory=list)  # at the points where it did
 
     @property
     def title(self) -> str:
@@ -148,7 +149,7 @@ class _Taken:
     @cached_property
     def derivatives(self) -> int:
         """How many it returns."""
-        tries = [(len(rates), point) for rates, point in zip(self.returned, self.points, strict=True) if rates]
+        tries = [(point, rates) for point, rates in zip(self.points, self.returned, strict=True) if rates]
         if not tries:
             raised = self.raised[0]
             what = f"{self.title} raised {type(raised).__name__}: {raised!s:.200}"
@@ -157,15 +158,15 @@ class _Taken:
                 str(raised) if isinstance(raised, _NoNumbersError) else what,
                 self.remedy,
             ) from raised
-        again = self._try(tries[-1][1])
-        before = next(rates for rates in reversed(self.returned) if rates)
+        point, before = tries[-1]
+        again = self._try(point)
         if not np.array_equal(again, before, equal_nan=True):
             raise SimulationError(
                 "a simulation's function must return the same derivatives whenever it is called with the same numbers",
                 f"{self.title} returned {before}, then {again}",
                 "Remove random numbers and internal memory. Noise belongs to the measurement.",
             )
-        return tries[0][0]
+        return len(tries[0][1])
 
     @cached_property
     def points(self) -> list[dict[str, float]]:
@@ -188,11 +189,6 @@ class _Taken:
     def returned(self) -> list[list[float]]:
         """Derivatives at each point; none where it raises."""
         return [self._try(point) for point in self.points]
-
-    @cached_property
-    def raised(self) -> list[Exception]:
-        """What it raised at the points where it did."""
-        return []
 
     def _try(self, point: Mapping[str, float]) -> list[float]:
         try:
@@ -224,7 +220,6 @@ class _Called:
     """The right-hand side of a `PythonSimulation`: rows in, derivatives out, by calls of the function."""
 
     taken: _Taken
-    states: int
     by_points: bool
 
     @property
@@ -236,8 +231,9 @@ class _Called:
     @property
     def agrees(self) -> bool:
         """Whether many points at once give what each gives by itself."""
-        taken, driven = self.taken, (self.taken.signals[: self.states], self.taken.signals[self.states :])
-        t, *columns = taken.tabulate((TIME,), *driven, taken.numbers, taken.ports)
+        taken, count = self.taken, self.taken.derivatives
+        groups = taken.signals[:count], taken.signals[count:], taken.numbers, taken.ports
+        t, *columns = taken.tabulate((TIME,), *groups)
         try:
             with np.errstate(all="ignore"):
                 return taken.gives(self(t[:, 0], *columns))
@@ -254,7 +250,7 @@ class _Called:
         plain, named = self.taken.arguments(dict(zip(names, columns, strict=True)).__getitem__)
         result = self.taken.function(*plain, **named)
         if not isinstance(result, tuple | list):
-            result = np.reshape(np.asarray(result, float), (self.states, -1))
+            result = np.reshape(np.asarray(result, float), (self.taken.derivatives, -1))
         rates = np.empty(x.shape)
         for state, rate in enumerate(result):
             rates[:, state] = rate
@@ -264,7 +260,7 @@ class _Called:
         try:
             return self.taken.at(point)
         except (ValueError, ArithmeticError):  # `math` raises where NumPy gives what is no number
-            return [np.nan] * self.states
+            return [np.nan] * self.taken.derivatives
 
 
 def _refuse_other_numbers(simulation: Simulation, taken: _Taken) -> Simulation:
@@ -296,8 +292,8 @@ def _by_name(function: Callable[..., Any]) -> _Taken:
     dicts = {name: [str(key) for key in default] for name, default in defaults.items() if isinstance(default, Mapping)}
     numbers: dict[str, float] = {}
     for name, default in defaults.items():
-        several = default if name in dicts else {name: default}
-        numbers |= {str(key): _number(function, name, value) for key, value in several.items()}
+        named = default if name in dicts else {name: default}
+        numbers |= {str(key): _number(function, name, value) for key, value in named.items()}
     single = [name for name in (*plain, *defaults, *ports) if name not in dicts]
 
     def from_values(value: Callable[[str], Any]) -> tuple[tuple, dict]:

@@ -35,7 +35,7 @@ class PythonSimulation:
     # ports (row, port) and gives the derivatives (row, state). Parameters that are added later follow the model's own
     rates: RightHandSide = field(hash=False)
     parts: Simulation
-    replaced: Lines = field(default=())  # inputs that are replaced by an expression of the measured ones
+    replaced: Lines = ()  # inputs that are replaced by an expression of the measured ones
     # how the function is called and why so, for a person; nothing where there is nothing to say
     manner: str = field(default="", compare=False)
 

@@ -16,7 +16,7 @@ from gaitdisc.recording.strides import interpolate
 LEAST_STRIDES = 5
 
 
-def strides_of_phase(time: NDArray[np.float64], phi: NDArray[np.float64], side: str = "r") -> Strides:
+def strides_of_phase(time: NDArray[np.float64], phi: NDArray[np.float64]) -> Strides:
     """Strides that lie wholly within a stretch of time, recovered from its percent stride.
 
     Percent stride rises evenly from one initial contact to the next, so that two samples of a stride give its start and
@@ -33,7 +33,7 @@ def strides_of_phase(time: NDArray[np.float64], phi: NDArray[np.float64], side: 
     """
     inside = np.flatnonzero(np.isfinite(phi))
     if not len(inside):
-        return Strides(np.empty(0), np.empty(0), side, "phase")
+        return Strides(np.empty(0), np.empty(0), "r", "phase")
     breaks = (np.diff(inside) > 1) | (np.diff(phi[inside]) <= 0)
     starts, ends = [], []
     for rows in np.split(inside, np.flatnonzero(breaks) + 1):
@@ -45,7 +45,7 @@ def strides_of_phase(time: NDArray[np.float64], phi: NDArray[np.float64], side: 
         if start >= time[0] - 1e-9 and start + duration <= time[-1] + 1e-9:
             starts.append(start)
             ends.append(start + duration)
-    return Strides(np.array(starts), np.array(ends), side, "phase")
+    return Strides(np.array(starts), np.array(ends), "r", "phase")
 
 
 def stride_curves(time: NDArray[np.float64], values: NDArray[np.float64], strides: Strides) -> NDArray[np.float64]:
