@@ -7,9 +7,9 @@ from dataclasses import dataclass
 from itertools import pairwise
 
 import numpy as np
-from numpy.typing import NDArray
 
 from gaitdisc.errors import ComparisonError, ShapeError
+from gaitdisc.recording.arrays import Values
 
 FEWEST_IN_ONE = 6  # 2^5 sign flips, of which the smallest p is 1/32
 FEWEST_IN_EACH = 6  # fewer departures hold the level no longer
@@ -29,7 +29,7 @@ class PermutationPlan:
 USUAL = PermutationPlan()
 
 
-def sign_flips(n: int, plan: PermutationPlan) -> tuple[NDArray[np.float64], bool]:
+def sign_flips(n: int, plan: PermutationPlan) -> tuple[Values, bool]:
     """Signs of every permutation but that of the units as they are.
 
     returns signs (permutation, unit): 1 or -1; with all signs turned |t| is the same, so the first unit keeps its own
@@ -55,7 +55,7 @@ def sign_flips(n: int, plan: PermutationPlan) -> tuple[NDArray[np.float64], bool
     return signs, exact
 
 
-Statistic = Callable[[NDArray[np.float64]], NDArray[np.float64]]
+Statistic = Callable[[Values], Values]
 
 
 @dataclass(frozen=True)
@@ -74,19 +74,17 @@ class Cluster:
 class ClusterTest:
     """A permutation test of curves, all points and channels corrected together."""
 
-    t: NDArray[np.float64]  # (phase, channel), statistic of the curves as they are
-    standard_error: NDArray[np.float64]  # (phase, channel) [each channel's unit], of the difference
+    t: Values  # (phase, channel), statistic of the curves as they are
+    standard_error: Values  # (phase, channel) [each channel's unit], of the difference
     threshold: float  # |t| that only alpha of the permutations exceed anywhere
-    p: NDArray[np.float64]  # (channel,), of the channel's largest |t|, corrected for all points and channels
+    p: Values  # (channel,), of the channel's largest |t|, corrected for all points and channels
     clusters: tuple[Cluster, ...]  # stretches beyond the threshold, by channel and point
     permutations: int  # how many, the curves as they are among them
     exact: bool  # whether these are all that there are
     alpha: float  # chance of a point beyond the threshold anywhere where nothing differs
 
 
-def one_sample_test(
-    curves: NDArray[np.float64], plan: PermutationPlan = USUAL, worth: NDArray[np.float64] | None = None
-) -> ClusterTest:
+def one_sample_test(curves: Values, plan: PermutationPlan = USUAL, worth: Values | None = None) -> ClusterTest:
     """Test whether curves lie about zero: differences of pairs, or curves minus one that is known.
 
     Under the null the sign of a unit's curve as a whole is by chance, which keeps what binds its points and channels
@@ -108,7 +106,7 @@ def one_sample_test(
     flat = curves.reshape(n, -1)
     squares, least = (flat**2).sum(axis=0), _least_error(curves, n)
 
-    def t_of(signs: NDArray[np.float64]) -> NDArray[np.float64]:
+    def t_of(signs: Values) -> Values:
         mean = signs @ flat / n
         variance = np.maximum(squares - n * mean**2, 0.0) / (n - 1)
         return (mean / np.sqrt(variance / n + least)).reshape(-1, *shape)
@@ -119,10 +117,7 @@ def one_sample_test(
 
 
 def two_sample_test(
-    first: NDArray[np.float64],
-    second: NDArray[np.float64],
-    plan: PermutationPlan = USUAL,
-    worth: NDArray[np.float64] | None = None,
+    first: Values, second: Values, plan: PermutationPlan = USUAL, worth: Values | None = None
 ) -> ClusterTest:
     """Test whether two independent sets of curves differ, second minus first.
 
@@ -154,7 +149,7 @@ def two_sample_test(
     apart = [(curves - curves.mean(axis=0)).reshape(len(curves), -1) for curves in sets]
     least = _least_error(np.concatenate(apart).reshape(-1, *shape), len(first) + len(second))
 
-    def t_of(signs: NDArray[np.float64]) -> NDArray[np.float64]:
+    def t_of(signs: Values) -> Values:
         means, squares = [], least
         for part, turned in zip(apart, np.split(signs, [len(first)], axis=1), strict=True):
             n = len(part)
@@ -170,12 +165,7 @@ def two_sample_test(
 
 
 def _test(
-    t: NDArray[np.float64],
-    error: NDArray[np.float64],
-    t_of: Statistic,
-    drawn: tuple[NDArray[np.float64], bool],
-    plan: PermutationPlan,
-    worth: NDArray[np.float64] | None,
+    t: Values, error: Values, t_of: Statistic, drawn: tuple[Values, bool], plan: PermutationPlan, worth: Values | None
 ) -> ClusterTest:
     permutations, exact = drawn
     share = np.sqrt(np.ones(t.shape[1]) if worth is None else np.minimum(worth, 1.0))
@@ -195,7 +185,7 @@ def _test(
     return ClusterTest(t, error, threshold, p, clusters, permutations=len(over_all), exact=exact, alpha=plan.alpha)
 
 
-def _stretches(t: NDArray[np.float64], threshold: float) -> Iterator[tuple[int, int, int, int, float]]:
+def _stretches(t: Values, threshold: float) -> Iterator[tuple[int, int, int, int, float]]:
     """Channel, first and last point, sign and mass of every run beyond the threshold."""
     for channel in np.flatnonzero((np.abs(t) > threshold).any(axis=0)):
         side = np.sign(t[:, channel]) * (np.abs(t[:, channel]) > threshold)
@@ -207,19 +197,19 @@ def _stretches(t: NDArray[np.float64], threshold: float) -> Iterator[tuple[int, 
                 yield int(channel), int(start), int(end) - 1, int(side[start]), mass
 
 
-def _parts(drawn: NDArray[np.float64], size: int) -> Iterator[NDArray[np.float64]]:
+def _parts(drawn: Values, size: int) -> Iterator[Values]:
     step = max(1, AT_ONCE // (4 * size))
     for start in range(0, len(drawn), step):
         yield drawn[start : start + step]
 
 
-def _least_error(curves: NDArray[np.float64], n: int) -> NDArray[np.float64]:
+def _least_error(curves: Values, n: int) -> Values:
     """Square of the smallest standard error that is more than rounding, (phase x channel,)."""
     spread = np.maximum((curves**2).mean(axis=(0, 1)), np.finfo(float).tiny)
     return np.broadcast_to(ROUNDING**2 * spread / n, curves.shape[1:]).ravel()
 
 
-def _check(curves: NDArray[np.float64], fewest: int) -> None:
+def _check(curves: Values, fewest: int) -> None:
     if curves.ndim != 3 or not np.isfinite(curves).all():
         missing = int(np.sum(~np.isfinite(curves)))
         raise ShapeError(

@@ -10,6 +10,7 @@ from scipy.cluster.hierarchy import fcluster, linkage
 from scipy.spatial.distance import pdist, squareform
 
 from gaitdisc.errors import ComparisonError
+from gaitdisc.recording.arrays import Values
 
 FEWEST, MOST = 6, 4  # participants; sub-groups tried
 ALPHA = 0.05  # of the clouds that part as well
@@ -31,7 +32,7 @@ class Groups:
     why: str
 
 
-def find_groups(features: NDArray[np.float64], clouds: int = 199, seed: int = 0) -> Groups:
+def find_groups(features: Values, clouds: int = 199, seed: int = 0) -> Groups:
     """Look for sub-groups by Ward's method, and believe them only if chance and sampling cannot make them.
 
     Any cloud can be cut in two. The cut is believed where its mean silhouette is rare among normal clouds of the same
@@ -75,7 +76,7 @@ def find_groups(features: NDArray[np.float64], clouds: int = 199, seed: int = 0)
     return Groups(0, np.zeros_like(labels), silhouette, p, stability, f"No sub-groups: {why}")
 
 
-def best_cut(features: NDArray[np.float64]) -> tuple[NDArray[np.intp], float]:
+def best_cut(features: Values) -> tuple[NDArray[np.intp], float]:
     """Cut into two to four groups, none of a single participant, by Ward's method, of the largest mean silhouette.
 
     features (participant, feature): complete
@@ -97,7 +98,7 @@ def best_cut(features: NDArray[np.float64]) -> tuple[NDArray[np.intp], float]:
     return best, highest
 
 
-def _stability(features: NDArray[np.float64], labels: NDArray[np.intp], rng: np.random.Generator) -> float:
+def _stability(features: Values, labels: NDArray[np.intp], rng: np.random.Generator) -> float:
     from sklearn.metrics import adjusted_rand_score
 
     size = max(FEWEST - 1, round(SHARE_KEPT * len(features)))

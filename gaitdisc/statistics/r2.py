@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from gaitdisc.errors import ShapeError
+from gaitdisc.recording.arrays import Values
 
 ROUNDING = 1e-9  # of the largest value: a spread below it is rounding
 
@@ -53,7 +54,7 @@ def r2(measured: ArrayLike, predicted: ArrayLike) -> NDArray[np.float64]:
     return np.where(meaningless, np.nan, 1.0 - sse / np.where(meaningless, 1.0, sst))
 
 
-def why_no_r2(measured: NDArray[np.float64], predicted: NDArray[np.float64]) -> tuple[str, ...]:
+def why_no_r2(measured: Values, predicted: Values) -> tuple[str, ...]:
     """Reason for every column why it has no coefficient of determination; empty where it has one.
 
     measured, predicted (sample, column) [each column's unit]: as for `r2`
@@ -70,7 +71,7 @@ def why_no_r2(measured: NDArray[np.float64], predicted: NDArray[np.float64]) -> 
     return tuple(_reason(y, f) for y, f in zip(measured.T, predicted.T, strict=True))
 
 
-def _reason(measured: NDArray[np.float64], predicted: NDArray[np.float64]) -> str:
+def _reason(measured: Values, predicted: Values) -> str:
     if len(measured) < 2:
         return f"too few samples (n = {len(measured)})"
     missing = int(np.sum(~np.isfinite(measured) | ~np.isfinite(predicted)))
@@ -81,7 +82,7 @@ def _reason(measured: NDArray[np.float64], predicted: NDArray[np.float64]) -> st
     return ""
 
 
-Filtered = Callable[[NDArray[np.float64]], tuple[NDArray[np.float64], NDArray[np.float64], NDArray[np.float64]]]
+Filtered = Callable[[Values], tuple[Values, Values, Values]]
 EDGE = 0.05  # share left away at either end, where filters ring
 
 

@@ -12,6 +12,7 @@ from numpy.typing import ArrayLike, NDArray
 from scipy.stats import rankdata, wilcoxon
 
 from gaitdisc.errors import ComparisonError, ShapeError
+from gaitdisc.recording.arrays import Values
 from gaitdisc.statistics.holm_sidak import check_level
 
 
@@ -100,7 +101,7 @@ def signed_rank(
     )
 
 
-def exact_p(differences: NDArray[np.float64]) -> float:
+def exact_p(differences: Values) -> float:
     """Exact two-sided p of the differences: the share of all 2^n signs that are as one-sided as these, or more.
 
     Without equal differences it is scipy's exact distribution. With them scipy's is not exact (it ranks as if there
@@ -131,7 +132,7 @@ def smallest_p(n: int) -> float:
     return min(1.0, 2.0 ** (1 - n))
 
 
-def shift_interval(differences: NDArray[np.float64], level: float = 0.95) -> tuple[float, float, float]:
+def shift_interval(differences: Values, level: float = 0.95) -> tuple[float, float, float]:
     """Hodges-Lehmann shift, the median of the means of all pairs of differences, and its exact interval.
 
     The interval holds every shift that the signed-rank test at 1 - level does not reject. Zeros stay in: they are zero
@@ -155,9 +156,7 @@ def shift_interval(differences: NDArray[np.float64], level: float = 0.95) -> tup
     return float(np.median(means)), float(means[outside - 1]), float(means[-outside])
 
 
-def _differences(
-    first: NDArray[np.float64], second: NDArray[np.float64], left_out: Mapping[int, str]
-) -> NDArray[np.float64]:
+def _differences(first: Values, second: Values, left_out: Mapping[int, str]) -> Values:
     if first.ndim != 1 or first.shape != second.shape:
         raise ShapeError(
             "a paired test must have two rows of numbers of the same length",
@@ -182,7 +181,7 @@ def _differences(
     return differences[kept]
 
 
-def sums_of_ranks(ranks: NDArray[np.intp]) -> NDArray[np.float64]:
+def sums_of_ranks(ranks: NDArray[np.intp]) -> Values:
     """Share of the 2^n signs that give each sum of positive ranks, 0 to all of them.
 
     ranks (pair,): whole numbers; mean ranks doubled

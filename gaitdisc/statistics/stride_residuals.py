@@ -10,13 +10,13 @@ from scipy.stats import t as student
 
 from gaitdisc.errors import StrideError
 from gaitdisc.recording import PERCENT, Strides
-from gaitdisc.recording.arrays import mean_where_known
+from gaitdisc.recording.arrays import Values, mean_where_known
 from gaitdisc.recording.strides import interpolate
 
 LEAST_STRIDES = 5
 
 
-def strides_of_phase(time: NDArray[np.float64], phi: NDArray[np.float64]) -> Strides:
+def strides_of_phase(time: Values, phi: Values) -> Strides:
     """Strides that lie wholly within a stretch of time, recovered from its percent stride.
 
     Percent stride rises evenly from one initial contact to the next, so that two samples of a stride give its start and
@@ -48,7 +48,7 @@ def strides_of_phase(time: NDArray[np.float64], phi: NDArray[np.float64]) -> Str
     return Strides(np.array(starts), np.array(ends), "r", "phase")
 
 
-def stride_curves(time: NDArray[np.float64], values: NDArray[np.float64], strides: Strides) -> NDArray[np.float64]:
+def stride_curves(time: Values, values: Values, strides: Strides) -> Values:
     """Curve of every stride on 101 points, (stride, phase, column) [each column's unit]; NaN where a sample is missing.
 
     time (time,) [s]: even
@@ -62,19 +62,19 @@ def stride_curves(time: NDArray[np.float64], values: NDArray[np.float64], stride
 class StrideMean:
     """Mean of curves over strides, with its interval at every point of the stride."""
 
-    mean: NDArray[np.float64]  # (phase, column) [each column's unit]; NaN where fewer than five strides have a value
-    low: NDArray[np.float64]  # (phase, column) [each column's unit], lower end of the interval
-    high: NDArray[np.float64]  # (phase, column) [each column's unit], upper end of the interval
+    mean: Values  # (phase, column) [each column's unit]; NaN where fewer than five strides have a value
+    low: Values  # (phase, column) [each column's unit], lower end of the interval
+    high: Values  # (phase, column) [each column's unit], upper end of the interval
     strides: NDArray[np.intp]  # (phase, column), strides with a value
     level: float  # of the interval, at each point by itself: the curve as a whole leaves it more often
 
     @property
-    def rms(self) -> NDArray[np.float64]:
+    def rms(self) -> Values:
         """Root mean square over the stride of the mean curve, (column,) [each column's unit]."""
         return np.sqrt(mean_where_known(self.mean**2))
 
     @property
-    def peak_to_peak(self) -> NDArray[np.float64]:
+    def peak_to_peak(self) -> Values:
         """Largest minus smallest value of the mean curve, (column,) [each column's unit]."""
         there = np.isfinite(self.mean)
         highest = np.max(self.mean, axis=0, where=there, initial=-np.inf)
@@ -82,7 +82,7 @@ class StrideMean:
         return np.where(there.any(axis=0), highest - lowest, np.nan)
 
 
-def mean_over_strides(curves: NDArray[np.float64], level: float = 0.95) -> StrideMean:
+def mean_over_strides(curves: Values, level: float = 0.95) -> StrideMean:
     """Mean of curves over strides; strides are the units, and neighbours in time are not independent.
 
     The interval is Student's t with an effective number of strides n (1 - rho) / (1 + rho), rho the correlation of
@@ -120,7 +120,7 @@ def mean_over_strides(curves: NDArray[np.float64], level: float = 0.95) -> Strid
     return StrideMean(mean, mean - half, mean + half, count, level)
 
 
-def effective_strides(curves: NDArray[np.float64]) -> NDArray[np.float64]:
+def effective_strides(curves: Values) -> Values:
     """How many independent strides a series of strides is worth, (column,), at most as many as there are.
 
     curves (stride, phase, column): in order of time; NaN where missing
@@ -138,7 +138,7 @@ FEWEST_BLOCKS = 8  # fewer make the test blind, whatever they gain in independen
 LEFT_OVER = 0.15  # correlation of neighbouring blocks that is left to `block_worth`
 
 
-def stride_correlation(curves: NDArray[np.float64]) -> NDArray[np.float64]:
+def stride_correlation(curves: Values) -> Values:
     """Correlation of successive strides, pooled over the stride, (channel,), 0 to 1.
 
     curves (stride, phase, channel): in order of time, complete
@@ -166,7 +166,7 @@ def block_length(correlation: float, strides: int) -> int:
     return longest
 
 
-def block_worth(correlation: NDArray[np.float64], length: int) -> NDArray[np.float64]:
+def block_worth(correlation: Values, length: int) -> Values:
     """Independent blocks that a block of a first-order autoregression is worth, at most 1.
 
     The variance that its strides have between blocks, over that which the mean of a long series has times the number of
@@ -180,7 +180,7 @@ def block_worth(correlation: NDArray[np.float64], length: int) -> NDArray[np.flo
     return length * _variance(correlation, length) * (1.0 - correlation) / (1.0 + correlation)
 
 
-def block_means(curves: NDArray[np.float64], length: int) -> NDArray[np.float64]:
+def block_means(curves: Values, length: int) -> Values:
     """Mean curves of blocks of consecutive strides, (block, phase, channel) [each channel's unit].
 
     curves (stride, phase, channel) [each channel's unit]: in order of time, complete
@@ -192,7 +192,7 @@ def block_means(curves: NDArray[np.float64], length: int) -> NDArray[np.float64]
     return np.array([part.mean(axis=0) for part in np.array_split(curves, max(1, len(curves) // length))])
 
 
-def _variance(correlation: NDArray[np.float64], length: int) -> NDArray[np.float64]:
+def _variance(correlation: Values, length: int) -> Values:
     """Variance of the mean of a block, of strides of variance 1, (channel,)."""
     lags = np.arange(1, length)[:, None]
     return (1.0 + 2.0 * np.sum((1.0 - lags / length) * correlation**lags, axis=0)) / length
