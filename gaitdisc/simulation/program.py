@@ -230,14 +230,12 @@ def leaf_columns(t: ArrayLike, x: Values, u: Values, values: Values) -> list[Val
     return [np.asarray(t, float), *np.asarray(x, float).T, *np.asarray(u, float).T, *np.asarray(values, float).T]
 
 
-def at_points(
-    program: Program, columns: Sequence[Values], late: Values | None = None, points: int | None = None
-) -> Values:
+def at_points(program: Program, columns: Sequence[Values], late: Values | None, points: int) -> Values:
     """Outputs of a program at many points, (output, point).
 
     columns each (point,) or (): values of its leaves; one number serves all points
     late (point, delay): delayed signals, where the program has any
-    points: how many; the length of the first column by default
+    points: how many
     """
     if program.delays and (late is None or np.shape(late)[-1] != len(program.delays)):
         raise SimulationError(
@@ -247,13 +245,12 @@ def at_points(
         )
     from gaitdisc.simulation.machine import BLOCK, evaluate_blocks
 
-    count = int(np.size(columns[0])) if points is None else points
     used = program.used()
-    spread, table = np.full(program.registers, 2, np.int64), np.empty((len(used), count))
+    spread, table = np.full(program.registers, 2, np.int64), np.empty((len(used), points))
     for leaf, column in enumerate([*columns, *(np.asarray(late).T if program.delays else ())]):
         if used[leaf]:
             spread[leaf] = int(np.ndim(column) > 0)
-            table[leaf, : count if np.ndim(column) else 1] = column
-    into = np.empty((program.outputs, count))
+            table[leaf, : points if np.ndim(column) else 1] = column
+    into = np.empty((program.outputs, points))
     evaluate_blocks(program.placed(BLOCK), program.constants, table, spread, into)
     return into

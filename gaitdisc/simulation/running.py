@@ -125,9 +125,8 @@ def refuse_divergence(compiled: Compiled, drive: Drive, rows: Rows, states: Valu
     trial, sample = int(rows.trial[row]), int(rows.begin[row]) + last
     time = drive.time0[trial] + sample / drive.rate
     u = drive.inputs[trial, min(sample, int(drive.samples[trial]) - 1)]
-    values = (
-        compiled.defaults if rows.values is None else np.atleast_2d(rows.values)[row if rows.values.ndim > 1 else 0]
-    )
+    given = compiled.defaults if rows.values is None else rows.values
+    values = np.broadcast_to(given, (len(ok), len(compiled.parameters)))[row]
     fastest, parameter = _find_cause(compiled, time, states[row, last], u, values)
     more = f"; so do {len(others)} more of {len(ok)} runs" if others else ""
     driven = f"{parameter!r}, which affects this state most, and " if parameter else ""

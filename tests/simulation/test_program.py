@@ -14,7 +14,7 @@ from gaitdisc.simulation.program import CODES, at_points, compile_program, leaf_
 
 def _value(text, **values):
     program = compile_program([parse(text)], list(values))
-    return at_points(program, [np.array([float(value)]) for value in values.values()])[0, 0]
+    return at_points(program, [np.array([float(value)]) for value in values.values()], None, 1)[0, 0]
 
 
 def test_what_is_shared_is_computed_once():
@@ -79,7 +79,7 @@ def test_what_a_parameter_that_keeps_its_value_does_not_change_is_left_out(mass)
     text, leaves = parse("(-9.81*x + u) + (a*x + b*u)*(mass - 2.0)"), ["x", "u", "a", "b", "mass"]
     whole, quicker = (compile_program([text], leaves, ["mass"], None, still) for still in (None, {"mass": mass}))
     columns = [*np.random.default_rng(3).normal(size=(4, 20)), np.array(mass)]
-    assert np.array_equal(at_points(whole, columns), at_points(quicker, columns))
+    assert np.array_equal(at_points(whole, columns, None, 20), at_points(quicker, columns, None, 20))
     assert quicker.used().tolist() == [True, True, mass != 2.0, mass != 2.0, False]
 
 
@@ -90,12 +90,12 @@ def test_columns_are_in_the_order_of_a_program():
 
 def test_one_number_serves_all_points():
     program = compile_program([parse("a*b"), parse("b")], ["a", "b", "unused"])
-    found = at_points(program, [np.arange(200.0), np.array(3.0), np.array(np.nan)])
+    found = at_points(program, [np.arange(200.0), np.array(3.0), np.array(np.nan)], None, 200)
     np.testing.assert_array_equal(found, [3 * np.arange(200.0), np.full(200, 3.0)])
 
 
 def test_late_signals_are_asked_for():
     program = compile_program([parse("delay(a, 0.1) + a")], ["a"])
-    assert at_points(program, [np.ones(2)], np.array([[5.0], [6.0]]))[0].tolist() == [6.0, 7.0]
+    assert at_points(program, [np.ones(2)], np.array([[5.0], [6.0]]), 2)[0].tolist() == [6.0, 7.0]
     with pytest.raises(SimulationError, match="signals must be given"):
-        at_points(program, [np.ones(2)])
+        at_points(program, [np.ones(2)], None, 2)
