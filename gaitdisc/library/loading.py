@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 from gaitdisc.library.walks import Walk, make_trial
 from gaitdisc.processing.inspection import inspect_file, inspect_trial
-from gaitdisc.saved.kind import load_saved
+from gaitdisc.saved.kind import find_kind
 
 if TYPE_CHECKING:
     from gaitdisc.comparison.mismatch import Mismatch
@@ -46,7 +46,7 @@ def load(
     >>> import gaitdisc as gd
     >>> gd.load("found").sentence  # doctest: +SKIP
     """
-    return load_saved(Path(folder))
+    return find_kind(Path(folder)).load(Path(folder))
 
 
 def check(walk: Walk) -> Inspection:

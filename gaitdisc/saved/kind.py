@@ -14,7 +14,7 @@ from gaitdisc.errors import SchemaError
 from gaitdisc.own_files import claim_folder, guard
 from gaitdisc.recording import Finding
 from gaitdisc.recording.arrays import Values
-from gaitdisc.saved.unit_folder import NO_KEY, Arrays, Keyed, OnDisk, load_finding, load_unit, save_unit, with_words
+from gaitdisc.saved.unit_folder import NO_KEY, Arrays, OnDisk, load_finding, load_unit, save_unit, with_words
 from gaitdisc.whole_file import write_together
 
 if TYPE_CHECKING:
@@ -76,9 +76,9 @@ class Kind(Generic[T]):
 
     def load(self, folder: Path) -> T:
         """Load a result."""
-        return self.read(folder) if self.read is not None else self.load_keyed(folder).result
+        return self.read(folder) if self.read is not None else self.load_keyed(folder)[0]
 
-    def load_keyed(self, folder: Path) -> Keyed[T]:
+    def load_keyed(self, folder: Path) -> tuple[T, str]:
         """Load a result, and the key it was computed from."""
         wanted = {csv.file: csv.columns for csv in self.tables.values() if csv.columns is not None}
         data, tables, arrays = load_unit(folder, self.file, wanted, self.words)
@@ -86,15 +86,15 @@ class Kind(Generic[T]):
         values = {name: _type(hints[name], data[name]) for name in self.keys if name in hints and name in data}
         values |= {name: self._table(csv, tables) for name, csv in self.tables.items()}
         values |= {name: OnDisk(made, arrays) if self.later else made(arrays) for name, made in self.arrays.items()}
-        return Keyed(self.noun(**values), data.get("key", ""))
+        return self.noun(**values), data.get("key", "")
 
     def kept(self, folder: Path, key: str) -> T | None:
         """Load a result that was computed from this very key; None where there is none that is whole."""
         try:
-            keyed = self.load_keyed(folder)
+            result, stored = self.load_keyed(folder)
         except SchemaError:
             return None
-        return keyed.result if keyed.key == key else None
+        return result if stored == key else None
 
     def draw(self, result: T, folder: Path) -> Path:
         """Write the page of a result that lies in a folder."""
@@ -152,11 +152,6 @@ def find_kind(folder: Path, drawn: bool = False) -> Kind[Any]:
             "Name the folder of `gaitdisc reconstruct`, or apply the model to a recording: `gaitdisc apply`.",
         )
     return kind
-
-
-def load_saved(folder: Path) -> Any:
-    """Read whatever result a folder holds; what was changed since is refused."""
-    return find_kind(folder).load(folder)
 
 
 def load_word(word: str) -> Any:

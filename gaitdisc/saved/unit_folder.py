@@ -15,7 +15,7 @@ from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cache, lru_cache, partial
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, Generic, NamedTuple, TypeVar
+from typing import TYPE_CHECKING, Any, NamedTuple, TypeVar
 
 import numpy as np
 
@@ -31,7 +31,6 @@ from gaitdisc.whole_file import find_written, whole_file, write_together, write_
 if TYPE_CHECKING:
     import pandas as pd
 
-T = TypeVar("T")
 Kind = TypeVar("Kind")
 Arrays = Mapping[str, Values]
 KEPT_FILES = 2  # of which the arrays stay in memory: both walks of one participant
@@ -66,7 +65,7 @@ class StoredArrays(Mapping[str, Values]):
         return _arrays(self.path, self.sha256) if self.sha256 else {}
 
 
-class OnDisk(partial[T]):
+class OnDisk(partial[Any]):
     """Something made of the arrays of one file each time it is looked at, for a field that `may_lie_on_disk`."""
 
 
@@ -199,13 +198,6 @@ class Unit(NamedTuple):
     data: dict[str, Any]
     tables: dict[str, pd.DataFrame]
     arrays: StoredArrays
-
-
-class Keyed(NamedTuple, Generic[T]):
-    """A result as it was stored, and the key of what it was computed from."""
-
-    result: T
-    key: str
 
 
 @write_together()

@@ -21,7 +21,7 @@ from gaitdisc.response.participants_result import TESTS
 from gaitdisc.run.citations import list_citations
 from gaitdisc.saved import kind as kinds
 from gaitdisc.saved import unit_folder
-from gaitdisc.saved.kind import Kind, Saved, load_saved
+from gaitdisc.saved.kind import Kind, Saved, find_kind
 from gaitdisc.saved.provenance import Refusal, code_sha256, list_versions, provenance_now
 from gaitdisc.saved.study_run import UNITS, keep_creation, save_run
 from gaitdisc.saved.unit_folder import (
@@ -184,7 +184,7 @@ def test_every_unit_of_a_run_is_of_a_kind():
 
 def test_no_result_is_refused(tmp_path):
     with pytest.raises(SchemaError, match="contains nothing"):
-        load_saved(tmp_path)
+        find_kind(tmp_path)
 
 
 def test_a_fitted_model_has_neither_page_nor_citations(tmp_path):
