@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-import csv
 from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import cache
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -15,6 +15,10 @@ from gaitdisc.kinematics.pose import Pose
 from gaitdisc.kinetics.newton_euler import RigidBody
 from gaitdisc.recording.arrays import Values, finite_values
 from gaitdisc.recording.trial import MASS_KG
+from gaitdisc.spreadsheet import read_csv
+
+if TYPE_CHECKING:
+    import pandas as pd
 
 LEG: tuple[str, ...] = ("foot", "shank", "thigh")
 _SPREAD_OF_LENGTH = 0.1  # a bone whose length varies by more than a tenth is none
@@ -59,38 +63,22 @@ class Person:
         return self.mass_kg
 
 
-@dataclass(frozen=True)
-class TableRow:
-    """One segment of a table, for one sex."""
-
-    mass: float  # [% of body mass], of one segment
-    # tuple of float [% of the segment's length], x, y, z of the right side, from the proximal joint's centre
-    centre: tuple[float, ...]
-    # tuple of float [% of the segment's length], xx, yy, zz, xy, xz, yz of the right side; a negative product of
-    # inertia has a negative number
-    gyration: tuple[float, ...]
-
-
 @cache
-def inertia_table(sex: str) -> Mapping[str, TableRow]:
+def inertia_table(sex: str) -> pd.DataFrame:
     """Segments of one sex, as `data_schema/segment_inertia.csv` has them.
 
+    mass [% of body mass]: of one segment, of which a body has `whole`
+    x, y, z [% of the segment's length]: centre of mass of the right side, from the proximal joint's centre
+    xx, yy, zz, xy, xz, yz [% of the segment's length]: radii of gyration of the right side; a negative product of
+        inertia has a negative number
     Source: Dumas, Chèze & Verriest (2007), J. Biomech. 40, 543-553, and its corrigendum, 40, 1651-1652, as other
         programs print them: docs/kinetics.md says which numbers differ there.
 
-    >>> inertia_table("m")["thigh"].mass
+    >>> float(inertia_table("m").mass["thigh"])
     12.3
     """
-    with (schema_folder() / "segment_inertia.csv").open(newline="", encoding="utf-8") as file:
-        rows = [row for row in csv.DictReader(file) if row["sex"] == sex]
-    return {
-        row["segment"]: TableRow(
-            float(row["mass"]),
-            tuple(float(row[key]) for key in ("x", "y", "z") if row[key]),
-            tuple(float(row[key]) for key in ("xx", "yy", "zz", "xy", "xz", "yz") if row[key]),
-        )
-        for row in rows
-    }
+    table = read_csv(schema_folder() / "segment_inertia.csv").set_index("segment")
+    return table[table["sex"] == sex]
 
 
 def leg_inertia(person: Person, side: str, lengths_m: Mapping[str, float], toe: Values) -> dict[str, RigidBody]:
@@ -109,7 +97,7 @@ def leg_inertia(person: Person, side: str, lengths_m: Mapping[str, float], toe: 
                 f"{segment}_{side} is {lengths[segment]:.4g} m",
                 "Check the markers' unit and the joint centres.",
             )
-        rows = [inertia_table(sex)[segment] for sex in person.sex or "fm"]
+        rows = [inertia_table(sex).T[segment] for sex in person.sex or "fm"]
         bodies = [_body(row, person.kg, lengths[segment], side) for row in rows]
         mass = float(np.mean([body.mass_kg for body in bodies]))
         centre = np.mean([body.centre for body in bodies], axis=0)
@@ -146,9 +134,9 @@ def segment_lengths(poses: Mapping[str, Pose], side: str) -> dict[str, float]:
     return lengths
 
 
-def _body(row: TableRow, mass_kg: float, length_m: float, side: str) -> RigidBody:
+def _body(row: pd.Series, mass_kg: float, length_m: float, side: str) -> RigidBody:
     mirror = np.diag([1.0, 1.0, 1.0 if side == "r" else -1.0])
-    xx, yy, zz, xy, xz, yz = (np.sign(r) * (r / 100 * length_m) ** 2 for r in row.gyration)
-    mass = row.mass / 100 * mass_kg
+    xx, yy, zz, xy, xz, yz = (np.sign(r) * (r / 100 * length_m) ** 2 for r in row["xx":"yz"])
+    mass = row["mass"] / 100 * mass_kg
     tensor = mass * np.array([[xx, xy, xz], [xy, yy, yz], [xz, yz, zz]])
-    return RigidBody(mass, mirror @ np.array(row.centre) / 100 * length_m, mirror @ tensor @ mirror)
+    return RigidBody(mass, mirror @ np.array(row["x":"z"], float) / 100 * length_m, mirror @ tensor @ mirror)
