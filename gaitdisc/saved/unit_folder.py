@@ -202,11 +202,7 @@ class Unit(NamedTuple):
 
 @write_together()
 def save_unit(
-    folder: Path,
-    name: str,
-    data: Mapping[str, Any],
-    tables: Mapping[str, pd.DataFrame],
-    arrays: Mapping[str, Values],
+    folder: Path, name: str, data: Mapping[str, Any], tables: Mapping[str, pd.DataFrame], arrays: Arrays
 ) -> None:
     """Write tables (by file name) as CSV and arrays, then the JSON file of their hashes: only then the unit stands."""
     for file, table in tables.items():
