@@ -3,8 +3,6 @@
 Exit codes: `gaitdisc/commands/options.py`.
 """
 
-from __future__ import annotations
-
 import gc
 import logging
 import signal

@@ -1,7 +1,5 @@
 """Numbers by compiled code: numba, its results kept beside the package, in the user's cache, or nowhere."""
 
-from __future__ import annotations
-
 import warnings
 from collections.abc import Callable
 from contextlib import suppress

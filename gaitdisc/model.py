@@ -1,7 +1,5 @@
 """A model is anything with named inputs and outputs; models add."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 from typing import Protocol, runtime_checkable
 

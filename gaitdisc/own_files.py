@@ -4,8 +4,6 @@ Each folder that is written to holds a list: SHA-256, command and path of every 
 takes its place, so a command that was killed knows its files again.
 """
 
-from __future__ import annotations
-
 import hashlib
 import json
 import os

@@ -1,7 +1,5 @@
 """Only regular files of a bounded size are opened: a pipe waits for ever, a device never ends. Their hash is kept."""
 
-from __future__ import annotations
-
 import hashlib
 import os
 import stat

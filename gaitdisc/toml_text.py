@@ -1,7 +1,5 @@
 """TOML that a person wrote: parsed, and refused where it is nested too deep; and texts as it has them."""
 
-from __future__ import annotations
-
 import json
 import re
 import tomllib

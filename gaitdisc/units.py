@@ -6,8 +6,6 @@ m, s, N, N m, V, W, kg, degC, and 1 for ratios (1/min for heart rate and cadence
 `N m s/rad`, `kg m^2`, `1/s^2`.
 """
 
-from __future__ import annotations
-
 import math
 import re
 from collections.abc import Iterator

@@ -1,7 +1,5 @@
 """Whole files only: written beside their place, flushed to disk, then renamed into it."""
 
-from __future__ import annotations
-
 import os
 from collections.abc import Iterator
 from contextlib import contextmanager, suppress

@@ -1,7 +1,5 @@
 """One process at a time writes into a folder, or a file."""
 
-from __future__ import annotations
-
 import errno
 import json
 import os

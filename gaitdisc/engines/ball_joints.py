@@ -6,8 +6,6 @@ has its rate. With z up and x ahead the angles of a hip are flexion, abduction a
 balls: first coordinate of each such three; the others stand among MuJoCo's positions in the same order
 """
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 
 import numpy as np

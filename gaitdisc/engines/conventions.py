@@ -3,8 +3,6 @@
 states (trial, sample, state): smoothed: coordinates, then speeds
 """
 
-from __future__ import annotations
-
 from collections.abc import Iterator
 from typing import NamedTuple
 

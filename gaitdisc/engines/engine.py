@@ -1,7 +1,5 @@
 """Models of MuJoCo or OpenSim from their files: what an engine offers, its classes say."""
 
-from __future__ import annotations
-
 from pathlib import Path
 
 from gaitdisc.engines.mujoco_model import MujocoModel

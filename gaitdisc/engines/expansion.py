@@ -6,8 +6,6 @@ force. Runs that stay near the record then need no call of the engine: what is l
 distance from the smoothed record.
 """
 
-from __future__ import annotations
-
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, replace
 

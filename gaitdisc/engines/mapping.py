@@ -1,7 +1,5 @@
 """The mapping file of a model: a simulation file whose equations are those of an engine's model beside it."""
 
-from __future__ import annotations
-
 import os
 from dataclasses import replace
 from pathlib import Path

@@ -1,7 +1,5 @@
 """Numbers of a MuJoCo model that may be changed by name: of bodies, joints, tendons and actuators."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Mapping, Sequence
 from copy import copy
 from operator import attrgetter

@@ -1,7 +1,5 @@
 """The process in which OpenSim computes: questions come in by one pipe, answers go out by another."""
 
-from __future__ import annotations
-
 import os
 import pickle
 import sys

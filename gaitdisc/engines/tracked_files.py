@@ -1,7 +1,5 @@
 """The files of a walk with recorded forces: checked against each other and the model, and on one time base."""
 
-from __future__ import annotations
-
 from pathlib import Path
 
 import numpy as np

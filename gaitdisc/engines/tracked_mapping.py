@@ -1,7 +1,5 @@
 """The mapping of a walk with recorded forces, read and written: what its [tracked] table names."""
 
-from __future__ import annotations
-
 import os
 import re
 from dataclasses import dataclass, replace

@@ -1,7 +1,5 @@
 """What was found, written into the model's own text, loaded again and compared with the expression by hand."""
 
-from __future__ import annotations
-
 import tempfile
 import weakref
 from collections.abc import Callable

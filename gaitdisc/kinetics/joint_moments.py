@@ -1,7 +1,5 @@
 """What the ground gives to each foot, and with segments in space joint moments and powers, N m/kg and W/kg."""
 
-from __future__ import annotations
-
 import itertools
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass

@@ -4,8 +4,6 @@ Everything is held about the laboratory's origin, so that the equations are sums
 momentum of all segments beyond it, less their weight, less what the ground gives.
 """
 
-from __future__ import annotations
-
 import itertools
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass

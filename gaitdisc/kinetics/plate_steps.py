@@ -1,7 +1,5 @@
 """Which foot is on which platform, from its markers and the force; steps that cannot be used say why."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 

@@ -1,7 +1,5 @@
 """Everything from a trial and its poses to joint moments, powers and what they are worth."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 

@@ -1,7 +1,5 @@
 """What a result rests on, and who or what is left out of it."""
 
-from __future__ import annotations
-
 import hashlib
 import platform
 from collections.abc import Mapping

@@ -3,8 +3,6 @@
 Effects are scored along trajectories by these values.
 """
 
-from __future__ import annotations
-
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import lru_cache

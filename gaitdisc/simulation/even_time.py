@@ -1,7 +1,5 @@
 """One trial as a logger wrote it, on an even time base: a clock that shakes, rows that are missing, empty cells."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass, replace
 
 import numpy as np

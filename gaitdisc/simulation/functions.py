@@ -1,7 +1,5 @@
 """A plain Python function as a simulation: its arguments say what its states, inputs, parameters and ports are."""
 
-from __future__ import annotations
-
 import inspect
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field, replace

@@ -6,8 +6,6 @@ linear between their samples; a delayed state is linear between the steps of its
 side is integrated by the same lines, run by Python, with its function as `derive`.
 """
 
-from __future__ import annotations
-
 import math
 
 import numpy as np

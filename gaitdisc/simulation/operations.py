@@ -4,8 +4,6 @@ The library's sine, exponential and hyperbolic tangent would be called row by ro
 agree with them to 4e-16, absolutely or relatively.
 """
 
-from __future__ import annotations
-
 import math
 
 import numpy as np

@@ -1,7 +1,5 @@
 """The named parts of a simulation."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 
 Lines = tuple[tuple[str, str], ...]  # name, expression

@@ -3,8 +3,6 @@
 Equal parts are computed once. What depends on parameters alone comes first and is computed once a run (`setup`).
 """
 
-from __future__ import annotations
-
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 

@@ -1,7 +1,5 @@
 """A simulation made ready to run, of equations or of a Python object; and where one that blows up does so."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from dataclasses import dataclass, replace
 from functools import lru_cache

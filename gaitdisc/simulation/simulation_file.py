@@ -1,7 +1,5 @@
 """Reading a simulation file (docs/simulation.md); those that come with the package can be read and copied."""
 
-from __future__ import annotations
-
 import math
 import re
 from collections.abc import Mapping

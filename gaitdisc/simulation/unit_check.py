@@ -1,7 +1,5 @@
 """Whether units of a simulation fit together, which is reported or refused; and those of an effect's numbers."""
 
-from __future__ import annotations
-
 import math
 import re
 from collections.abc import Callable, Mapping

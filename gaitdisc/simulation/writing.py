@@ -1,7 +1,5 @@
 """Writing a simulation back, with the comments and the order of the file that it came from."""
 
-from __future__ import annotations
-
 from collections.abc import Iterable
 from contextlib import suppress
 from dataclasses import replace

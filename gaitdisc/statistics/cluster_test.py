@@ -1,7 +1,5 @@
 """Where over the stride curves differ: a permutation test of all points and all channels at once, and its clusters."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from itertools import pairwise

@@ -1,7 +1,5 @@
 """Sub-groups of participants, or an honest none: parted more than one cloud is, and the same when some are missing."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Holm's step-down with Sidak's levels: many tests, one chance of a false alarm."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Variance accounted for in held-out walking, and the R2 that band-limited noise without any gait reaches."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 
 import numpy as np

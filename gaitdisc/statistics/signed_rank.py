@@ -1,7 +1,5 @@
 """Wilcoxon's signed-rank test of pairs, exact: with what was dropped, how large the difference is, and how sure."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any

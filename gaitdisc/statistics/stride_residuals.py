@@ -1,7 +1,5 @@
 """Residuals over the stride: where in the stride a model misses, and whether that is more than noise."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 
 import numpy as np
