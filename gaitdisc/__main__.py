@@ -1,5 +1,7 @@
 """`gaitdisc` and `python -m gaitdisc`: Ctrl-C ends both with exit code 130, from the first import to the last line."""
 
+from __future__ import annotations
+
 import os
 import signal
 import sys
